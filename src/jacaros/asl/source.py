@@ -1,0 +1,32 @@
+"""Source files and places in them."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A stretch of a source file: lines and columns count from 1, the end column is exclusive."""
+
+    file: "SourceFile" = field(repr=False, compare=False)
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+    def to(self, other: "Span") -> "Span":
+        """The stretch from the beginning of this one to the end of *other*."""
+        return Span(self.file, self.line, self.column, other.end_line, other.end_column)
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """The text of one file; ``name`` is what diagnostics show (a path, or a made-up name)."""
+
+    name: str
+    text: str = field(repr=False)
+
+    @cached_property
+    def lines(self) -> tuple[str, ...]:
+        """The lines without their ends."""
+        return tuple(self.text.splitlines())

@@ -1,0 +1,189 @@
+"""Time as a port: the wall clock, and a virtual clock that jumps when everybody waits.
+
+Agents, artifacts and the embedded world take time from a `Clock` alone.  The virtual clock belongs to an
+event loop made by `new_event_loop`: when no callback is ready and no other thread is at work for the loop,
+it moves to the next timer instead of sleeping, so a run is exactly repeatable and as fast as the machine.
+"""
+
+import asyncio
+import heapq
+import itertools
+import selectors
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any, Protocol, TypeVar
+
+VIRTUAL_EPOCH = 1_577_836_800.0
+"""2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: where every virtual run begins."""
+
+T = TypeVar("T")
+
+
+class Timer(Protocol):
+    """A call that is to come; it can be taken back."""
+
+    def cancel(self) -> None:
+        """Take the call back; nothing happens when it is past."""
+
+
+class Clock(Protocol):
+    """Where everybody takes the time from."""
+
+    @property
+    def virtual(self) -> bool:
+        """True when time moves in jumps."""
+
+    def now(self) -> float:
+        """Seconds since the Unix epoch."""
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* on the loop after *delay* seconds; equal moments keep their order."""
+
+    async def sleep(self, delay: float) -> None:
+        """Wait for *delay* seconds."""
+
+    def busy(self, cycles: int) -> None:
+        """Be told that agents made *cycles* reasoning cycles without getting idle."""
+
+
+class WallClock:
+    """The time of day, as the machine tells it; delays are measured on the monotonic clock."""
+
+    virtual = False
+
+    def now(self) -> float:
+        """Seconds since the Unix epoch."""
+        return time.time()
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* on the running loop after *delay* seconds."""
+        return asyncio.get_running_loop().call_later(delay, callback)
+
+    async def sleep(self, delay: float) -> None:
+        """Wait for *delay* seconds."""
+        await asyncio.sleep(max(0.0, delay))
+
+    def busy(self, cycles: int) -> None:
+        """Nothing: the wall clock moves by itself."""
+
+
+class _VirtualTimer:
+    __slots__ = ("callback", "cancelled", "number", "when")
+
+    def __init__(self, when: float, number: int, callback: Callable[[], None]) -> None:
+        self.when, self.number, self.callback, self.cancelled = when, number, callback, False
+
+    def __lt__(self, other: "_VirtualTimer") -> bool:
+        return (self.when, self.number) < (other.when, other.number)
+
+    def cancel(self) -> None:
+        self.cancelled = True
+
+
+class VirtualClock:
+    """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all wait."""
+
+    virtual = True
+    CYCLES_PER_MILLISECOND = 10_000
+    """An endless plan moves time too: 1 ms for so many busy cycles, so it cannot freeze the world."""
+
+    def __init__(self, start: float = VIRTUAL_EPOCH) -> None:
+        self.start = start
+        self.elapsed = 0.0
+        self._timers: list[_VirtualTimer] = []
+        self._numbers = itertools.count()
+        self._cycles = 0
+
+    def now(self) -> float:
+        """Seconds since the Unix epoch."""
+        return self.start + self.elapsed
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* after *delay* seconds of virtual time."""
+        timer = _VirtualTimer(self.elapsed + max(0.0, delay), next(self._numbers), callback)
+        heapq.heappush(self._timers, timer)
+        return timer
+
+    async def sleep(self, delay: float) -> None:
+        """Wait for *delay* seconds of virtual time."""
+        done = asyncio.get_running_loop().create_future()
+        timer = self.call_later(delay, lambda: done.done() or done.set_result(None))
+        try:
+            await done
+        finally:
+            timer.cancel()
+
+    def busy(self, cycles: int) -> None:
+        """Move 1 ms on for every 10,000 cycles that agents made without getting idle."""
+        self._cycles += cycles
+        while self._cycles >= self.CYCLES_PER_MILLISECOND:
+            self._cycles -= self.CYCLES_PER_MILLISECOND
+            self._move_to(self.elapsed + 0.001)
+
+    def advance(self) -> bool:
+        """Jump to the next timer and call all that are due then; False when there is none."""
+        while self._timers and self._timers[0].cancelled:
+            heapq.heappop(self._timers)
+        if not self._timers:
+            return False
+        self._cycles = 0
+        self._move_to(self._timers[0].when)
+        return True
+
+    def _move_to(self, moment: float) -> None:
+        while self._timers and self._timers[0].when <= moment:
+            timer = heapq.heappop(self._timers)
+            if not timer.cancelled:
+                self.elapsed = max(self.elapsed, timer.when)
+                timer.callback()
+        self.elapsed = max(self.elapsed, moment)
+
+
+class _VirtualSelector(selectors.DefaultSelector):
+    """Lets the loop's "sleep until something happens" become a jump of the virtual clock."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        super().__init__()
+        self.clock = clock
+        self.foreign_work = 0
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        if timeout is not None and timeout <= 0:
+            return super().select(0)
+        events = super().select(0)
+        if events:
+            return events
+        if not self.foreign_work and self.clock.advance():
+            return []
+        return super().select(timeout)
+
+
+class VirtualEventLoop(asyncio.SelectorEventLoop):
+    """An asyncio loop whose waiting is done on a virtual clock."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self.virtual_selector = _VirtualSelector(clock)
+        super().__init__(self.virtual_selector)
+
+    def run_in_executor(self, executor: Any, func: Any, *args: Any) -> Any:
+        """Run *func* in a thread; virtual time stands still until it is done."""
+        self.virtual_selector.foreign_work += 1
+        future = super().run_in_executor(executor, func, *args)
+        future.add_done_callback(lambda _: self._foreign_work_done())
+        return future
+
+    def _foreign_work_done(self) -> None:
+        self.virtual_selector.foreign_work -= 1
+
+
+def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:
+    """Make the event loop that goes with *clock*."""
+    if isinstance(clock, VirtualClock):
+        return VirtualEventLoop(clock)
+    return asyncio.new_event_loop()
+
+
+def run(main: Callable[[], Coroutine[Any, Any, T]], clock: Clock) -> T:
+    """Run the coroutine function *main* to its end on a fresh loop of *clock*."""
+    with asyncio.Runner(loop_factory=lambda: new_event_loop(clock)) as runner:
+        return runner.run(main())
