@@ -1,0 +1,154 @@
+"""Arithmetic on terms: doubles throughout, evaluated when operands are known, kept as a term until then."""
+
+import math
+from collections.abc import Callable
+
+from jacaros.terms.values import (
+    ARITHMETIC,
+    FUNCTION,
+    Annotated,
+    Term,
+    Var,
+    deref,
+    functor,
+)
+
+
+class ArithmeticFault(Exception):
+    """An operation without a result, such as a division by zero of ``div``; it fails the step."""
+
+
+def divide(left: float, right: float) -> float:
+    """Division of reals: ``x / 0`` is infinite or not a number, as in IEEE."""
+    if right == 0.0:
+        if left == 0.0 or left != left:
+            return math.nan
+        return math.copysign(math.inf, left) * math.copysign(1.0, right)
+    return left / right
+
+
+def _to_int(value: float) -> int:
+    """Truncate as Java casts a double to a 32-bit integer."""
+    if value != value:
+        return 0
+    return max(-(2**31), min(2**31 - 1, math.trunc(value) if math.isfinite(value) else int(math.copysign(2**31, value))))
+
+
+def integer_divide(left: float, right: float) -> float:
+    """``div``: both operands and the quotient truncated towards zero.
+
+    Raises:
+        ArithmeticFault: when the divisor is zero.
+    """
+    dividend, divisor = _to_int(left), _to_int(right)
+    if divisor == 0:
+        raise ArithmeticFault("integer division by zero")
+    quotient = abs(dividend) // abs(divisor)
+    return float(quotient if (dividend < 0) == (divisor < 0) else -quotient)
+
+
+def remainder(left: float, right: float) -> float:
+    """``mod``: the remainder that has the sign of the dividend."""
+    if right == 0.0 or not math.isfinite(left):
+        return math.nan
+    return math.fmod(left, right)
+
+
+def power(left: float, right: float) -> float:
+    """``**``; infinite or not a number where there is no real result."""
+    try:
+        result = left**right
+    except ZeroDivisionError:
+        return math.inf
+    except OverflowError:
+        return -math.inf if left < 0 and right % 2 == 1 else math.inf
+    return result if result.__class__ is float else math.nan
+
+
+OPERATIONS: dict[str, Callable[[float, float], float]] = {
+    "+": lambda a, b: a + b,
+    "-": lambda a, b: a - b,
+    "*": lambda a, b: a * b,
+    "/": divide,
+    "div": integer_divide,
+    "mod": remainder,
+    "**": power,
+}
+
+ADD = functor("+", 2, kind=ARITHMETIC)
+SUBTRACT = functor("-", 2, kind=ARITHMETIC)
+MULTIPLY = functor("*", 2, kind=ARITHMETIC)
+NEGATE = functor("-", 1, kind=ARITHMETIC)
+
+Evaluator = Callable[..., Term]
+functions: dict[str, Evaluator] = {}
+"""Arithmetic functions by name; they are given the evaluated arguments and return a number, or None when the
+arguments are not known yet.  Functions that need an agent are in `agent_functions` of the mind."""
+
+warn: Callable[[str], None] = lambda text: None  # noqa: E731 - replaced by whoever runs agents
+"""Told of operands that are no numbers; the result is not a number then, as in Jason."""
+
+
+def settle(term: Term) -> Term:
+    """Dereference, and evaluate when the term is arithmetic whose operands are known."""
+    while term.__class__ is Var:
+        if term.ref is None:
+            return term
+        term = term.ref
+    if term.__class__ is tuple:
+        kind = term[0].kind
+        if kind == ARITHMETIC:
+            return _evaluate(term)
+        if kind == FUNCTION:
+            return call(term)
+    return term
+
+
+def _evaluate(term: Term) -> Term:
+    operands = [settle(a) for a in term[1:]]
+    for operand in operands:
+        if operand.__class__ is not float and _is_open(operand):
+            return term
+    numbers = [_number(o, term) for o in operands]
+    if len(numbers) == 1:
+        return -numbers[0] if term[0].name == "-" else numbers[0]
+    return OPERATIONS[term[0].name](numbers[0], numbers[1])
+
+
+def _is_open(operand: Term) -> bool:
+    """Whether an operand still waits for a value."""
+    return operand.__class__ is Var or (
+        operand.__class__ is tuple and operand[0].kind in (ARITHMETIC, FUNCTION)
+    )
+
+
+def _number(operand: Term, term: Term) -> float:
+    if operand.__class__ is float:
+        return operand  # type: ignore[no-any-return]
+    if operand.__class__ is Annotated:
+        return _number(deref(operand.term), term)
+    warn(f"an operand of '{term[0].name}' is no number: {operand!r}")
+    return math.nan
+
+
+def call(term: Term) -> Term:
+    """Evaluate a function call; the call itself comes back while arguments are unknown."""
+    function = functions.get(term[0].name)
+    if function is None:
+        return term
+    value = function(*term[1:])
+    return term if value is None else value
+
+
+def binary(operator: str, left: Term, right: Term) -> Term:
+    """The value of an operation on any terms: the slow path of compiled arithmetic."""
+    left, right = settle(left), settle(right)
+    if left.__class__ is float and right.__class__ is float:
+        return OPERATIONS[operator](left, right)
+    return _evaluate((functor(operator, 2, kind=ARITHMETIC), left, right))
+
+
+def negate(operand: Term) -> Term:
+    """The value of unary minus on any term."""
+    operand = settle(operand)
+    return -operand if operand.__class__ is float else _evaluate((NEGATE, operand))

@@ -1,0 +1,85 @@
+"""The mutable values of the language: sets, maps and queues, shared by reference as in Jason."""
+
+import heapq
+import itertools
+from collections import deque
+from collections.abc import Iterator
+
+from jacaros.terms.order import SortKey, sorted_terms
+from jacaros.terms.values import Term
+
+
+class SetValue:
+    """``{a, b}``: each element once, read in the standard order."""
+
+    __slots__ = ("items",)
+
+    def __init__(self, items: dict[Term, None] | None = None) -> None:
+        self.items: dict[Term, None] = {} if items is None else items
+
+    def __iter__(self) -> Iterator[Term]:
+        return iter(sorted_terms(self.items))
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+
+class MapValue:
+    """``{k->v}``: a value per key, in the order of first insertion."""
+
+    __slots__ = ("items",)
+
+    def __init__(self, items: dict[Term, Term] | None = None) -> None:
+        self.items: dict[Term, Term] = {} if items is None else items
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+
+class QueueValue:
+    """``[a, b]``: first in, first out; or, with *priority*, smallest first."""
+
+    __slots__ = ("_heap", "_items", "_numbers", "priority")
+
+    def __init__(self, priority: bool = False) -> None:
+        self.priority = priority
+        self._items: deque[Term] = deque()
+        self._heap: list[tuple[SortKey, int, Term]] = []
+        self._numbers = itertools.count()
+
+    def add(self, item: Term) -> None:
+        """Put an element in."""
+        if self.priority:
+            heapq.heappush(self._heap, (SortKey(item), next(self._numbers), item))
+        else:
+            self._items.append(item)
+
+    def head(self) -> Term | None:
+        """The next element, or None."""
+        if self.priority:
+            return self._heap[0][2] if self._heap else None
+        return self._items[0] if self._items else None
+
+    def remove(self) -> Term | None:
+        """Take the next element out, or None."""
+        if self.priority:
+            return heapq.heappop(self._heap)[2] if self._heap else None
+        return self._items.popleft() if self._items else None
+
+    def clear(self) -> None:
+        """Take all out."""
+        self._items.clear()
+        self._heap.clear()
+
+    def copy(self) -> "QueueValue":
+        """A queue of its own with the same elements."""
+        other = QueueValue(self.priority)
+        for item in self:
+            other.add(item)
+        return other
+
+    def __iter__(self) -> Iterator[Term]:
+        return iter([entry[2] for entry in sorted(self._heap)] if self.priority else list(self._items))
+
+    def __len__(self) -> int:
+        return len(self._heap) if self.priority else len(self._items)

@@ -1,0 +1,81 @@
+"""Plans, bodies, triggers and rules as terms, so that programs can pass them around and unify them.
+
+================  ===============================================================
+plan              ``(PLAN, label, trigger, context, body)``
+trigger           ``(TRIGGER, operator atom, literal)``
+rule              ``(RULE, head, body)``
+body              ``(BODY_SEQUENCE, step, rest)`` ending in `BODY_END`
+step              ``(functor(operator, n, kind=PLAN), operand, ...)``
+================  ===============================================================
+
+Step operators are those of the source (``!``, ``!!``, ``?``, ``+`` …), the empty string for an action or a
+formula, and ``if``, ``while``, ``for``, ``|&|``, ``|||``.
+"""
+
+from collections.abc import Iterable, Iterator
+
+from jacaros.terms.values import PLAN as KIND
+from jacaros.terms.values import Functor, Term, atom, deref, functor
+
+PLAN = functor("plan", 4, kind=KIND)
+TRIGGER = functor("trigger", 2, kind=KIND)
+RULE = functor("rule", 2, kind=KIND)
+BODY_SEQUENCE = functor(";", 2, kind=KIND)
+BODY_END = functor("", 0, kind=KIND)
+NO_LABEL = atom("nolabel")
+
+
+def make_body(steps: Iterable[Term]) -> Term:
+    """The body term of these step terms."""
+    body: Term = BODY_END
+    for step in reversed(list(steps)):
+        body = (BODY_SEQUENCE, step, body)
+    return body
+
+
+def step(operator: str, *operands: Term) -> Term:
+    """The term of one body step."""
+    return (functor(operator, len(operands), kind=KIND), *operands)
+
+
+def trigger(operator: str, literal: Term) -> Term:
+    """The term of a trigger; *operator* is ``+``, ``-!``, ``+?`` …"""
+    return (TRIGGER, atom(operator), literal)
+
+
+def body_steps(body: Term) -> Iterator[Term]:
+    """The steps of a body term; a variable or other term at the end counts as a step."""
+    body = deref(body)
+    while body.__class__ is tuple and body[0] is BODY_SEQUENCE:
+        yield deref(body[1])
+        body = deref(body[2])
+    if body is not BODY_END:
+        yield body
+
+
+def step_parts(step_term: Term) -> tuple[str, tuple[Term, ...]]:
+    """Operator and operands of a step; any other term is an action."""
+    if step_term.__class__ is tuple and step_term[0].kind == KIND and step_term[0] not in (PLAN, TRIGGER, RULE):
+        return step_term[0].name, step_term[1:]
+    return "", (step_term,)
+
+
+def trigger_parts(term: Term) -> tuple[str, Term]:
+    """Operator text and literal of a trigger term."""
+    return deref(term[1]).name, deref(term[2])
+
+
+def plan_text_parts(term: Term) -> tuple[Term, str, Term, Term, Term]:
+    """Label, trigger operator, trigger literal, context and body of a plan term."""
+    operator, literal = trigger_parts(deref(term[2]))
+    return term[1], operator, literal, deref(term[3]), deref(term[4])
+
+
+def is_body(term: Term) -> bool:
+    """Whether a term is a plan body."""
+    return term is BODY_END or (term.__class__ is tuple and term[0] is BODY_SEQUENCE)
+
+
+def is_plan_piece(symbol: Functor) -> bool:
+    """Whether a functor belongs to plans as terms."""
+    return symbol.kind == KIND

@@ -1,0 +1,319 @@
+"""Unification, substitution and renaming of terms.
+
+Variables are bound in place; a `Trail` remembers which, so that a search can take bindings back.  What differs
+from textbook unification is the treatment of annotations (Jason): those of the left term must be a subset of
+those of the right one.
+"""
+
+from collections.abc import Iterator
+
+from jacaros.terms.arithmetic import settle
+from jacaros.terms.order import annotation_set
+from jacaros.terms.values import (
+    ARITHMETIC,
+    CONS,
+    FUNCTION,
+    NIL,
+    Annotated,
+    Functor,
+    String,
+    Term,
+    Var,
+    deref,
+    make_list,
+)
+
+
+class Trail(list[Var]):
+    """The variables bound since a search began, in order.
+
+    Attributes:
+        serial: number of goals posted so far; stamped on every binding, so that those made for a failed goal
+            can be told from older ones.
+    """
+
+    __slots__ = ("serial",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.serial = 0
+
+
+ATOMIC = frozenset({float, String, Functor})
+"""Classes of values that hold no variables and evaluate to themselves."""
+
+
+def bind(variable: Var, value: Term, trail: Trail) -> None:
+    """Give an unbound variable its value."""
+    variable.ref = value
+    variable.at = trail.serial
+    trail.append(variable)
+
+
+def undo(trail: Trail, mark: int) -> None:
+    """Take back all bindings made since the trail had the length *mark*."""
+    while len(trail) > mark:
+        trail.pop().ref = None
+
+
+def unify(left: Term, right: Term, trail: Trail) -> bool:
+    """Make two terms equal by binding variables; the annotations of *left* must be among those of *right*.
+
+    On failure bindings may be left on the trail: the caller takes them back.
+    """
+    while True:
+        left, right = settle(left), settle(right)
+        if left is right:
+            return True
+        kind = left.__class__
+        if kind is Var:
+            return _bind_checked(left, right, trail)
+        if right.__class__ is Var:
+            return _bind_checked(right, left, trail)
+        if kind is tuple and right.__class__ is tuple:
+            if left[0] is not right[0]:
+                return False
+            for i in range(1, len(left) - 1):
+                if not unify(left[i], right[i], trail):
+                    return False
+            left, right = left[-1], right[-1]
+            continue
+        if kind is Annotated or right.__class__ is Annotated:
+            return _unify_annotated(left, right, trail)
+        return kind is right.__class__ and bool(left == right)
+
+
+def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
+    """Bind, unless the value plainly contains the variable (a cyclic term could never be printed)."""
+    if value.__class__ is tuple and _occurs(variable, value):
+        return False
+    bind(variable, value, trail)
+    return True
+
+
+def _occurs(variable: Var, value: Term) -> bool:
+    for _ in range(64):
+        if value.__class__ is not tuple:
+            return value is variable
+        for argument in value[1:-1]:
+            argument = deref(argument)
+            if argument is variable or (argument.__class__ is tuple and _occurs(variable, argument)):
+                return True
+        value = deref(value[-1])
+    return False
+
+
+def _unify_annotated(left: Term, right: Term, trail: Trail) -> bool:
+    left_term, left_annotations, left_tail = _parts(left)
+    right_term, right_annotations, right_tail = _parts(right)
+    if not unify(left_term, right_term, trail):
+        return False
+    return unify_annotations(left_annotations, left_tail, right_annotations, right_tail, trail)
+
+
+def _parts(term: Term) -> tuple[Term, tuple[Term, ...], Term]:
+    if term.__class__ is not Annotated:
+        return term, (), None
+    inner = settle(term.term)
+    if inner.__class__ is Annotated:
+        return inner.term, annotation_set((*term.annotations, *inner.annotations)), inner.tail or term.tail
+    return inner, term.annotations, term.tail
+
+
+def unify_annotations(
+    left: tuple[Term, ...], left_tail: Term, right: tuple[Term, ...], right_tail: Term, trail: Trail
+) -> bool:
+    """First way to find every annotation of *left* in *right*; tails take what is over."""
+    for _ in each_annotation_match(left, left_tail, right, right_tail, trail):
+        return True
+    return False
+
+
+def each_annotation_match(
+    left: tuple[Term, ...], left_tail: Term, right: tuple[Term, ...], right_tail: Term, trail: Trail
+) -> Iterator[None]:
+    """Every way to find the annotations of *left* in *right*, in the order of *right*.
+
+    With a tail on the left there is one answer at most.
+    """
+    if not left:
+        mark = len(trail)
+        if _unify_tail(left_tail, right, trail):
+            yield
+        undo(trail, mark)
+        return
+    for index, candidate in enumerate(right):
+        mark = len(trail)
+        if unify(left[0], candidate, trail):
+            rest = right[:index] + right[index + 1 :]
+            for _ in each_annotation_match(left[1:], left_tail, rest, right_tail, trail):
+                yield
+                if left_tail is not None:
+                    return
+        undo(trail, mark)
+    if right_tail is not None:
+        yield from _absorbed(left, left_tail, right, right_tail, trail)
+
+
+def _absorbed(
+    left: tuple[Term, ...], left_tail: Term, right: tuple[Term, ...], right_tail: Term, trail: Trail
+) -> Iterator[None]:
+    """The tail of the right side takes the annotations it lacks."""
+    mark = len(trail)
+    tail = deref(right_tail)
+    if tail.__class__ is Var:
+        bind(tail, make_list(left, Var()), trail)
+        if _unify_tail(left_tail, right, trail):
+            yield
+    undo(trail, mark)
+
+
+def _unify_tail(tail: Term, rest: tuple[Term, ...], trail: Trail) -> bool:
+    return tail is None or unify(tail, make_list(rest), trail)
+
+
+def resolve(term: Term) -> Term:
+    """Apply all bindings: variables replaced by their values, arithmetic evaluated.
+
+    The term itself is returned when there is nothing to replace.  Unbound variables stay as they are.
+    """
+    kind = term.__class__
+    if kind in ATOMIC:
+        return term
+    if kind is Var:
+        value = deref(term)
+        return value if value.__class__ is Var else resolve(value)
+    if kind is tuple:
+        return _resolve_list(term) if term[0] is CONS else _resolve_structure(term)
+    if kind is Annotated:
+        return _resolve_annotated(term)
+    return term
+
+
+def _resolve_structure(term: Term) -> Term:
+    changed = False
+    parts = [term[0]]
+    for argument in term[1:]:
+        new = argument if argument.__class__ in ATOMIC else resolve(argument)
+        changed = changed or new is not argument
+        parts.append(new)
+    if changed:
+        term = tuple(parts)
+    kind = term[0].kind
+    if kind == ARITHMETIC or kind == FUNCTION:
+        return settle(term)
+    return term
+
+
+def _resolve_list(term: Term) -> Term:
+    heads: list[Term] = []
+    changed = False
+    cell = term
+    while cell.__class__ is tuple and cell[0] is CONS:
+        head = cell[1]
+        new = head if head.__class__ in ATOMIC else resolve(head)
+        changed = changed or new is not head
+        heads.append(new)
+        tail = cell[2]
+        if tail.__class__ is Var:
+            cell = deref(tail)
+            changed = changed or cell is not tail
+        else:
+            cell = tail
+    if cell.__class__ is not Functor and cell.__class__ is not Var:
+        new = resolve(cell)
+        changed = changed or new is not cell
+        cell = new
+    return make_list(heads, cell) if changed else term
+
+
+def _resolve_annotated(term: Annotated) -> Term:
+    inner = resolve(term.term)
+    annotations = tuple(resolve(a) for a in term.annotations)
+    tail = None if term.tail is None else deref(term.tail)
+    if tail is not None and tail.__class__ is not Var:
+        from_tail: list[Term] = []
+        while tail.__class__ is tuple and tail[0] is CONS:
+            from_tail.append(resolve(tail[1]))
+            tail = deref(tail[2])
+        annotations += tuple(from_tail)
+        tail = tail if tail.__class__ is Var else None
+    if inner.__class__ is Annotated:
+        annotations += inner.annotations
+        inner = inner.term
+    annotations = annotation_set(annotations)
+    if not annotations and tail is None:
+        return inner
+    return Annotated(inner, annotations, tail)
+
+
+def is_ground(term: Term) -> bool:
+    """Whether the term holds no unbound variable."""
+    return not free_variables(term)
+
+
+def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
+    """The unbound variables of a term, each once, in order of appearance."""
+    found = [] if found is None else found
+    stack = [term]
+    while stack:
+        term = deref(stack.pop())
+        kind = term.__class__
+        if kind in ATOMIC:
+            continue
+        if kind is Var:
+            if not any(term is other for other in found):
+                found.append(term)
+        elif kind is tuple:
+            stack.extend(reversed(term[1:]))
+        elif kind is Annotated:
+            if term.tail is not None:
+                stack.append(term.tail)
+            stack.extend(reversed(term.annotations))
+            stack.append(term.term)
+    return found
+
+
+def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
+    """A copy with fresh variables in place of the unbound ones; ground terms are returned as they are."""
+    term = resolve(term)
+    if term.__class__ in ATOMIC or not free_variables(term):
+        return term
+    return _rename(term, {} if names is None else names)
+
+
+def _rename(term: Term, names: dict[Var, Var]) -> Term:
+    kind = term.__class__
+    if kind is Var:
+        fresh = names.get(term)
+        if fresh is None:
+            fresh = names[term] = Var(term.name)
+        return fresh
+    if kind is tuple:
+        if term[0] is CONS:
+            heads = []
+            while term.__class__ is tuple and term[0] is CONS:
+                heads.append(_rename(term[1], names))
+                term = term[2]
+            return make_list(heads, term if term is NIL else _rename(term, names))
+        return (term[0], *(_rename(a, names) for a in term[1:]))
+    if kind is Annotated:
+        tail = None if term.tail is None else _rename(term.tail, names)
+        return Annotated(
+            _rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail
+        )
+    return term
+
+
+def equal(left: Term, right: Term) -> bool:
+    """The relation ``==``: the same term after applying all bindings, annotations included."""
+    left, right = resolve(left), resolve(right)
+    try:
+        return left.__class__ is right.__class__ and bool(left == right)
+    except RecursionError:
+        from_left, from_right = left, right
+        while from_left.__class__ is tuple and from_right.__class__ is tuple and from_left[0] is CONS:
+            if from_right[0] is not CONS or not equal(from_left[1], from_right[1]):
+                return False
+            from_left, from_right = from_left[2], from_right[2]
+        return from_left.__class__ is not tuple and bool(from_left == from_right)
