@@ -1,0 +1,223 @@
+"""The middleware port: what every backend offers to artifacts and to the embedded world.
+
+Everything here happens on the loop of the backend's clock: calls come from there, callbacks arrive there.
+"""
+
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from jacaros.ros.fields import FieldType
+from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.trace import Cause
+
+TOPICS = "topics"
+SERVICES = "services"
+SERVICE_ERRORS = "service errors"
+"""A client learns that the server's handler failed; elsewhere such a call times out."""
+TRANSFORMS = "transforms"
+"""`Backend.tf_broadcast` works."""
+QOS = "qos"
+"""Reliability and durability are negotiated as on ROS 2."""
+REGISTRATION = "registration"
+"""There is a master that can go and come back."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A received message.
+
+    Attributes:
+        message: read-only by agreement: other receivers may hold the same object.
+        topic: absolute name.
+        stamp: when it reached the loop, in seconds of the clock.
+        cause: beginning of the chain that leads to beliefs and commands.
+    """
+
+    message: Any
+    topic: str
+    stamp: float
+    cause: Cause
+
+
+class Publisher(Protocol):
+    """Sends messages to a topic."""
+
+    @property
+    def topic(self) -> str:
+        """Absolute name of the topic."""
+
+    @property
+    def subscription_count(self) -> int:
+        """How many subscriptions are connected now."""
+
+    def message(self, **fields: Any) -> Any:
+        """Make a message of the topic's type; see `Backend.message`."""
+
+    def publish(self, message: Any) -> None:
+        """Send *message*; it must not be changed afterwards.
+
+        Raises:
+            MessageMismatch: the message is not of the topic's type.
+        """
+
+    def close(self) -> None:
+        """Leave the topic; later messages are dropped."""
+
+
+class Subscription(Protocol):
+    """Receives messages of a topic."""
+
+    @property
+    def topic(self) -> str:
+        """Absolute name of the topic."""
+
+    @property
+    def publisher_count(self) -> int:
+        """How many publishers are connected now."""
+
+    def close(self) -> None:
+        """Leave the topic; the callback is not called any more."""
+
+
+class Service(Protocol):
+    """Answers the calls of a service."""
+
+    @property
+    def name(self) -> str:
+        """Absolute name of the service."""
+
+    def close(self) -> None:
+        """Stop to offer the service."""
+
+
+class Client(Protocol):
+    """Calls a service."""
+
+    @property
+    def name(self) -> str:
+        """Absolute name of the service."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether somebody offers the service, as far as is known."""
+
+    def request(self, **fields: Any) -> Any:
+        """Make a request message; see `Backend.message`."""
+
+    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
+        """Call the service and give its response.
+
+        Args:
+            request: a request message, or a mapping of its fields, or None for an empty one.
+            timeout: seconds for waiting for the server and for the answer together; None waits for ever.
+
+        Raises:
+            MessageMismatch: the request does not fit the definition.
+            ServiceUnavailable: nobody offered the service in time.
+            CallTimedOut: the server did not answer in time.
+            CallFailed: the server's handler failed (only with `SERVICE_ERRORS`), or the connection broke.
+        """
+
+    def close(self) -> None:
+        """Give the client up; pending calls fail with `CallFailed`."""
+
+
+Handler = Callable[[Any], Any | Awaitable[Any]]
+"""Takes a request; gives a response message, a mapping of its fields or None for the defaults."""
+
+
+class Backend(Protocol):
+    """A node in a ROS graph."""
+
+    @property
+    def name(self) -> str:
+        """``memory``, ``ros1`` or ``ros2``."""
+
+    @property
+    def capabilities(self) -> frozenset[str]:
+        """What works here; the constants of this file."""
+
+    @property
+    def node_name(self) -> str:
+        """Absolute name of the node."""
+
+    @property
+    def connected(self) -> bool:
+        """Whether the graph (on ROS 1: the master) can be reached."""
+
+    def on_connection(self, callback: Callable[[bool], None]) -> None:
+        """Have *callback* called on the loop whenever `connected` changes, with the new value."""
+
+    async def start(self) -> None:
+        """Join the graph.
+
+        Where the graph cannot be reached yet, this returns all the same, after saying so through the log; the
+        backend goes on trying and what is made meanwhile joins later.
+        """
+
+    async def close(self) -> None:
+        """Run the exit hooks and leave the graph."""
+
+    def resolve(self, name: str) -> str:
+        """Give the absolute, remapped form of a topic or service name; raises `NameInvalid`."""
+
+    def fields(self, type_name: str) -> Mapping[str, FieldType]:
+        """Fields of a message type in the order of its definition; raises `UnknownInterface`."""
+
+    def message(self, type_name: str, /, **fields: Any) -> Any:
+        """Make a message.
+
+        Args:
+            type_name: ``geometry_msgs/msg/Twist`` or ``geometry_msgs/Twist``.
+            fields: values; mappings for nested messages, seconds for stamps; the others have their defaults.
+
+        Raises:
+            UnknownInterface: the type is not known.
+            MessageMismatch: a field is unknown, or a value has the wrong type or is out of range.
+        """
+
+    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
+        """Make a publisher; raises `NameInvalid` or `UnknownInterface`."""
+
+    def subscription(
+        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
+    ) -> Subscription:
+        """Have *callback* called on the loop for each message; raises `NameInvalid`, `UnknownInterface`."""
+
+    def service(self, name: str, type_name: str, handler: Handler) -> Service:
+        """Offer a service; raises `NameInvalid` or `UnknownInterface`.
+
+        An exception of *handler* becomes `CallFailed` at the client (or its time-out, see `SERVICE_ERRORS`).
+        """
+
+    def client(self, name: str, type_name: str) -> Client:
+        """Make a client of a service; raises `NameInvalid` or `UnknownInterface`."""
+
+    def tf_broadcast(self, transform: Any, static: bool = False) -> None:
+        """Publish a ``geometry_msgs/msg/TransformStamped`` (message or mapping) on ``/tf`` or ``/tf_static``.
+
+        Raises:
+            CapabilityMissing: ``tf2_msgs`` is not installed.
+            MessageMismatch: the transform does not fit the definition.
+        """
+
+    def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
+        """Have *hook* called once when the process stops for any reason it can notice, or `close` is called.
+
+        The hook publishes what makes the robot safe; after the first hook has begun, messages of others are
+        dropped.  On `ros1` and `ros2` it may run in a thread of its own, so it does nothing but publish.
+        The result takes the hook back.
+        """
+
+    def action_client(self, name: str, type_name: str) -> Any:
+        """Not there yet: raises `CapabilityMissing`."""
+
+    def action_server(self, name: str, type_name: str, execute: Callable[..., Any]) -> Any:
+        """Not there yet: raises `CapabilityMissing`."""
+
+    def parameters(self, node: str | None = None) -> Any:
+        """Not there yet: raises `CapabilityMissing`."""
+
+    def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> Any:
+        """Not there yet: raises `CapabilityMissing`."""

@@ -1,0 +1,55 @@
+"""Errors of the middleware port, the same on every backend."""
+
+from jacaros.errors import JacarosError
+
+
+class RosError(JacarosError):
+    """Something is wrong between the agent system and the robot's middleware."""
+
+
+class BackendUnavailable(RosError):
+    """The library of a backend is not installed; the text names it and the command that cures it."""
+
+
+class NameInvalid(RosError):
+    """A node, topic, service or type name breaks the naming rules of ROS."""
+
+
+class UnknownInterface(RosError):
+    """A message or service type is not known to the backend."""
+
+
+class MessageMismatch(RosError):
+    """A message does not fit its definition.
+
+    Attributes:
+        type_name: the type whose definition was broken, such as ``geometry_msgs/msg/Twist``.
+        field: path of the field from the message's root, such as ``linear.x``; empty for the whole message.
+        known: the fields that the type has.
+    """
+
+    def __init__(self, text: str, type_name: str = "", field: str = "", known: tuple[str, ...] = ()) -> None:
+        super().__init__(text)
+        self.type_name = type_name
+        self.field = field
+        self.known = known
+
+
+class ServiceError(RosError):
+    """A service call had no result; the parent of the three reasons below."""
+
+
+class ServiceUnavailable(ServiceError):
+    """Nobody offered the service until the time-out."""
+
+
+class CallTimedOut(ServiceError):
+    """The service is there but did not answer in time."""
+
+
+class CallFailed(ServiceError):
+    """The server reported a failure, or the connection to it broke during the call."""
+
+
+class CapabilityMissing(RosError):
+    """The backend cannot do this, on principle or not yet; the text says which backends can."""

@@ -1,0 +1,101 @@
+"""The one place where another thread hands work to the loop, and the loop hands work to another thread."""
+
+import asyncio
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
+
+T = TypeVar("T")
+
+
+class Handoff(Generic[T]):
+    """A bounded queue from a client library's threads to the loop.
+
+    However fast the other side is, at most *depth* items wait and one wake-up of the loop is under way, so a
+    burst can neither fill the memory nor starve the agents.  The oldest item is dropped first.
+
+    Args:
+        loop: where *deliver* is called.
+        depth: how many items may wait.
+        deliver: takes one item, on the loop.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, depth: int, deliver: Callable[[T], None]) -> None:
+        self._loop = loop
+        self._deliver = deliver
+        self._waiting: deque[T] = deque(maxlen=depth)
+        self._lock = threading.Lock()
+        self._woken = False
+        self._closed = False
+        self.dropped = 0
+
+    def put(self, item: T) -> None:
+        """Queue *item*; callable from any thread, never blocks."""
+        with self._lock:
+            if self._closed:
+                return
+            if len(self._waiting) == self._waiting.maxlen:
+                self.dropped += 1
+            self._waiting.append(item)
+            if self._woken:
+                return
+            self._woken = True
+        if not post(self._loop, self._deliver_next):
+            self.close()
+
+    def close(self) -> None:
+        """Forget what waits and take nothing more."""
+        with self._lock:
+            self._closed = True
+            self._waiting.clear()
+
+    def _deliver_next(self) -> None:
+        # One item a turn of the loop: others get their turn between two messages of a burst.
+        with self._lock:
+            if not self._waiting:
+                self._woken = False
+                return
+            item = self._waiting.popleft()
+            self._woken = bool(self._waiting)
+            again = self._woken
+        if again:
+            self._loop.call_soon(self._deliver_next)
+        self._deliver(item)
+
+
+def post(loop: asyncio.AbstractEventLoop, callback: Callable[..., None], *arguments: Any) -> bool:
+    """Have *callback* called on *loop*, from any thread; False when the loop has ended."""
+    try:
+        loop.call_soon_threadsafe(callback, *arguments)
+    except RuntimeError:  # the loop is closed: the process is on its way out
+        return False
+    return True
+
+
+def in_thread(loop: asyncio.AbstractEventLoop, work: Callable[[], T], name: str) -> asyncio.Future[T]:
+    """Run blocking *work* in a daemon thread of its own; the future gets its result or exception.
+
+    A pool would do for work that ends.  Calls into a middleware may block for ever, and then they must
+    neither use up a pool nor keep the process from ending.
+    """
+    future: asyncio.Future[T] = loop.create_future()
+
+    def settle(result: T | None, problem: BaseException | None) -> None:
+        if future.done():
+            return
+        if problem is not None:
+            future.set_exception(problem)
+        else:
+            future.set_result(result)  # type: ignore[arg-type]
+
+    def body() -> None:
+        try:
+            result = work()
+        except BaseException as problem:
+            post(loop, settle, None, problem)
+        else:
+            post(loop, settle, result, None)
+
+    threading.Thread(target=body, name=name, daemon=True).start()
+    return future

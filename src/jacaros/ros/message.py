@@ -1,0 +1,247 @@
+"""Messages made from keywords and dictionaries, and the few things that differ between client libraries.
+
+An artifact author sees one kind of message object everywhere: attributes for fields, numbers, texts, nested
+messages, and something indexable and iterable for arrays (numpy arrays, tuples, lists or ``bytes``, as the
+client library likes it).  What differs is done here: stamps, defaults and the checking of values.
+"""
+
+import difflib
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Protocol
+
+from jacaros.ros.errors import MessageMismatch, NameInvalid
+from jacaros.ros.fields import DURATION, TIME, FieldType
+from jacaros.ros.values import array_of_numbers, single_value
+
+_NO_FIELDS = ("__msgtype__", "structure_needs_at_least_one_member")
+TIMES = (TIME, DURATION)
+DEFAULTS: Mapping[str, Mapping[str, object]] = {"geometry_msgs/msg/Quaternion": {"w": 1.0}}
+"""Default values of ROS 2's definitions; ROS 1 knows none, so they are set there too: no zero rotations."""
+
+
+class Schema(Protocol):
+    """What a family of message classes (of rospy, rclpy or rosbags) tells about itself."""
+
+    def fields(self, type_name: str) -> Mapping[str, FieldType]:
+        """Fields of a message type in full form, in order; raises `UnknownInterface`."""
+
+    def new(self, type_name: str) -> Any:
+        """Make a message with the library's own defaults; raises `UnknownInterface`."""
+
+    def numbers(self, field: FieldType, values: Any) -> Any:
+        """Turn a one-dimensional numpy array into what the library keeps in *field*."""
+
+    def single(self, field: FieldType, value: Any) -> Any:
+        """Turn a checked number, bool or text into what the library keeps in *field*."""
+
+
+class MessageFactory:
+    """Makes messages of one family of classes from keywords.
+
+    Args:
+        schema: the family.
+    """
+
+    def __init__(self, schema: Schema) -> None:
+        self.schema = schema
+        self._setters: dict[str, tuple[Callable[[Any], None], ...]] = {}
+        self._classes: dict[str, type] = {}
+
+    def fields(self, type_name: str) -> Mapping[str, FieldType]:
+        """Fields of a type in full form, in the order of its definition.
+
+        Raises:
+            UnknownInterface: the type is not known.
+        """
+        return self.schema.fields(type_name)
+
+    def message_class(self, type_name: str) -> type:
+        """The class that the client library made for a type in full form; raises `UnknownInterface`."""
+        kind = self._classes.get(type_name)
+        if kind is None:
+            kind = self._classes[type_name] = type(self.schema.new(type_name))
+        return kind
+
+    def make(self, type_name: str, values: Mapping[str, Any] | None = None) -> Any:
+        """Make a message; fields not given have their defaults.
+
+        Args:
+            type_name: full form.
+            values: field → number, text, bool, list, message, or a mapping for a nested message.  Stamps and
+                durations may be given in seconds.
+
+        Raises:
+            UnknownInterface: the type is not known.
+            MessageMismatch: a field is unknown or its value has the wrong type or is out of range.
+        """
+        if type_name in TIMES:
+            return self._time(type_name, values or {})
+        return self._make(type_name, values or {}, "")
+
+    def _make(self, type_name: str, values: Mapping[str, Any], path: str) -> Any:
+        message = self.schema.new(type_name)
+        for set_default in self._default_setters(type_name):
+            set_default(message)
+        fields = self.schema.fields(type_name)
+        for name, value in values.items():
+            field = fields.get(name)
+            where = f"{path}.{name}" if path else name
+            if field is None:
+                raise _unknown_field(type_name, where, name, fields)
+            setattr(message, name, self._value(field, value, type_name, where))
+        return message
+
+    def _value(self, field: FieldType, value: Any, owner: str, where: str) -> Any:
+        try:
+            if not field.array:
+                return self._single(field, value, where)
+            if field.is_numeric:
+                return self.schema.numbers(field, array_of_numbers(field, value))
+            return self._list(field, value, where)
+        except (TypeError, ValueError, OverflowError) as problem:
+            known = tuple(self.schema.fields(owner))
+            text = f"{owner}: field {where} is {field}, but {problem}"
+            raise MessageMismatch(text, owner, where, known) from None
+
+    def _single(self, field: FieldType, value: Any, where: str) -> Any:
+        if not field.is_message:
+            return self.schema.single(field, single_value(field, value))
+        if field.base in TIMES:
+            return self._time(field.base, value)
+        if isinstance(value, Mapping):
+            return self._make(field.base, value, where)
+        if not isinstance(value, self.message_class(field.base)):
+            raise TypeError(f"{value!r} is given")
+        return value
+
+    def _list(self, field: FieldType, value: Any, where: str) -> list[Any]:
+        if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+            raise TypeError(f"{value!r} is given")
+        elements = [self._single(field, item, f"{where}[{index}]") for index, item in enumerate(value)]
+        if field.length and (len(elements) != field.length if field.fixed else len(elements) > field.length):
+            raise ValueError(f"{len(elements)} elements are given")
+        return elements
+
+    def _time(self, base: str, value: Any) -> Any:
+        made = self.schema.new(base)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            stamp(made, value)
+        elif isinstance(value, Mapping):
+            unknown = set(value) - {"sec", "nanosec", "secs", "nsecs"}
+            if unknown:
+                raise ValueError(f"{unknown.pop()!r} is no part of a time (sec, nanosec)")
+            _set_time(
+                made, value.get("sec", value.get("secs", 0)), value.get("nanosec", value.get("nsecs", 0))
+            )
+        elif type(value) is type(made):
+            return value
+        else:
+            raise TypeError(f"{value!r} is given; give seconds or a time")
+        return made
+
+    def _default_setters(self, type_name: str) -> tuple[Callable[[Any], None], ...]:
+        setters = self._setters.get(type_name)
+        if setters is None:
+            setters = self._setters[type_name] = tuple(self._find_defaults(type_name, ()))
+        return setters
+
+    def _find_defaults(self, type_name: str, path: tuple[str, ...]) -> Iterable[Callable[[Any], None]]:
+        for name, value in DEFAULTS.get(type_name, {}).items():
+            if getattr(self.schema.new(type_name), name) != value:
+                yield _setter(path, name, value)
+        for name, field in self.schema.fields(type_name).items():
+            if field.is_message and not field.array and field.base not in TIMES:
+                yield from self._find_defaults(field.base, (*path, name))
+
+
+def _setter(path: tuple[str, ...], name: str, value: object) -> Callable[[Any], None]:
+    def set_default(message: Any) -> None:
+        for step in path:
+            message = getattr(message, step)
+        setattr(message, name, value)
+
+    return set_default
+
+
+def _unknown_field(owner: str, where: str, name: str, fields: Mapping[str, FieldType]) -> MessageMismatch:
+    known = ", ".join(f"{field} ({kind})" for field, kind in fields.items()) or "none"
+    near = difflib.get_close_matches(name, fields, 1)
+    guess = f"; did you mean {near[0]}?" if near else "."
+    text = f"{owner} has no field {name!r} (at {where}){guess} Its fields: {known}"
+    return MessageMismatch(text, owner, where, tuple(fields))
+
+
+def stamp(time: Any, seconds: float) -> None:
+    """Set a message's time or duration, such as ``m.header.stamp``, in place.
+
+    Args:
+        time: the time object inside the message.
+        seconds: since the Unix epoch for a time.
+
+    Works on the time objects of every backend.
+    """
+    whole = int(seconds // 1)
+    nanoseconds = round((seconds - whole) * 1e9)
+    if nanoseconds >= 1_000_000_000:
+        whole, nanoseconds = whole + 1, 0
+    _set_time(time, whole, nanoseconds)
+
+
+def to_seconds(time: Any) -> float:
+    """Read a message's time or duration, such as ``m.header.stamp``, in seconds; on every backend."""
+    if hasattr(time, "nanosec"):
+        return float(time.sec + time.nanosec * 1e-9)
+    return float(time.secs + time.nsecs * 1e-9)
+
+
+def _set_time(time: Any, seconds: int, nanoseconds: int) -> None:
+    if hasattr(time, "nanosec"):
+        time.sec, time.nanosec = seconds, nanoseconds
+    else:
+        time.secs, time.nsecs = seconds, nanoseconds
+
+
+def constant(message: Any, name: str) -> Any:
+    """Value of a constant of the message's type, such as ``POWER_SUPPLY_STATUS_CHARGING``; on every backend.
+
+    Raises:
+        NameInvalid: the type has no such constant.
+    """
+    owner = message if isinstance(message, type) else type(message)
+    try:
+        return getattr(owner, name)
+    except AttributeError:
+        raise NameInvalid(f"{owner.__name__} has no constant {name}") from None
+
+
+def plain(value: Any) -> Any:
+    """Turn a message of any backend into dictionaries, lists, numbers and texts, for records and people.
+
+    Times become ``{"sec": …, "nanosec": …}`` everywhere; octets become integers.
+    """
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if hasattr(value, "nsecs"):
+        return {"sec": value.secs, "nanosec": value.nsecs}
+    names = field_names(value)
+    if names is None:
+        return value.tolist() if hasattr(value, "tolist") else [plain(element) for element in value]
+    octets = hasattr(type(value), "get_fields_and_field_types")
+    return {name: _plain_field(getattr(value, name), octets) for name in names}
+
+
+def _plain_field(value: Any, octets: bool) -> Any:
+    # rclpy shows one octet as bytes of length 1; rospy shows uint8[] as bytes.
+    return value[0] if octets and isinstance(value, bytes) else plain(value)
+
+
+def field_names(message: Any) -> list[str] | None:
+    """Names of a message's fields in order, on every backend; None when *message* is no message."""
+    kind = type(message)
+    if hasattr(kind, "get_fields_and_field_types"):  # rclpy
+        return list(kind.get_fields_and_field_types())
+    if hasattr(kind, "__dataclass_fields__"):  # rosbags
+        return [name for name in kind.__dataclass_fields__ if name not in _NO_FIELDS]
+    if hasattr(kind, "_slot_types"):  # genpy
+        return list(kind.__slots__)
+    return None

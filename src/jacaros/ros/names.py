@@ -1,0 +1,105 @@
+"""Names of nodes, topics, services and types: checked, resolved and remapped alike on every backend.
+
+Every backend hands absolute names to its middleware, so namespaces and remapping need no support there.
+"""
+
+import re
+from collections.abc import Mapping
+from functools import cache
+
+from jacaros.ros.errors import NameInvalid
+
+_SEGMENT = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+@cache
+def message_type(name: str) -> str:
+    """Give the full form ``nav_msgs/msg/Odometry`` of a message type.
+
+    Args:
+        name: full form, or ``nav_msgs/Odometry`` as written in ROS 1.
+
+    Raises:
+        NameInvalid: the name has neither form.
+    """
+    return _interface_type(name, "msg")
+
+
+@cache
+def service_type(name: str) -> str:
+    """Give the full form ``std_srvs/srv/Trigger`` of a service type; see `message_type`."""
+    return _interface_type(name, "srv")
+
+
+def _interface_type(name: str, kind: str) -> str:
+    parts = name.split("/")
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
+        raise NameInvalid(f"{name!r} is no type name; write it like package/{kind}/Type")
+    if not all(_PACKAGE.fullmatch(part) for part in parts):
+        raise NameInvalid(
+            f"{name!r} is no type name: only letters, digits and _ may stand between the slashes"
+        )
+    return "/".join(parts)
+
+
+def request_type(service: str) -> str:
+    """Name the request message of a service type given in full form."""
+    return f"{service}_Request"
+
+
+def response_type(service: str) -> str:
+    """Name the response message of a service type given in full form."""
+    return f"{service}_Response"
+
+
+class NodeNames:
+    """A node's own name, its namespace and its remapping rules.
+
+    Args:
+        node_name: plain name without slashes.
+        namespace: put before relative names; ``""`` is the root.
+        remap: names to use in place of others; both sides may be relative, private (``~x``) or absolute.
+
+    Raises:
+        NameInvalid: one of the names breaks the rules.
+    """
+
+    def __init__(self, node_name: str, namespace: str = "", remap: Mapping[str, str] | None = None) -> None:
+        if not _SEGMENT.fullmatch(node_name):
+            raise NameInvalid(f"{node_name!r} is no node name: letters, digits and _ only, no digit first")
+        self.node_name = node_name
+        self.namespace = "/" + namespace.strip("/") if namespace.strip("/") else ""
+        _check(self.namespace or "/root", namespace)
+        self.full_name = f"{self.namespace}/{node_name}"
+        self._remap = {self._expand(old): self._expand(new) for old, new in (remap or {}).items()}
+
+    def resolve(self, name: str) -> str:
+        """Give the absolute, remapped form of a topic or service name.
+
+        Raises:
+            NameInvalid: the name breaks the rules; the text shows what was written.
+        """
+        absolute = self._expand(name)
+        return self._remap.get(absolute, absolute)
+
+    def _expand(self, name: str) -> str:
+        if name.startswith("/"):
+            absolute = name
+        elif name.startswith("~"):
+            absolute = f"{self.full_name}/{name[1:].lstrip('/')}"
+        else:
+            absolute = f"{self.namespace}/{name}"
+        _check(absolute, name)
+        return absolute
+
+
+def _check(absolute: str, written: str) -> None:
+    for segment in absolute[1:].split("/"):
+        if not _SEGMENT.fullmatch(segment):
+            raise NameInvalid(
+                f"{written!r} is no ROS name: {segment!r} stands between the slashes, where only letters, "
+                "digits and _ may, with no digit first"
+            )

@@ -1,0 +1,147 @@
+"""What all backends have in common: names, messages, reports, connection, exit hooks, transforms."""
+
+import asyncio
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NoReturn
+
+from jacaros.clock import Clock
+from jacaros.ros.backend import Publisher, Sample
+from jacaros.ros.errors import CapabilityMissing, RosError
+from jacaros.ros.exit_hooks import ExitHooks
+from jacaros.ros.fields import FieldType
+from jacaros.ros.message import MessageFactory, Schema
+from jacaros.ros.names import NodeNames, message_type
+from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.tf import TransformBroadcaster
+from jacaros.trace import cause
+
+
+def to_stderr(text: str) -> None:
+    """Write a report as one line to standard error: where reports go by default."""
+    print(f"[ros] {text}", file=sys.stderr)
+
+
+@dataclass(frozen=True)
+class NodeSettings:
+    """What `jacaros.ros.open.open_backend` was given.
+
+    Attributes:
+        clock: the run's clock.
+        node_name: plain name of the node.
+        namespace: put before relative names.
+        remap: names to use in place of others.
+        log: takes one line about the connection: waiting, missing, found, lost.
+        interface_paths: folders with further definitions (``memory`` and, for services, ``ros1``).
+    """
+
+    clock: Clock
+    node_name: str
+    namespace: str = ""
+    remap: Mapping[str, str] = field(default_factory=dict)
+    log: Callable[[str], None] = to_stderr
+    interface_paths: Sequence[Path] = ()
+
+
+class Node:
+    """The part of a backend that does not depend on the client library.
+
+    Args:
+        settings: names, clock and reports.
+        schema: the library's family of message classes.
+        flush: see `ExitHooks`.
+        threaded_hooks: see `ExitHooks`.
+    """
+
+    name = "none"
+    capabilities: frozenset[str] = frozenset()
+
+    def __init__(
+        self, settings: NodeSettings, schema: Schema, flush: Callable[[], None], threaded_hooks: bool
+    ) -> None:
+        self.clock = settings.clock
+        self.log = settings.log
+        self.names = NodeNames(settings.node_name, settings.namespace, settings.remap)
+        self.factory = MessageFactory(schema)
+        self.exit_hooks = ExitHooks(settings.log, flush, threaded_hooks)
+        self.connected = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._on_connection: list[Callable[[bool], None]] = []
+        self._transforms = TransformBroadcaster(self)
+
+    @property
+    def node_name(self) -> str:
+        """Absolute name of the node."""
+        return self.names.full_name
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop:
+        """The loop on which the node was started; raises `RosError` before."""
+        if self._loop is None:
+            raise RosError(
+                f"the {self.name} backend of {self.node_name} is not started: await backend.start() first"
+            )
+        return self._loop
+
+    def on_connection(self, callback: Callable[[bool], None]) -> None:
+        """Have *callback* called on the loop whenever `connected` changes."""
+        self._on_connection.append(callback)
+
+    def set_connected(self, connected: bool) -> None:
+        """Note that the graph was found or lost and tell everybody; on the loop."""
+        if connected != self.connected:
+            self.connected = connected
+            for callback in list(self._on_connection):
+                callback(connected)
+
+    def resolve(self, name: str) -> str:
+        """Give the absolute, remapped form of a name."""
+        return self.names.resolve(name)
+
+    def fields(self, type_name: str) -> Mapping[str, FieldType]:
+        """Fields of a message type."""
+        return self.factory.fields(message_type(type_name))
+
+    def message(self, type_name: str, /, **fields: Any) -> Any:
+        """Make a message."""
+        return self.factory.make(message_type(type_name), fields)
+
+    def sample(self, message: Any, topic: str) -> Sample:
+        """Wrap a message that has just reached the loop."""
+        return Sample(message, topic, self.clock.now(), cause("sample", topic))
+
+    def tf_broadcast(self, transform: Any, static: bool = False) -> None:
+        """Publish a transform."""
+        self._transforms.send(transform, static)
+
+    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
+        """Make a publisher."""
+        raise NotImplementedError
+
+    def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
+        """Have *hook* called once when the process stops or the backend is closed."""
+        return self.exit_hooks.add(hook)
+
+    def action_client(self, name: str, type_name: str) -> NoReturn:
+        """Not there yet."""
+        self._missing("action clients")
+
+    def action_server(self, name: str, type_name: str, execute: Callable[..., Any]) -> NoReturn:
+        """Not there yet."""
+        self._missing("action servers")
+
+    def parameters(self, node: str | None = None) -> NoReturn:
+        """Not there yet."""
+        self._missing("parameters")
+
+    def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> NoReturn:
+        """Not there yet."""
+        self._missing("looking up transforms")
+
+    def _missing(self, what: str) -> NoReturn:
+        raise CapabilityMissing(
+            f"{what}: not yet supported by any backend of this version of JaCaROS (asked of {self.name}); "
+            "topics, services and sending transforms are"
+        )

@@ -1,0 +1,75 @@
+"""Opening a backend by its name."""
+
+from importlib import import_module
+from typing import Any
+
+from jacaros.clock import Clock
+from jacaros.errors import UsageError
+from jacaros.ros.backend import Backend
+from jacaros.ros.errors import BackendUnavailable
+from jacaros.ros.node import NodeSettings
+
+KINDS = ("memory", "ros1", "ros2")
+
+_LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
+_CURES = {
+    "ros1": (
+        "On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by "
+        "`/usr/bin/python3 -m venv --system-site-packages`; tools/install_ros1.sh does both. On a robot with "
+        "its own ROS 1, source its setup file first"
+    ),
+    "ros2": (
+        "On Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. On "
+        "a robot with its own ROS 2, source its setup file first"
+    ),
+}
+
+
+def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", **options: Any) -> Backend:
+    """Make a node of a backend; ``await backend.start()`` joins it to its graph.
+
+    Args:
+        kind: ``memory``, ``ros1`` or ``ros2``.
+        clock: the run's clock; the virtual one goes with ``memory`` alone.
+        node_name: plain name of the node.
+        namespace: put before relative names.
+        options: ``remap``, ``log``, ``interface_paths`` (see `NodeSettings`); for ``memory`` also ``graph``,
+            a `jacaros.ros.backends.memory.MemoryGraph` to share; for ``ros2`` also ``domain_id``.
+
+    Raises:
+        UsageError: unknown kind, or the virtual clock with a real ROS graph.
+        BackendUnavailable: the client library is not installed.
+        NameInvalid: the node's name or a namespace breaks the rules of ROS.
+    """
+    if kind not in KINDS:
+        raise UsageError(f"there is no ROS backend {kind!r}; there are {', '.join(KINDS)}")
+    if clock.virtual and kind != "memory":
+        raise UsageError(
+            f"the virtual clock cannot run with a real ROS graph ({kind}): its nodes live in real time. "
+            "Use the real clock (--clock real)"
+        )
+    names = ("remap", "log", "interface_paths")
+    settings = NodeSettings(
+        clock,
+        node_name,
+        namespace,
+        **{name: options.pop(name) for name in names if options.get(name) is not None},
+    )
+    options = {name: value for name, value in options.items() if value is not None}
+    backend: Backend = _backend_class(kind)(settings, **options)
+    return backend
+
+
+def _backend_class(kind: str) -> Any:
+    # Imported by name and only now: the client libraries are heavy, and most systems have one or none.
+    try:
+        module = import_module(f"jacaros.ros.backends.{kind}")
+    except ImportError as problem:
+        library = _LIBRARIES.get(kind)
+        if library is None or (problem.name or "").startswith("jacaros"):
+            raise
+        raise BackendUnavailable(
+            f"the {kind} backend needs the Python library {library}, which cannot be imported ({problem}). "
+            f"{_CURES[kind]}."
+        ) from problem
+    return module.BACKEND

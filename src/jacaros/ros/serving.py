@@ -1,0 +1,107 @@
+"""Services apart from the middleware: making requests, running handlers, and what their failures become."""
+
+import asyncio
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jacaros.ros.backend import Handler
+from jacaros.ros.errors import CallFailed, MessageMismatch
+from jacaros.ros.message import MessageFactory
+from jacaros.ros.names import response_type
+
+
+def checked_message(factory: MessageFactory, type_name: str, given: Any) -> Any:
+    """Give *given* as a message of a type: itself, or made from a mapping, or all defaults for None.
+
+    Raises:
+        MessageMismatch: it does not fit the type's definition.
+    """
+    if given is None or isinstance(given, Mapping):
+        return factory.make(type_name, given)
+    if not isinstance(given, factory.message_class(type_name)):
+        raise MessageMismatch(f"a {type_name} is needed, not {given!r}", type_name)
+    return given
+
+
+class Responder:
+    """Runs the handler of one service on the loop, any number of calls at a time.
+
+    Args:
+        factory: makes the responses.
+        name: absolute name of the service.
+        type_name: service type in full form.
+        handler: the user's function or coroutine function.
+        log: takes one line about a handler that failed.
+    """
+
+    def __init__(
+        self, factory: MessageFactory, name: str, type_name: str, handler: Handler, log: Callable[[str], None]
+    ) -> None:
+        self._factory = factory
+        self._name = name
+        self._response_type = response_type(type_name)
+        self._handler = handler
+        self._log = log
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def answer(self, request: Any, done: Callable[[Any, CallFailed | None], None]) -> None:
+        """Handle one request; *done* gets the response, or the failure."""
+        task = asyncio.get_running_loop().create_task(self._answer(request, done))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def close(self) -> None:
+        """Cancel the calls under way; their clients are told."""
+        for task in list(self._tasks):
+            task.cancel()
+
+    async def _answer(self, request: Any, done: Callable[[Any, CallFailed | None], None]) -> None:
+        try:
+            result = self._handler(request)
+            if inspect.isawaitable(result):
+                result = await result
+            response = checked_message(self._factory, self._response_type, result)
+        except asyncio.CancelledError:
+            done(None, CallFailed(f"service {self._name} was closed during the call"))
+            raise
+        except Exception as problem:  # the server lives on, and the client learns of it
+            reason = f"{type(problem).__name__}: {problem}"
+            self._log(f"the handler of service {self._name} failed: {reason}")
+            done(None, CallFailed(f"service {self._name} failed: {reason}"))
+        else:
+            done(response, None)
+
+
+class PendingCalls:
+    """The futures of a client's calls under way, so that closing the client ends them.
+
+    Args:
+        name: absolute name of the service.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._futures: set[asyncio.Future[Any]] = set()
+
+    def new(self) -> asyncio.Future[Any]:
+        """Make the future of one call."""
+        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self._futures.add(future)
+        future.add_done_callback(self._futures.discard)
+        return future
+
+    def close(self) -> None:
+        """Fail what is under way."""
+        for future in list(self._futures):
+            settle(future, None, CallFailed(f"the client of service {self._name} was closed during the call"))
+
+
+def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None) -> None:
+    """Give a call its response or failure, unless it is over: timed out or given up."""
+    if future.done():
+        return
+    if problem is not None:
+        future.set_exception(problem)
+    else:
+        future.set_result(response)

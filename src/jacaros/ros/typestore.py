@@ -1,0 +1,126 @@
+"""Genuine message definitions without a ROS installation: the ``rosbags`` typestore as a `Schema`.
+
+Loading the store takes about 0.15 s, so it is done when the first message type is asked for, once a process.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.fields import FieldType, from_rosbags
+from jacaros.ros.interfaces import definition, split_service
+from jacaros.ros.message import DEFAULTS
+from jacaros.ros.names import request_type, response_type
+from jacaros.ros.values import zeros
+
+_FILLER = "structure_needs_at_least_one_member"
+"""What ROS 2 puts into empty messages."""
+_ZEROS: Mapping[str, object] = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0}
+
+
+@lru_cache(maxsize=1)
+def _store() -> Any:
+    from rosbags.typesys import Stores, get_typestore  # costs more than the rest of the start together
+
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+class RosbagsSchema:
+    """Message classes of ROS 2 Jazzy from ``rosbags``, plus definitions found in folders.
+
+    Args:
+        roots: the user's own definition folders; see `jacaros.ros.interfaces`.
+    """
+
+    def __init__(self, roots: Sequence[Path] = ()) -> None:
+        self._roots = tuple(roots)
+        self._fields: dict[str, Mapping[str, FieldType]] = {}
+        self._makers: dict[str, Callable[[], Any]] = {}
+
+    def fields(self, type_name: str) -> Mapping[str, FieldType]:
+        """Fields of a type in full form; raises `UnknownInterface`."""
+        fields = self._fields.get(type_name)
+        if fields is None:
+            self._require(type_name)
+            described = _store().fielddefs[type_name][1]
+            fields = self._fields[type_name] = {
+                name: from_rosbags(kind) for name, kind in described if name != _FILLER
+            }
+        return fields
+
+    def new(self, type_name: str) -> Any:
+        """Make a message with zeros, empty texts and empty sequences; raises `UnknownInterface`."""
+        maker = self._makers.get(type_name)
+        if maker is None:
+            maker = self._makers[type_name] = self._compile(type_name)
+        return maker()
+
+    def numbers(self, field: FieldType, values: Any) -> Any:
+        """Keep numpy arrays as they are."""
+        return values
+
+    def single(self, field: FieldType, value: Any) -> Any:
+        """Keep plain values as they are."""
+        return value
+
+    def service(self, type_name: str) -> None:
+        """Make the request and response types of a service known; raises `UnknownInterface`."""
+        if request_type(type_name) in _store().types:
+            return
+        text = definition(type_name, self._roots)
+        if text is None:
+            raise UnknownInterface(
+                f"service type {type_name} is not known here; put its definition into a folder and name that "
+                f"folder in interface_paths: {type_name}.srv"
+            )
+        request, response = split_service(text)
+        self._register(request_type(type_name), request)
+        self._register(response_type(type_name), response)
+
+    def _require(self, type_name: str) -> None:
+        if type_name in _store().types:
+            return
+        text = definition(type_name, self._roots)
+        if text is None:
+            raise UnknownInterface(
+                f"message type {type_name} is not known here; put its definition into a folder and name that "
+                f"folder in interface_paths: {type_name}.msg"
+            )
+        self._register(type_name, text)
+
+    def _register(self, type_name: str, text: str) -> None:
+        from rosbags.typesys import get_types_from_msg
+
+        parsed = get_types_from_msg(text, type_name)
+        # The parser puts /msg/ into every name; the types of services are called …/srv/… everywhere else.
+        _store().register({type_name: next(iter(parsed.values()))})
+
+    def _compile(self, type_name: str) -> Callable[[], Any]:
+        fields = self.fields(type_name)
+        kind = _store().types[type_name]
+        makers = [(name, self._maker(field)) for name, field in fields.items()]
+        defaults = DEFAULTS.get(type_name, {})
+        makers = [(name, _constant(defaults[name]) if name in defaults else make) for name, make in makers]
+        if not fields:
+            makers = [(_FILLER, _constant(0))]
+        return lambda: kind(**{name: make() for name, make in makers})
+
+    def _maker(self, field: FieldType) -> Callable[[], Any]:
+        if not field.array:
+            return self._single_maker(field)
+        length = field.length if field.fixed else 0
+        if field.is_numeric:
+            return lambda: zeros(field, length)
+        single = self._single_maker(field) if length else list
+        return lambda: [single() for _ in range(length)]
+
+    def _single_maker(self, field: FieldType) -> Callable[[], Any]:
+        if field.is_message:
+            return self._compile(field.base)
+        return _constant(_ZEROS.get(field.base, 0))
+
+
+def _constant(value: object) -> Callable[[], object]:
+    return lambda: value

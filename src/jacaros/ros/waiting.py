@@ -1,0 +1,66 @@
+"""Visible waiting: told at once, called missing after a few seconds with the cure, told when over."""
+
+import asyncio
+from collections.abc import Callable
+from types import TracebackType
+from typing import TypeVar
+
+from jacaros.clock import Clock, Timer
+
+T = TypeVar("T")
+
+MISSING_AFTER = 3.0
+"""Seconds after which something awaited is called missing.  First discovery on ROS 2 can take two."""
+
+
+class Waiting:
+    """A report about something that is not there yet; a context manager around the wait.
+
+    Args:
+        clock: measures the wait.
+        log: takes one line.
+        what: the thing, as in ``service /add (example_interfaces/srv/AddTwoInts)``.
+        cure: what a person can do about it.
+    """
+
+    def __init__(self, clock: Clock, log: Callable[[str], None], what: str, cure: str) -> None:
+        self._clock = clock
+        self._log = log
+        self._what = what
+        self._cure = cure
+        self._timer: Timer | None = None
+
+    def __enter__(self) -> "Waiting":
+        self._log(f"waiting for the {self._what}")
+        self._timer = self._clock.call_later(MISSING_AFTER, self._missing)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        if kind is None:
+            self._log(f"found the {self._what}")
+
+    def _missing(self) -> None:
+        self._log(f"the {self._what} is missing; still trying. {self._cure}")
+
+
+async def within(clock: Clock, future: asyncio.Future[T], seconds: float | None) -> T:
+    """Wait for *future*, at most *seconds* of the clock; None waits for ever.
+
+    Raises:
+        TimeoutError: the time is over; the future fails with the same.
+    """
+
+    def expire() -> None:
+        if not future.done():
+            future.set_exception(TimeoutError())
+
+    timer = None if seconds is None else clock.call_later(max(0.0, seconds), expire)
+    try:
+        return await future
+    finally:
+        if timer is not None:
+            timer.cancel()
