@@ -1,0 +1,174 @@
+"""What a world consists of, as plain data: metres, radians, seconds, percent.
+
+A world file (`jacaros.sim.world_file`) is read into these; the running `jacaros.sim.world.World` is made from
+them, and viewers draw them.
+"""
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from jacaros.sim.trigonometry import PI
+
+
+class Segment(NamedTuple):
+    """A straight piece of wall, in metres; it has no thickness."""
+
+    ax: float
+    ay: float
+    bx: float
+    by: float
+
+
+class Rectangle(NamedTuple):
+    """An upright rectangle, in metres."""
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+
+    def contains(self, x: float, y: float) -> bool:
+        """True when the point lies inside or on the edge."""
+        return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
+
+    def edges(self) -> tuple[Segment, Segment, Segment, Segment]:
+        """The four sides, counter-clockwise."""
+        a, b, c, d = self
+        return Segment(a, b, c, b), Segment(c, b, c, d), Segment(c, d, a, d), Segment(a, d, a, b)
+
+
+class Pose(NamedTuple):
+    """Where a robot is: metres, and the heading in radians, counter-clockwise from +x."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+ORIGIN = Pose(0.0, 0.0, 0.0)
+DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """A named part of the floor; rooms may not say anything about walls."""
+
+    name: str
+    area: Rectangle
+
+
+@dataclass(frozen=True, slots=True)
+class Dock:
+    """A charging station: a robot whose centre stands still within ``radius`` metres of it is charged."""
+
+    name: str
+    pose: Pose
+    radius: float = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class BatterySettings:
+    """How a battery drains and charges; levels are percent, 0 to 100.
+
+    The defaults last about two hours of driving, as a TurtleBot does.
+    """
+
+    level: float = 100.0
+    drain_per_second: float = 0.01
+    drain_per_metre: float = 0.02
+    drain_per_radian: float = 0.0
+    charge_per_second: float = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class OdometrySettings:
+    """Where odometry counts from and how much it errs.
+
+    ``per_metre`` and ``per_radian`` are the standard deviations of the distance after one metre and of the
+    angle after one radian (both grow with the square root of the way); 0 is a perfect wheel encoder.
+    ``turn_per_metre`` is the heading error (radians) that one metre of driving brings along.
+    """
+
+    from_start: bool = False
+    per_metre: float = 0.0
+    per_radian: float = 0.0
+    turn_per_metre: float = 0.0
+
+    @property
+    def noisy(self) -> bool:
+        """True when any of the errors is on."""
+        return self.per_metre > 0.0 or self.per_radian > 0.0 or self.turn_per_metre > 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class LaserSettings:
+    """The laser range finder; it sits at the centre of the robot and looks ahead.
+
+    ``beams_per_turn`` fixes the step between beams, ``field`` (radians) how much of the turn is swept, and
+    ``noise`` the half width (metres) of the uniform error of a range.  ``always`` makes it publish even when
+    the middleware can tell that nobody listens.
+    """
+
+    enabled: bool = True
+    beams_per_turn: int = 360
+    field: float = 2.0 * PI
+    range_min: float = 0.1
+    range_max: float = 10.0
+    noise: float = 0.0
+    always: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class RobotLimits:
+    """What the base can do: metres and radians, per second and per second squared (TurtleBot)."""
+
+    speed: float = 0.65
+    turn_rate: float = PI
+    acceleration: float = 0.8
+    turn_acceleration: float = 5.0
+    command_timeout: float = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class RobotDescription:
+    """One robot: its name, the namespace of its topics ("" for none), where it starts and how it is made."""
+
+    name: str = "turtlebot"
+    namespace: str = ""
+    pose: Pose = ORIGIN
+    radius: float = 0.17
+    limits: RobotLimits = RobotLimits()
+    battery: BatterySettings = BatterySettings()
+    odometry: OdometrySettings = OdometrySettings()
+    laser: LaserSettings = LaserSettings()
+
+
+@dataclass(frozen=True, slots=True)
+class WorldDescription:
+    """A whole world.  ``segments`` are all walls, those of ``boxes`` (solid furniture) included."""
+
+    name: str = "empty"
+    bounds: Rectangle = DEFAULT_BOUNDS
+    segments: tuple[Segment, ...] = ()
+    boxes: tuple[Rectangle, ...] = ()
+    rooms: tuple[Room, ...] = ()
+    docks: tuple[Dock, ...] = ()
+    robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
+    seed: int = 0
+
+    def drawing(self) -> dict[str, object]:
+        """All that a viewer needs to draw the world, as plain JSON data."""
+        return {
+            "name": self.name,
+            "bounds": list(self.bounds),
+            "walls": [list(segment) for segment in self.segments],
+            "boxes": [list(box) for box in self.boxes],
+            "rooms": [{"name": room.name, "area": list(room.area)} for room in self.rooms],
+            "docks": [
+                {"name": dock.name, "pose": list(dock.pose), "radius": dock.radius} for dock in self.docks
+            ],
+            "robots": [
+                {"name": robot.name, "pose": list(robot.pose), "radius": robot.radius}
+                for robot in self.robots
+            ],
+        }

@@ -1,0 +1,40 @@
+"""Odometry: a second pose, integrated from what the wheels did, with seeded errors when they are wanted."""
+
+import math
+import random
+
+from jacaros.sim.description import OdometrySettings, Pose
+from jacaros.sim.motion import advance
+
+# A uniform number of width sqrt(12) has the variance 1.  No Gaussian: its logarithm comes from the C library.
+_WIDTH = math.sqrt(12.0)
+
+
+class Odometry:
+    """Where the robot believes to be.
+
+    Errors are drawn with a standard deviation that grows with the square root of the way made in the step,
+    hence of its duration: what adds up over a metre does not depend on the length of the steps.
+
+    Attributes:
+        x, y, yaw: the estimated pose (metres, radians).
+    """
+
+    __slots__ = ("_draw", "settings", "x", "y", "yaw")
+
+    def __init__(self, settings: OdometrySettings, start: Pose, seed: str) -> None:
+        self.settings = settings
+        self.x, self.y, self.yaw = (0.0, 0.0, 0.0) if settings.from_start else start
+        self._draw = random.Random(seed).random
+
+    def step(self, distance: float, turn: float) -> None:
+        """Take note of *distance* metres and *turn* radians that the wheels made in one step."""
+        settings = self.settings
+        if settings.noisy:
+            way, angle = abs(distance), abs(turn)
+            distance += self._error(settings.per_metre, way)
+            turn += self._error(settings.per_radian, angle) + self._error(settings.turn_per_metre, way)
+        self.x, self.y, self.yaw = advance(self.x, self.y, self.yaw, distance, turn)
+
+    def _error(self, deviation: float, way: float) -> float:
+        return (self._draw() - 0.5) * _WIDTH * deviation * math.sqrt(way) if deviation and way else 0.0

@@ -1,0 +1,188 @@
+"""One robot of a running world: its true state, and what a step of time does to it."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.sim.battery import Battery
+from jacaros.sim.contact import WallIndex, push_out
+from jacaros.sim.description import Dock, Pose, RobotDescription
+from jacaros.sim.ground_truth import Sample
+from jacaros.sim.motion import advance, ramp
+from jacaros.sim.odometry import Odometry
+from jacaros.sim.trigonometry import sine_cosine
+
+STILL_SPEED = 0.02
+"""A robot slower than this (m/s) stands still as far as a dock is concerned."""
+STILL_TURN_RATE = 0.1
+"""The same for turning on the spot (rad/s)."""
+
+WALL = "wall"
+
+
+class Robot:
+    """The true state of a robot.
+
+    Attributes:
+        description: how it is made.
+        x, y, yaw: the true pose (metres, radians); speed, turn_rate: of the base (m/s, rad/s).
+        odometry: where it believes to be.  odometer: metres truly driven.
+        battery: its battery.  dock: the dock it stands in, or None.
+        touching: names of what it touches: ``wall`` or other robots.
+    """
+
+    def __init__(
+        self, description: RobotDescription, seed: int, tell: Callable[["Robot", str, dict[str, Any]], None]
+    ) -> None:
+        self.description = description
+        self.name = description.name
+        self.x, self.y, self.yaw = description.pose
+        self.speed = self.turn_rate = self.odometer = 0.0
+        self.wanted_speed = self.wanted_turn_rate = 0.0
+        self.odometry = Odometry(description.odometry, description.pose, f"{seed}/{self.name}/odometry")
+        self.battery = Battery(description.battery)
+        self.dock: Dock | None = None
+        self.touching: frozenset[str] = frozenset()
+        self._silence = math.inf
+        self._touched: dict[str, str] = {}
+        self._tell = tell
+
+    @property
+    def pose(self) -> Pose:
+        """The true pose."""
+        return Pose(self.x, self.y, self.yaw)
+
+    @property
+    def moving(self) -> bool:
+        """True while the base moves or is told to."""
+        return self.speed != 0.0 or self.turn_rate != 0.0 or self._told_to_move()
+
+    def sample(self, time: float) -> Sample:
+        """The state as a point of the path."""
+        battery = self.battery
+        return Sample(
+            time,
+            self.x,
+            self.y,
+            self.yaw,
+            battery.level,
+            battery.charging,
+            bool(self.touching),
+            self.odometer,
+        )
+
+    def command(self, speed: float, turn_rate: float) -> None:
+        """Take a velocity command (m/s, rad/s); the next step obeys it.  Nonsense numbers mean: stop."""
+        if not (math.isfinite(speed) and math.isfinite(turn_rate)):
+            self._tell(self, "bad_command", {"speed": repr(speed), "turn_rate": repr(turn_rate)})
+            speed = turn_rate = 0.0
+        self.wanted_speed, self.wanted_turn_rate = speed, turn_rate
+        self._silence = 0.0
+
+    def _told_to_move(self) -> bool:
+        return self.wanted_speed != 0.0 or self.wanted_turn_rate != 0.0
+
+    def step(self, dt: float, walls: WallIndex) -> None:
+        """Drive for *dt* seconds, walls included; other robots and docks are the world's affair."""
+        self._touched = {}
+        if not self.moving:
+            if WALL in self.touching:
+                self._touched[WALL] = ""
+            self.battery.step(dt, 0.0, 0.0, self.dock is not None)
+            return
+        self._watch_commands(dt)
+        self.speed, self.turn_rate = ramp(
+            self.speed,
+            self.turn_rate,
+            self.wanted_speed,
+            self.wanted_turn_rate,
+            self.description.limits,
+            dt,
+        )
+        distance, turn = self.speed * dt, self.turn_rate * dt
+        before_x, before_y = self.x, self.y
+        self.x, self.y, self.yaw = advance(self.x, self.y, self.yaw, distance, turn)
+        if self._leave_walls(walls):
+            # Wheels against a wall stall: they roll as far as the robot truly came along its heading.
+            sine, cosine = sine_cosine(self.yaw - 0.5 * turn)
+            rolled = (self.x - before_x) * cosine + (self.y - before_y) * sine
+            distance = min(max(rolled, 0.0), distance) if distance > 0.0 else max(min(rolled, 0.0), distance)
+            self.speed = distance / dt
+        self.odometer += abs(distance)
+        self.odometry.step(distance, turn)
+        self.battery.step(dt, distance, turn, self.dock is not None)
+
+    def _watch_commands(self, dt: float) -> None:
+        """Brake at once, without a ramp, when commands stay away or the battery is empty."""
+        late = self._silence + 1e-9 > self.description.limits.command_timeout
+        self._silence += dt
+        if late and self._told_to_move():
+            self._tell(self, "command_timeout", {"speed": self.speed, "turn_rate": self.turn_rate})
+        if late or self.battery.empty:
+            self.wanted_speed = self.wanted_turn_rate = 0.0
+            self.speed = self.turn_rate = 0.0
+
+    def _leave_walls(self, walls: WallIndex) -> bool:
+        """Push out of the walls; True when that moved the robot."""
+        near = walls.near(self.x, self.y)
+        if not near:
+            return False
+        x, y, towards = push_out(self.x, self.y, self.description.radius, near)
+        if towards is None:
+            return False
+        self._touched[WALL] = self.side(*towards)
+        pushed = x != self.x or y != self.y
+        self.x, self.y = x, y
+        return pushed
+
+    def touch(self, other: str, push_x: float, push_y: float, side: str, walls: WallIndex, dt: float) -> None:
+        """Be pushed (metres) by another robot that stands to one *side*."""
+        self._touched[other] = side
+        if push_x == 0.0 and push_y == 0.0:
+            return
+        self.x += push_x
+        self.y += push_y
+        sine, cosine = sine_cosine(self.yaw)
+        rolled = push_x * cosine + push_y * sine
+        self.odometry.step(rolled, 0.0)
+        if rolled * self.speed < 0.0:
+            slower = self.speed + rolled / dt
+            self.speed = slower if slower * self.speed > 0.0 else 0.0
+        self._leave_walls(walls)
+
+    def side(self, towards_x: float, towards_y: float) -> str:
+        """Which side of the robot looks to a direction of the world: front, back, left or right."""
+        sine, cosine = sine_cosine(self.yaw)
+        ahead = towards_x * cosine + towards_y * sine
+        left = towards_y * cosine - towards_x * sine
+        if abs(ahead) >= abs(left):
+            return "front" if ahead > 0.0 else "back"
+        return "left" if left > 0.0 else "right"
+
+    def settle_contacts(self) -> None:
+        """End of a step: tell of every contact that was not there before."""
+        if not self._touched and not self.touching:
+            return
+        for other, side in self._touched.items():
+            if other not in self.touching:
+                if other == WALL:
+                    self._tell(self, "bump", {"side": side})
+                else:
+                    self._tell(self, "collision", {"robot": other, "side": side})
+        self.touching = frozenset(self._touched)
+
+    def settle_dock(self, docks: tuple[Dock, ...]) -> None:
+        """End of a step: in a dock or not?  Passing through one is not docking."""
+        dock = None
+        if abs(self.speed) <= STILL_SPEED and abs(self.turn_rate) <= STILL_TURN_RATE:
+            dock = next((dock for dock in docks if self._within(dock)), None)
+        if dock is not self.dock:
+            if self.dock is not None:
+                self._tell(self, "undocked", {"dock": self.dock.name})
+            if dock is not None:
+                self._tell(self, "docked", {"dock": dock.name})
+            self.dock = dock
+
+    def _within(self, dock: Dock) -> bool:
+        dx, dy = self.x - dock.pose.x, self.y - dock.pose.y
+        return dx * dx + dy * dy <= dock.radius * dock.radius

@@ -1,0 +1,152 @@
+"""The ``robots`` part of a world file: one mapping to a `RobotDescription`.
+
+Every key may be left out; these are the defaults, but for the errors of odometry and laser, which are 0::
+
+    - name: turtlebot
+      namespace: ""                 # prefix of the topics
+      pose: {x: 0, y: 0, yaw_degrees: 0}
+      radius: 0.17
+      limits: {speed: 0.65, turn_rate_degrees: 180, acceleration: 0.8, turn_acceleration_degrees: 286.5,
+               command_timeout: 0.5}
+      battery: {level: 100, drain_per_second: 0.01, drain_per_metre: 0.02, drain_per_turn: 0,
+                charge_per_second: 5}
+      odometry: {origin: world,     # or start: counts from where the robot stood at first
+                 noise_per_metre: 0.02, noise_degrees_per_turn: 2, noise_degrees_per_metre: 1}
+      laser: {enabled: true, beams_per_turn: 360, field_degrees: 360, range_min: 0.1, range_max: 10,
+              noise: 0.01, publish: on demand}    # or always
+"""
+
+import math
+import re
+
+from jacaros.sim.description import (
+    BatterySettings,
+    LaserSettings,
+    OdometrySettings,
+    Pose,
+    RobotDescription,
+    RobotLimits,
+)
+from jacaros.sim.trigonometry import TWO_PI, radians
+from jacaros.sim.yaml_nodes import Node
+
+_NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
+
+
+def read_robot(node: Node) -> RobotDescription:
+    """Read one robot; what is not said is a TurtleBot at the origin."""
+    entries = node.mapping("name", "namespace", "pose", "radius", "limits", "battery", "odometry", "laser")
+    return RobotDescription(
+        name=entries["name"].text() if "name" in entries else "turtlebot",
+        namespace=_namespace(entries.get("namespace")),
+        pose=_pose(entries.get("pose")),
+        radius=entries["radius"].number(0.02, 2.0, 0.17) if "radius" in entries else 0.17,
+        limits=_limits(entries.get("limits")),
+        battery=_battery(entries.get("battery")),
+        odometry=_odometry(entries.get("odometry")),
+        laser=_laser(entries.get("laser")),
+    )
+
+
+def read_pose(entries: dict[str, Node]) -> Pose:
+    """A pose from the keys ``x``, ``y`` (metres) and ``yaw_degrees``, each 0 when it is not there."""
+
+    def value(key: str) -> float:
+        return entries[key].number() if key in entries else 0.0
+
+    return Pose(value("x"), value("y"), radians(value("yaw_degrees")))
+
+
+def _pose(node: Node | None) -> Pose:
+    return read_pose(node.mapping("x", "y", "yaw_degrees")) if node is not None else Pose(0.0, 0.0, 0.0)
+
+
+def _namespace(node: Node | None) -> str:
+    text = node.text() if node is not None else ""
+    if node is not None and text and not _NAMESPACE.fullmatch(text):
+        node.wrong(
+            f"'{text}' is no ROS namespace", "use letters, digits and _, with / between parts: robot_1"
+        )
+    return text.strip("/")
+
+
+class _Section:
+    """A mapping of optional numbers with their defaults."""
+
+    def __init__(self, node: Node | None, *known: str) -> None:
+        self.entries = node.mapping(*known) if node is not None else {}
+
+    def number(self, key: str, default: float, minimum: float = 0.0, maximum: float = 1e9) -> float:
+        entry = self.entries.get(key)
+        return entry.number(minimum, maximum, default) if entry is not None else default
+
+    def truth(self, key: str, default: bool) -> bool:
+        return self.entries[key].truth() if key in self.entries else default
+
+
+def _limits(node: Node | None) -> RobotLimits:
+    usual = RobotLimits()
+    section = _Section(
+        node,
+        "speed",
+        "turn_rate_degrees",
+        "acceleration",
+        "turn_acceleration_degrees",
+        "command_timeout",
+    )
+    turn_rate = section.number("turn_rate_degrees", 180.0, 0.1, 3600.0)
+    # The plain default is kept as it is: 5 rad/s2 is not a round number of degrees.
+    turn_acceleration = section.number("turn_acceleration_degrees", -1.0, 0.1)
+    return RobotLimits(
+        speed=section.number("speed", usual.speed, 0.01, 5.0),
+        turn_rate=radians(turn_rate),
+        acceleration=section.number("acceleration", usual.acceleration, 0.01),
+        turn_acceleration=usual.turn_acceleration if turn_acceleration < 0 else radians(turn_acceleration),
+        command_timeout=section.number("command_timeout", usual.command_timeout, 0.05),
+    )
+
+
+def _battery(node: Node | None) -> BatterySettings:
+    usual = BatterySettings()
+    section = _Section(
+        node, "level", "drain_per_second", "drain_per_metre", "drain_per_turn", "charge_per_second"
+    )
+    return BatterySettings(
+        level=section.number("level", usual.level, 0.0, 100.0),
+        drain_per_second=section.number("drain_per_second", usual.drain_per_second),
+        drain_per_metre=section.number("drain_per_metre", usual.drain_per_metre),
+        drain_per_radian=section.number("drain_per_turn", 0.0) / TWO_PI,
+        charge_per_second=section.number("charge_per_second", usual.charge_per_second),
+    )
+
+
+def _odometry(node: Node | None) -> OdometrySettings:
+    section = _Section(node, "origin", "noise_per_metre", "noise_degrees_per_turn", "noise_degrees_per_metre")
+    origin = section.entries.get("origin")
+    per_turn = radians(section.number("noise_degrees_per_turn", 0.0))
+    return OdometrySettings(
+        from_start=origin is not None and origin.choice("world", "start") == "start",
+        per_metre=section.number("noise_per_metre", 0.0),
+        # The error of a whole turn is that of 2 pi radians, and errors add up by their squares.
+        per_radian=per_turn / math.sqrt(TWO_PI),
+        turn_per_metre=radians(section.number("noise_degrees_per_metre", 0.0)),
+    )
+
+
+def _laser(node: Node | None) -> LaserSettings:
+    usual = LaserSettings()
+    section = _Section(
+        node, "enabled", "beams_per_turn", "field_degrees", "range_min", "range_max", "noise", "publish"
+    )
+    beams = section.entries.get("beams_per_turn")
+    publish = section.entries.get("publish")
+    field = section.number("field_degrees", 360.0, 1.0, 360.0)
+    return LaserSettings(
+        enabled=section.truth("enabled", True),
+        beams_per_turn=beams.whole(4, 360) if beams is not None else usual.beams_per_turn,
+        field=TWO_PI if field == 360.0 else radians(field),
+        range_min=section.number("range_min", usual.range_min),
+        range_max=section.number("range_max", usual.range_max, 0.1),
+        noise=section.number("noise", usual.noise, 0.0, 1.0),
+        always=publish is not None and publish.choice("on demand", "always") == "always",
+    )

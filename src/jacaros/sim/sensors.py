@@ -1,0 +1,52 @@
+"""What a robot senses of the walls and of other robots: the laser scan, by the faster of two equal ways."""
+
+import random
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from jacaros.sim.description import LaserSettings, Segment
+from jacaros.sim.laser import Beams, Circle, sweep_circles, sweep_walls
+
+FEW_WALLS = 4
+"""Up to so many walls plain Python is as fast as numpy, and saves its import."""
+
+
+class Laser:
+    """One robot's laser.
+
+    Attributes:
+        settings: how it is made.
+        beams: its beams; ``angle_min``, ``angle_max`` and ``angle_increment`` are there.
+    """
+
+    def __init__(
+        self, settings: LaserSettings, segments: Sequence[Segment], seed: str, with_numpy: bool | None = None
+    ) -> None:
+        """*with_numpy* forces one of the two ways, which give the same bits; None chooses the faster."""
+        self.settings = settings
+        self.beams = Beams(settings)
+        self._segments = segments
+        self._draw = random.Random(seed).random
+        self._with_numpy = len(segments) > FEW_WALLS if with_numpy is None else with_numpy
+        self._arrays: Any = None
+
+    def scan(self, x: float, y: float, yaw: float, others: Iterable[Circle] = ()) -> list[float]:
+        """Ranges (metres) of the swept field, counter-clockwise; ``inf`` where nothing is within reach."""
+        ranges = self._walls(x, y, yaw)
+        sweep_circles(ranges, others, x, y, yaw, self.beams)
+        swept = ranges[self.beams.first : self.beams.last]
+        noise, reach = self.settings.noise, self.settings.range_max
+        if noise:
+            swept = [value + (self._draw() * 2.0 - 1.0) * noise for value in swept]
+        return [value if value <= reach else float("inf") for value in swept]
+
+    def _walls(self, x: float, y: float, yaw: float) -> list[float]:
+        if not self._with_numpy:
+            return sweep_walls(self._segments, x, y, yaw, self.beams)
+        if self._arrays is None:
+            # numpy takes a third of a second to import: only the first wanted scan pays for it.
+            from jacaros.sim.laser_numpy import WallArrays
+
+            self._arrays = WallArrays(self._segments, self.beams)
+        ranges: list[float] = self._arrays.sweep(x, y, yaw)
+        return ranges

@@ -1,0 +1,170 @@
+"""The running world: robots on a plane with walls, stepped at a fixed rate.
+
+It knows no clock, no middleware and no agents: `jacaros.sim.node` joins it to those.  The same description
+and seed and the same commands at the same steps give the same run, to the last bit.
+"""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from jacaros.errors import UsageError
+from jacaros.sim.contact import WallIndex, push_apart
+from jacaros.sim.description import WorldDescription
+from jacaros.sim.ground_truth import Event, GroundTruth
+from jacaros.sim.robot import Robot
+from jacaros.sim.sensors import Laser
+from jacaros.sim.world_file import find_world, read_world
+
+STEP = 0.02
+"""Length of a step in seconds: 50 Hz."""
+SAMPLES_PER_SECOND = 10
+
+
+class World:
+    """A world and its robots.
+
+    Attributes:
+        description: what it was made from.
+        time: seconds since it began.
+        robots: the robots by name, in the order of the file.
+    """
+
+    def __init__(self, description: WorldDescription, seed: int | None = None) -> None:
+        """*seed* replaces the one of the description."""
+        self.description = description if seed is None else replace(description, seed=seed)
+        self.time = 0.0
+        self.robots = {
+            robot.name: Robot(robot, self.description.seed, self._note) for robot in description.robots
+        }
+        self._row = tuple(self.robots.values())
+        self._walls = WallIndex(
+            description.segments, max((robot.radius for robot in description.robots), default=0.17)
+        )
+        self._lasers: dict[str, Laser] = {}
+        self._truth = GroundTruth(self.robots, description.drawing())
+        self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
+        self._next_sample = 0.0
+        self._sample_robots(all_of_them=True)
+
+    @classmethod
+    def load(cls, source: str | Path, seed: int | None = None) -> "World":
+        """Make a world from a file, from the name of a shipped world, or from the text of a world file.
+
+        Raises:
+            WorldError: the file is missing or wrong.
+        """
+        if isinstance(source, str) and "\n" in source:
+            return cls(read_world(source), seed)
+        path = find_world(str(source))
+        return cls(read_world(path.read_text(encoding="utf-8"), str(path)), seed)
+
+    @property
+    def ground_truth(self) -> GroundTruth:
+        """What truly happened up to this moment."""
+        for robot in self._row:
+            self._truth.update_latest(robot.name, robot.sample(self.time))
+        return self._truth
+
+    @property
+    def log(self) -> list[Event]:
+        """All events so far, oldest first."""
+        return self._truth.events
+
+    def robot(self, name: str | None = None) -> Robot:
+        """The robot of that name; the first one when none is given.
+
+        Raises:
+            UsageError: there is no such robot.
+        """
+        if name is None and self._row:
+            return self._row[0]
+        if name not in self.robots:
+            raise UsageError(
+                f"world '{self.description.name}' has no robot '{name}', only: {', '.join(self.robots)}"
+            )
+        return self.robots[name]
+
+    def room_at(self, x: float, y: float) -> str | None:
+        """Name of the room at a point, None outside of all; the first one of the file where two overlap."""
+        return next((room.name for room in self.description.rooms if room.area.contains(x, y)), None)
+
+    def command(self, name: str, speed: float, turn_rate: float) -> None:
+        """Command a robot (m/s, rad/s); the next step obeys."""
+        self.robot(name).command(speed, turn_rate)
+
+    def log_task(self, name: str, text: str) -> None:
+        """Take note that the robot says it does a cleaning task, with the room it truly is in."""
+        robot = self.robot(name)
+        self._note(robot, "task", {"task": text, "room": self.room_at(robot.x, robot.y)})
+
+    def scan(self, name: str) -> list[float]:
+        """The ranges (metres) that a robot's laser measures now."""
+        robot = self.robot(name)
+        others = [(other.x, other.y, other.description.radius) for other in self._row if other is not robot]
+        return self.laser(name).scan(robot.x, robot.y, robot.yaw, others)
+
+    def laser(self, name: str) -> Laser:
+        """A robot's laser, made when it is first asked for."""
+        if name not in self._lasers:
+            settings = self.robot(name).description.laser
+            seed = f"{self.description.seed}/{name}/laser"
+            self._lasers[name] = Laser(settings, self.description.segments, seed)
+        return self._lasers[name]
+
+    def step(self, dt: float = STEP) -> None:
+        """Let *dt* seconds pass."""
+        # Rounded to a nanosecond: fifty steps make a second, not almost a second.
+        self.time = round(self.time + dt, 9)
+        for robot in self._row:
+            robot.step(dt, self._walls)
+        if len(self._row) > 1:
+            self._part_robots(dt)
+        for robot in self._row:
+            robot.settle_contacts()
+            robot.settle_dock(self.description.docks)
+            self._watch_battery(robot)
+        if self.time >= self._next_sample:
+            self._sample_robots(all_of_them=False)
+
+    def run(self, seconds: float) -> None:
+        """Make as many steps as *seconds* have; commands stay as they are, and time out."""
+        for _ in range(round(seconds / STEP)):
+            self.step()
+
+    def _part_robots(self, dt: float) -> None:
+        row = self._row
+        for index, one in enumerate(row):
+            for other in row[index + 1 :]:
+                reach = one.description.radius + other.description.radius
+                if abs(one.x - other.x) > reach + 0.01 or abs(one.y - other.y) > reach + 0.01:
+                    continue
+                push = push_apart(one.x, one.y, other.x, other.y, reach)
+                if push is not None:
+                    x, y, towards_x, towards_y = push
+                    one.touch(other.name, x, y, one.side(towards_x, towards_y), self._walls, dt)
+                    other.touch(one.name, -x, -y, other.side(-towards_x, -towards_y), self._walls, dt)
+
+    def _watch_battery(self, robot: Robot) -> None:
+        battery = robot.battery
+        shown = (battery.charging, math.ceil(battery.level))
+        before = self._charge_shown[robot.name]
+        if shown == before:
+            return
+        self._charge_shown[robot.name] = shown
+        if shown[0] and not before[0]:
+            self._note(robot, "charging", {"level": battery.level})
+        if before[0] and not shown[0] and battery.level >= 100.0:
+            self._note(robot, "charged", {"level": battery.level})
+        if shown[1] != before[1]:
+            self._note(robot, "battery_empty" if battery.empty else "battery", {"level": shown[1]})
+
+    def _sample_robots(self, all_of_them: bool) -> None:
+        self._next_sample = round(self.time + 1.0 / SAMPLES_PER_SECOND, 9)
+        for robot in self._row:
+            if all_of_them or robot.moving or self.time - self._truth.path(robot.name)[-1].time >= 1.0:
+                self._truth.record_sample(robot.name, robot.sample(self.time))
+
+    def _note(self, robot: Robot, kind: str, data: dict[str, Any]) -> None:
+        self._truth.record_event(Event(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))

@@ -1,0 +1,184 @@
+"""World files: YAML text to a `WorldDescription`.
+
+Lengths are metres, times seconds, levels percent and angles degrees (the keys say so); inside, angles are
+radians.  Every key but ``robots`` may be left out; what a robot may say is in `jacaros.sim.robot_file`::
+
+    name: patrol
+    size: [6, 6]                      # centred at the origin; or bounds: {from: [x, y], to: [x, y]}
+    border: walls                     # or open (the default)
+    seed: 1
+    walls:
+      - segment: [[0, 0], [1, 0]]
+      - polyline: [[0, 0], [1, 0], [1, 1]]
+        closed: true
+      - box: {from: [2, 2], to: [2.5, 3]}
+    rooms:
+      kitchen: {from: [1, 1], to: [3, 3]}
+    docks:
+      - {name: dock, x: 1, y: 1, yaw_degrees: 0, radius: 0.25}
+    robots:
+      - name: turtlebot
+        pose: {x: 0, y: 0, yaw_degrees: 0}
+"""
+
+import itertools
+from pathlib import Path
+
+from jacaros.sim.description import Dock, Rectangle, Room, Segment, WorldDescription
+from jacaros.sim.errors import Problem, WorldError
+from jacaros.sim.robot_file import read_pose, read_robot
+from jacaros.sim.yaml_nodes import Node, read_document
+
+_WORLDS = Path(__file__).parent / "worlds"
+_KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "robots")
+
+
+def shipped_worlds() -> list[str]:
+    """Names of the worlds that come with the package."""
+    return sorted(path.stem for path in _WORLDS.glob("*.yaml"))
+
+
+def find_world(name: str) -> Path:
+    """The file of a shipped world's *name* or of a path.
+
+    Raises:
+        WorldError: when there is neither.
+    """
+    for path in (Path(name), _WORLDS / f"{name}.yaml"):
+        if path.is_file():
+            return path
+    cure = f"give the path of a world file, or one of the shipped worlds: {', '.join(shipped_worlds())}"
+    raise WorldError(name, "", [Problem(1, 1, "there is no such world file", cure)])
+
+
+def read_world(text: str, name: str = "world") -> WorldDescription:
+    """Read the text of a world file; *name* is what errors call it.
+
+    Raises:
+        WorldError: with all mistakes at once.
+    """
+    problems: list[Problem] = []
+    document = read_document(name, text, problems)
+    description = _world(document)
+    if problems:
+        raise WorldError(name, text, problems)
+    return description
+
+
+def _world(document: Node) -> WorldDescription:
+    entries = document.mapping(*_KEYS, required=("robots",))
+    bounds = _bounds(entries)
+    segments: list[Segment] = []
+    boxes: list[Rectangle] = []
+    if "border" in entries and entries["border"].choice("open", "walls") == "walls":
+        segments.extend(bounds.edges())
+    if "walls" in entries:
+        for wall in entries["walls"].sequence():
+            _wall(wall, segments, boxes)
+    robots = list(entries["robots"].sequence()) if "robots" in entries else []
+    if "robots" in entries:
+        _check_robots(entries["robots"], robots)
+    return WorldDescription(
+        name=entries["name"].text() if "name" in entries else "world",
+        bounds=bounds,
+        segments=tuple(segments),
+        boxes=tuple(boxes),
+        rooms=_rooms(entries.get("rooms")),
+        docks=_docks(entries.get("docks")),
+        robots=tuple(read_robot(robot) for robot in robots),
+        seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
+    )
+
+
+def _bounds(entries: dict[str, Node]) -> Rectangle:
+    if "bounds" in entries:
+        if "size" in entries:
+            entries["size"].wrong("'size' and 'bounds' say the same thing", "leave one of them out")
+        return _rectangle(entries["bounds"])
+    if "size" not in entries:
+        return Rectangle(-3.0, -3.0, 3.0, 3.0)
+    width, height = entries["size"].pair()
+    if width <= 0 or height <= 0:
+        entries["size"].wrong("a size must be positive", "write [width, height], in metres")
+    return Rectangle(-width / 2, -height / 2, width / 2, height / 2)
+
+
+def _rectangle(node: Node) -> Rectangle:
+    entries = node.mapping("from", "to", required=("from", "to"))
+    if len(entries) < 2:
+        return Rectangle(0.0, 0.0, 1.0, 1.0)
+    ax, ay = entries["from"].pair()
+    bx, by = entries["to"].pair()
+    if ax == bx or ay == by:
+        node.wrong(f"{node.what} has no area", "'from' and 'to' are opposite corners")
+    return Rectangle(min(ax, bx), min(ay, by), max(ax, bx), max(ay, by))
+
+
+def _wall(node: Node, segments: list[Segment], boxes: list[Rectangle]) -> None:
+    entries = node.mapping("segment", "polyline", "box", "closed")
+    kinds = [kind for kind in ("segment", "polyline", "box") if kind in entries]
+    if len(kinds) != 1:
+        node.wrong(
+            f"{node.what} must be one segment, polyline or box", "for example 'segment: [[0, 0], [1, 0]]'"
+        )
+        return
+    shape = entries[kinds[0]]
+    if kinds[0] == "box":
+        box = _rectangle(shape)
+        boxes.append(box)
+        segments.extend(box.edges())
+        return
+    mistakes = len(node.problems)
+    points = [point.pair() for point in shape.sequence()]
+    if len(node.problems) > mistakes:
+        return
+    if len(points) < 2 or (kinds[0] == "segment" and len(points) > 2):
+        shape.wrong(
+            f"{shape.what} has {len(points)} points", "a segment has two points, a polyline two or more"
+        )
+        return
+    if "closed" in entries and entries["closed"].truth():
+        points.append(points[0])
+    for (ax, ay), (bx, by) in itertools.pairwise(points):
+        if (ax, ay) == (bx, by):
+            shape.wrong(
+                f"{shape.what} has the point [{ax:g}, {ay:g}] twice in a row", "leave one of them out"
+            )
+        else:
+            segments.append(Segment(ax, ay, bx, by))
+
+
+def _rooms(node: Node | None) -> tuple[Room, ...]:
+    if node is None:
+        return ()
+    return tuple(Room(name, _rectangle(area)) for name, area in node.mapping().items())
+
+
+def _docks(node: Node | None) -> tuple[Dock, ...]:
+    if node is None:
+        return ()
+    docks = []
+    for index, item in enumerate(node.sequence()):
+        entries = item.mapping("name", "x", "y", "yaw_degrees", "radius", required=("x", "y"))
+        name = entries["name"].text() if "name" in entries else ("dock" if index == 0 else f"dock{index + 1}")
+        radius = entries["radius"].number(0.01) if "radius" in entries else 0.25
+        docks.append(Dock(name, read_pose(entries), radius))
+    return tuple(docks)
+
+
+def _check_robots(node: Node, items: list[Node]) -> None:
+    """Two robots must differ in name and in topics, and there must be one at least."""
+    seen: dict[tuple[str, str], int] = {}
+    if not items and isinstance(node.value, list):
+        node.wrong("a world needs a robot", "add '- name: turtlebot' under 'robots'")
+    for item in items:
+        if not isinstance(item.value, dict):
+            continue
+        name = str(item.value.get("name", "turtlebot"))
+        for key, value in (("name", name), ("namespace", str(item.value.get("namespace", "")).strip("/"))):
+            if (key, value) in seen:
+                first = seen[key, value]
+                item.wrong(
+                    f"the robot of line {first} has the same {key} '{value}'", f"give it another {key}"
+                )
+            seen.setdefault((key, value), item.line)

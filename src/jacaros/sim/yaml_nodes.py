@@ -1,0 +1,141 @@
+"""YAML values that know where they stand, and readers that note mistakes instead of stopping at the first."""
+
+import difflib
+import math
+from collections.abc import Iterator
+from io import StringIO
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+from jacaros.sim.errors import Problem, WorldError
+
+
+class Node:
+    """One value of a YAML document with its place; every reader returns a usable value, even after a mistake.
+
+    Attributes:
+        value: what the YAML reader made of it.
+        line, column: its place, counted from 1.
+        problems: the list, shared by the document, that mistakes are added to.
+    """
+
+    __slots__ = ("column", "line", "problems", "value", "what")
+
+    def __init__(self, value: Any, line: int, column: int, problems: list[Problem], what: str) -> None:
+        self.value, self.line, self.column, self.problems, self.what = value, line, column, problems, what
+
+    def wrong(self, message: str, cure: str = "") -> None:
+        """Note a mistake at this value."""
+        self.problems.append(Problem(self.line, self.column, message, cure))
+
+    def mapping(self, *known: str, required: tuple[str, ...] = ()) -> dict[str, "Node"]:
+        """The entries of a mapping that may have the *known* keys only and must have the *required* ones."""
+        if self.value is None and not required:
+            return {}
+        if not isinstance(self.value, CommentedMap):
+            self.wrong(f"{self.what} must be a mapping of keys to values", f"keys: {', '.join(known)}")
+            return {}
+        for key in self.value:
+            if known and key not in known:
+                self._unknown_key(key, known)
+        for key in required:
+            if key not in self.value:
+                self.wrong(f"{self.what} lacks the key '{key}'", f"add '{key}: ...'")
+        return {str(key): self._entry(key) for key in self.value if not known or key in known}
+
+    def _entry(self, key: object) -> "Node":
+        # A key that a YAML merge (<<) brought in has no place of its own.
+        known = key in (self.value.lc.data or {})
+        line, column = self.value.lc.value(key) if known else (self.line - 1, self.column - 1)
+        return Node(self.value[key], line + 1, column + 1, self.problems, f"'{key}'")
+
+    def _unknown_key(self, key: object, known: tuple[str, ...]) -> None:
+        line, column = self.value.lc.key(key)
+        near = difflib.get_close_matches(str(key), known, 1)
+        cure = f"did you mean '{near[0]}'?" if near else f"known keys: {', '.join(known)}"
+        self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", cure))
+
+    def sequence(self) -> Iterator["Node"]:
+        """The items of a list; a missing value is an empty list."""
+        if self.value is None:
+            return
+        if not isinstance(self.value, CommentedSeq):
+            self.wrong(f"{self.what} must be a list", "write '- item' lines or [item, item]")
+            return
+        for index in range(len(self.value)):
+            line, column = self.value.lc.item(index)
+            what = f"item {index + 1} of {self.what}"
+            yield Node(self.value[index], line + 1, column + 1, self.problems, what)
+
+    def number(self, minimum: float = -math.inf, maximum: float = math.inf, default: float = 0.0) -> float:
+        """A finite number within the limits (both included)."""
+        value = self.value
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            self.wrong(f"{self.what} must be a number, not {value!r}")
+            return default
+        if not minimum <= value <= maximum:
+            self.wrong(f"{self.what} is {value}, but must {_limits(minimum, maximum)}")
+            return default
+        return float(value)
+
+    def whole(self, minimum: int, default: int) -> int:
+        """A whole number, *minimum* or more."""
+        if isinstance(self.value, bool) or not isinstance(self.value, int) or self.value < minimum:
+            self.wrong(f"{self.what} must be a whole number of at least {minimum}, not {self.value!r}")
+            return default
+        return int(self.value)
+
+    def text(self) -> str:
+        """A text; numbers are not texts."""
+        if not isinstance(self.value, str):
+            self.wrong(f"{self.what} must be a text, not {self.value!r}", 'put it in quotes: "..."')
+            return ""
+        return str(self.value)
+
+    def choice(self, *choices: str) -> str:
+        """One of *choices*; the first stands in after a mistake."""
+        if self.value not in choices:
+            self.wrong(f"{self.what} is {self.value!r}", f"choose one of: {', '.join(choices)}")
+            return choices[0]
+        return str(self.value)
+
+    def truth(self) -> bool:
+        """``true`` or ``false``."""
+        if not isinstance(self.value, bool):
+            self.wrong(f"{self.what} must be true or false, not {self.value!r}")
+            return False
+        return self.value
+
+    def pair(self) -> tuple[float, float]:
+        """Two numbers: ``[x, y]``."""
+        numbers = [item.number() for item in self.sequence()]
+        if isinstance(self.value, CommentedSeq) and len(numbers) != 2:
+            self.wrong(f"{self.what} must be two numbers", "write [x, y], in metres")
+        return (numbers[0], numbers[1]) if len(numbers) == 2 else (0.0, 0.0)
+
+
+def _limits(minimum: float, maximum: float) -> str:
+    if maximum == math.inf:
+        return f"be at least {minimum:g}"
+    return f"lie between {minimum:g} and {maximum:g}"
+
+
+def read_document(name: str, text: str, problems: list[Problem]) -> Node:
+    """Parse *text*; the mistakes its values turn out to have are collected in *problems*.
+
+    Raises:
+        WorldError: when the text is not YAML at all.
+    """
+    try:
+        document = YAML(typ="rt").load(StringIO(text))
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+        problem = Problem(line, column, f"not YAML: {error.problem}", "mind indents, colons and quotes")
+        raise WorldError(name, text, [problem]) from None
+    except YAMLError as error:
+        raise WorldError(name, text, [Problem(1, 1, f"not YAML: {error}")]) from None
+    return Node(document, 1, 1, problems, "a world")

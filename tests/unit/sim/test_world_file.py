@@ -1,0 +1,144 @@
+"""World files: what they say, and what is wrong with them, all at once and with lines."""
+
+import math
+
+import pytest
+
+from jacaros.sim import World, WorldError, read_world, shipped_worlds
+from jacaros.sim.trigonometry import PI
+
+FULL = """\
+name: flat
+bounds: {from: [0, 0], to: [4, 3]}
+border: walls
+seed: 5
+walls:
+  - segment: [[1, 0], [1, 1]]
+  - polyline: [[2, 0], [2, 1], [3, 1]]
+    closed: true
+  - box: {from: [3, 2], to: [3.5, 2.5]}
+rooms:
+  kitchen: {from: [2, 2], to: [0, 3]}
+docks:
+  - {x: 1, y: 2, yaw_degrees: 90}
+robots:
+  - name: robot_1
+    namespace: /robot_1
+    pose: {x: 0.5, y: 0.5, yaw_degrees: 180}
+    radius: 0.2
+    limits: {speed: 0.5, turn_rate_degrees: 90}
+    battery: {level: 80, drain_per_second: 0.5, drain_per_turn: 1}
+    odometry: {origin: start, noise_per_metre: 0.02}
+    laser: {beams_per_turn: 180, field_degrees: 270, range_max: 8, publish: always}
+"""
+
+
+def test_a_full_world_file_is_read() -> None:
+    world = read_world(FULL)
+    assert (world.name, world.seed, world.bounds) == ("flat", 5, (0, 0, 4, 3))
+    assert len(world.segments) == 4 + 1 + 3 + 4
+    assert world.rooms[0].area == (0, 2, 2, 3)
+    assert world.docks[0].name == "dock"
+    assert world.docks[0].pose == (1, 2, PI / 2)
+    [robot] = world.robots
+    assert robot.namespace == "robot_1"
+    assert robot.pose == (0.5, 0.5, PI)
+    assert robot.limits.speed == 0.5
+    assert robot.limits.turn_rate == PI / 2
+    assert robot.limits.turn_acceleration == 5.0
+    assert robot.battery.level == 80
+    assert robot.battery.drain_per_radian == pytest.approx(1 / (2 * PI))
+    assert robot.odometry.from_start
+    assert robot.laser.field == pytest.approx(math.radians(270))
+    assert robot.laser.always
+
+
+def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
+    text = "\n".join(
+        [
+            "name: 7",
+            "wals: []",
+            "walls:",
+            "  - segment: [[0, 0], [1]]",
+            "docks: [{x: 0}]",
+            "robots:",
+            "  - {name: a, pose: {x: left}}",
+            "  - {name: a, namespace: 2bad}",
+        ]
+    )
+    with pytest.raises(WorldError) as caught:
+        read_world(text, "bad.yaml")
+    assert [problem.line for problem in caught.value.problems] == [1, 2, 4, 5, 7, 8, 8]
+    told = str(caught.value)
+    assert "bad.yaml:2:1: a world has no key 'wals'" in told
+    assert "    2 | wals: []" in told
+    assert "cure: did you mean 'walls'?" in told
+    assert "'x' must be a number, not 'left'" in told
+    assert "the robot of line 7 has the same name 'a'" in told
+    assert "'2bad' is no ROS namespace" in told
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("name: [unclosed", "not YAML"),
+        ("a: 1\na: 2", "not YAML"),
+        ("", "must be a mapping"),
+        ("name: a", "lacks the key 'robots'"),
+        ("just a text", "must be a mapping"),
+        ("robots: []", "needs a robot"),
+        ("robots: [{name: a}]\nsize: [0, 3]", "must be positive"),
+        ("robots: [{name: a}]\nsize: [1, 3]\nbounds: {from: [0, 0], to: [1, 1]}", "say the same thing"),
+        ("robots: [{name: a}]\nwalls: [{box: {from: [0, 0], to: [0, 1]}}]", "has no area"),
+        ("robots: [{name: a}]\nwalls: [{polyline: [[0, 0]]}]", "has 1 points"),
+        ("robots: [{name: a}]\nwalls: [{segment: [[0, 0], [0, 0]]}]", "twice in a row"),
+        ("robots: [{name: a}]\nwalls: [{closed: true}]", "must be one segment, polyline or box"),
+        ("robots: [{name: a, laser: {enabled: 1}}]", "must be true or false"),
+        ("robots: [{name: a, laser: {beams_per_turn: 2}}]", "whole number of at least 4"),
+        ("robots: [{name: a, battery: {level: 101}}]", "must lie between 0 and 100"),
+        ("robots: [{name: a, odometry: {origin: moon}}]", "'origin' is 'moon'"),
+        ("robots: {name: a}", "must be a list"),
+        ("robots: [{name: a}]\nborder: glass", "'border' is 'glass'"),
+        ("robots: [{name: a, radius: .inf}]", "must be a number"),
+    ],
+)
+def test_a_wrong_world_says_what_is_wrong(text: str, message: str) -> None:
+    with pytest.raises(WorldError, match=message):
+        read_world(text)
+
+
+def test_a_mistake_is_told_once() -> None:
+    with pytest.raises(WorldError) as caught:
+        read_world("robots: {name: a}")
+    assert len(caught.value.problems) == 1
+
+
+def test_robots_may_share_settings_by_a_yaml_merge() -> None:
+    text = "robots:\n  - &one {name: a, radius: 0.2}\n  - {<<: *one, name: b, namespace: b}\n"
+    assert [robot.radius for robot in read_world(text).robots] == [0.2, 0.2]
+
+
+def test_a_world_that_is_not_there_names_the_shipped_ones() -> None:
+    with pytest.raises(WorldError, match="empty, house, patrol, two_robots"):
+        World.load("nowhere")
+
+
+@pytest.mark.parametrize("name", ["empty", "house", "patrol", "two_robots"])
+def test_a_shipped_world_loads_and_its_robots_stand_free(name: str) -> None:
+    assert name in shipped_worlds()
+    world = World.load(name)
+    for robot in world.robots:
+        world.command(robot, 0.0, 0.001)
+    world.run(0.2)
+    assert world.ground_truth.events_of("bump", "collision") == []
+    assert world.description.docks
+
+
+@pytest.mark.parametrize(
+    ("corner", "room"),
+    [((0, 0), "hallway"), ((2, 0), "living_room"), ((2, 2), "kitchen"), ((0, 2), "bathroom")],
+)
+def test_each_corner_of_the_square_lies_in_its_room_of_the_house(
+    corner: tuple[float, float], room: str
+) -> None:
+    assert World.load("house").room_at(*corner) == room
