@@ -1,0 +1,115 @@
+"""What a mind notices of the artifacts that its agent focuses: observations → percepts."""
+
+from collections.abc import Callable
+
+from jacaros.bdi.act import Percept
+from jacaros.body.values import References, atom_of, symbol_of, to_term
+from jacaros.env.ids import ArtifactId
+from jacaros.env.observation import Observation
+from jacaros.env.property import ObservableProperty
+from jacaros.terms.order import annotation_set
+from jacaros.terms.unifier import free_variables, resolve
+from jacaros.terms.values import SOURCE_PERCEPT, String, Term, atom, functor
+
+ADD, REMOVE, SIGNAL = "add", "remove", "signal"
+
+_ARTIFACT_ID = functor("artifact_id", 1)
+_ARTIFACT_NAME = functor("artifact_name", 1)
+_PERCEPT_TYPE = functor("percept_type", 1)
+_WORKSPACE = functor("workspace", 2)
+_OBSERVABLE_PROPERTY = (_PERCEPT_TYPE, atom("obs_prop"))
+_OBSERVABLE_EVENT = (_PERCEPT_TYPE, atom("obs_ev"))
+_NULL = atom("null")
+
+
+class PerceptWriter:
+    """Writes observations as percepts, with the annotations that tell where they come from.
+
+    ``count(1)[artifact_id(cobj_1), artifact_name(c), percept_type(obs_prop), source(percept),
+    workspace("/main", cobj_2)]``: as the bridge between CArtAgO and Jason does, but the name of the artifact
+    is always an atom.
+
+    Args:
+        references: shared by all agents of a run.
+        workspace: from a full path to the object that stands for the workspace.
+    """
+
+    def __init__(self, references: References, workspace: Callable[[str], object]) -> None:
+        self._references = references
+        self._workspace = workspace
+        self._annotations: dict[ArtifactId, tuple[tuple[Term, ...], tuple[Term, ...]]] = {}
+
+    def percepts(self, observation: Observation, namespace: str | None = None) -> list[Percept]:
+        """The percepts of one observation, in the order in which the mind is to notice them.
+
+        Signals first, then for each changed property the end of the old and the beginning of the new value,
+        then what is new, then what is gone.
+
+        Args:
+            namespace: of the agent's program, where the artifact was focused with ``ns::focus``.
+        """
+        about_property, about_signal = self._origin(observation.artifact)
+        cause = observation.cause
+        found = [
+            Percept(SIGNAL, self._literal(signal.name, signal.arguments, namespace), about_signal, cause)
+            for signal in observation.signals
+        ]
+
+        def add(kind: str, each: ObservableProperty) -> None:
+            annotations = about_property
+            if each.annotations:
+                own = tuple(to_term(a, self._references) for a in each.annotations)
+                annotations = annotation_set((*annotations, *own))
+            literal = self._literal(each.name, each.values, namespace)
+            found.append(Percept(kind, literal, annotations, cause))
+
+        for old, new in observation.changed:
+            add(REMOVE, old)
+            add(ADD, new)
+        for each in observation.added:
+            add(ADD, each)
+        for each in observation.removed:
+            add(REMOVE, each)
+        return found
+
+    def own(self, kind: str, name: str, *arguments: Term) -> Percept:
+        """A percept about the agent's own body, such as ``joinedWsp(Id,lab,"/main/lab")``."""
+        annotations = (_OBSERVABLE_PROPERTY, SOURCE_PERCEPT)
+        return Percept(kind, (functor(name, len(arguments)), *arguments), annotations)
+
+    def forget(self, artifact: ArtifactId) -> None:
+        """Let go of what is kept about an artifact that will not be observed again soon."""
+        self._annotations.pop(artifact, None)
+
+    def _origin(self, artifact: ArtifactId) -> tuple[tuple[Term, ...], tuple[Term, ...]]:
+        """The annotations of properties and of signals of an artifact."""
+        known = self._annotations.get(artifact)
+        if known is None:
+            workspace = self._references.of(self._workspace(artifact.workspace))
+            shared = (
+                (_ARTIFACT_ID, self._references.of(artifact)),
+                (_ARTIFACT_NAME, atom_of(artifact.name)),
+                SOURCE_PERCEPT,
+                (_WORKSPACE, String(artifact.workspace), workspace),
+            )
+            known = self._annotations[artifact] = (
+                annotation_set((*shared, _OBSERVABLE_PROPERTY)),
+                annotation_set((*shared, _OBSERVABLE_EVENT)),
+            )
+        return known
+
+    def _literal(self, name: str, values: tuple[object, ...], namespace: str | None) -> Term:
+        symbol = symbol_of(f"{namespace}::{name}" if namespace else name, len(values))
+        if not values:
+            return symbol
+        return (symbol, *[_ground(to_term(value, self._references)) for value in values])
+
+
+def _ground(term: Term) -> Term:
+    """Percepts are ground: None and outputs that nobody set become the atom ``null``."""
+    if term.__class__ is float or term.__class__ is String:
+        return term
+    unbound = free_variables(term)
+    for variable in unbound:
+        variable.ref = _NULL
+    return resolve(term) if unbound else term

@@ -1,0 +1,231 @@
+"""Terms of the language ↔ plain values of the environment.
+
+=========================  ==========================================================================
+term                       plain value
+=========================  ==========================================================================
+number                     `int` when it is whole, else `float`
+string                     `str`
+``true``, ``false``        `bool`
+atom                       `Atom`, without the quotes of a quoted one
+structure                  `Structure`; ``~`` and a namespace are written in front of the functor
+list, set, queue           `list`
+map                        `dict`
+annotated term             its term, without the annotations
+opaque reference           the object
+unbound variable           `Out`; from the environment None comes as a fresh variable
+formula, plan              its text
+=========================  ==========================================================================
+"""
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+from jacaros.env.ids import ArtifactId
+from jacaros.env.values import Atom, Out, Structure, plain
+from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.text import text
+from jacaros.terms.values import (
+    ARITHMETIC,
+    CONS,
+    FALSE,
+    FUNCTION,
+    NIL,
+    PLAIN,
+    TRUE,
+    Annotated,
+    Functor,
+    Reference,
+    String,
+    Term,
+    Var,
+    atom,
+    deref,
+    functor,
+    make_list,
+)
+
+Outputs = list[tuple[Var, Out]]
+"""The unbound variables of an action, and the places where an operation leaves their values."""
+
+_WORDS_OF_THE_LANGUAGE = frozenset({"not", "div", "mod"})
+_CARRIED_AS_STRUCTURES = (PLAIN, ARITHMETIC, FUNCTION)
+
+
+def to_value(term: Term, outputs: Outputs | None = None) -> Any:
+    """Turn a term, with its bindings applied, into a plain value.
+
+    Args:
+        outputs: takes the unbound variables met on the way, each with its `Out`.
+    """
+    kind = term.__class__
+    if kind is float:
+        return int(term) if term.is_integer() else term
+    if kind is String:
+        return str(term)
+    if kind is Var:
+        return _variable_to_value(term, outputs)
+    if kind is Functor:
+        return _atom_to_value(term)
+    if kind is tuple:
+        return _structure_to_value(term, outputs)
+    if kind is Annotated:
+        return to_value(term.term, outputs)
+    return _object_to_value(term, outputs)
+
+
+def _variable_to_value(variable: Var, outputs: Outputs | None) -> Any:
+    bound = deref(variable)
+    if bound.__class__ is not Var:
+        return to_value(bound, outputs)
+    out = Out()
+    if outputs is not None:
+        outputs.append((bound, out))
+    return out
+
+
+def _atom_to_value(symbol: Functor) -> object:
+    if symbol is NIL:
+        return []
+    if symbol is TRUE or symbol is FALSE:
+        return symbol is TRUE
+    return Atom(symbol_name(symbol))
+
+
+def _structure_to_value(term: Term, outputs: Outputs | None) -> object:
+    symbol = term[0]
+    if symbol is CONS:
+        items = []
+        while term.__class__ is tuple and term[0] is CONS:
+            items.append(to_value(term[1], outputs))
+            term = deref(term[2])
+        return items
+    if symbol.kind not in _CARRIED_AS_STRUCTURES:
+        return text(term)
+    return Structure(symbol_name(symbol), tuple(to_value(argument, outputs) for argument in term[1:]))
+
+
+def _object_to_value(term: Term, outputs: Outputs | None) -> object:
+    if term.__class__ is Reference:
+        return term.value
+    if isinstance(term, MapValue):
+        return {_key(to_value(key)): to_value(value, outputs) for key, value in term.items.items()}
+    if isinstance(term, (SetValue, QueueValue)):
+        return [to_value(item, outputs) for item in term]
+    return term
+
+
+def _key(value: object) -> object:
+    """What may be the key of a dictionary: lists become tuples."""
+    return tuple(map(_key, value)) if isinstance(value, list) else value
+
+
+def symbol_name(symbol: Functor) -> str:
+    """The name of a functor as the environment writes it: no quotes; ``~`` and the namespace in front."""
+    name = symbol.name
+    if name[:1] == "'" and name[-1:] == "'" and len(name) > 1:
+        name = name[1:-1]
+    if symbol.negated:
+        name = f"~{name}"
+    return f"{symbol.namespace}::{name}" if symbol.namespace else name
+
+
+class References:
+    """One opaque reference for each artifact and workspace, so that it always prints the same (``cobj_N``).
+
+    Other objects get a new reference each time: keeping them would keep every image of a camera alive.
+    """
+
+    def __init__(self) -> None:
+        self._kept: dict[int, Reference] = {}
+
+    def of(self, value: object) -> Reference:
+        """The one reference to *value*, which is kept alive from now on."""
+        known = self._kept.get(id(value))
+        if known is None:
+            known = self._kept[id(value)] = Reference(value)
+        return known
+
+    def forget(self, value: object) -> None:
+        """Let go of *value*: nobody will name it again, such as the id of a disposed artifact."""
+        self._kept.pop(id(value), None)
+
+
+def to_term(value: Any, references: References) -> Term:
+    """Turn a plain value, or what `jacaros.env.values.plain` can make one of, into a term."""
+    convert = _BY_CLASS.get(value.__class__)
+    if convert is not None:
+        return convert(value, references)
+    return _other_to_term(value, references)
+
+
+def _number_to_term(value: float, references: References) -> Term:
+    try:
+        return float(value)
+    except OverflowError:
+        return float("inf") if value > 0 else float("-inf")
+
+
+@lru_cache(4096)
+def symbol_of(name: str, arity: int) -> Functor:
+    """The functor for a name that the environment gives: quoted when it is no plain lower-case word."""
+    namespace, separator, rest = name.rpartition("::")
+    if separator and _is_word(namespace) and rest:
+        name = rest
+    else:
+        namespace = ""
+    negated = name[:1] == "~" and len(name) > 1
+    name = name[1:] if negated else name
+    return functor(name if _is_word(name) else f"'{name}'", arity, negated, namespace or None)
+
+
+def atom_of(name: str) -> Functor:
+    """The atom for the name of an artifact or workspace: always an atom, quoted if need be."""
+    return atom(name if _is_word(name) else f"'{name}'")
+
+
+def _is_word(name: str) -> bool:
+    return name.isidentifier() and name[0].islower() and name not in _WORDS_OF_THE_LANGUAGE
+
+
+def _structure_to_term(value: Structure, references: References) -> Term:
+    arguments = value.arguments
+    if not arguments:
+        return symbol_of(value.functor, 0)
+    return (symbol_of(value.functor, len(arguments)), *[to_term(a, references) for a in arguments])
+
+
+def _list_to_term(value: list[object], references: References) -> Term:
+    return make_list([to_term(item, references) for item in value])
+
+
+def _dict_to_term(value: dict[object, object], references: References) -> Term:
+    return MapValue({to_term(key, references): to_term(item, references) for key, item in value.items()})
+
+
+def _other_to_term(value: Any, references: References) -> Term:
+    simple = plain(value)
+    if simple.__class__ in _BY_CLASS:
+        return to_term(simple, references)
+    if isinstance(simple, Out):
+        return to_term(simple.value, references) if simple.is_set else Var()
+    if isinstance(simple, str):
+        return String(simple)
+    if isinstance(simple, (int, float)):
+        return _number_to_term(simple, references)
+    return Reference(simple)
+
+
+_BY_CLASS: dict[type, Callable[[Any, References], Term]] = {
+    float: lambda value, _: value,
+    int: _number_to_term,
+    bool: lambda value, _: TRUE if value else FALSE,
+    str: lambda value, _: String(value),
+    Atom: lambda value, _: TRUE if value == "true" else FALSE if value == "false" else symbol_of(value, 0),
+    Structure: _structure_to_term,
+    list: _list_to_term,
+    tuple: _list_to_term,
+    dict: _dict_to_term,
+    type(None): lambda value, _: Var(),
+    ArtifactId: lambda value, references: references.of(value),
+}

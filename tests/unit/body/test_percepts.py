@@ -1,0 +1,89 @@
+"""Observations as percepts."""
+
+from jacaros.body.percepts import PerceptWriter
+from jacaros.body.values import References
+from jacaros.env.ids import ArtifactId
+from jacaros.env.observation import Observation, Signal
+from jacaros.env.property import ObservableProperty
+from jacaros.env.values import Atom, Structure
+from jacaros.terms.order import annotation_set
+from jacaros.terms.text import text
+from jacaros.terms.values import Reference, atom, structure
+from jacaros.trace import cause
+
+LAMP = ArtifactId("Lamp", "Lamp", "/main/lab", 1, None)
+MAIN = object()
+
+
+def writer() -> PerceptWriter:
+    return PerceptWriter(References(), lambda path: MAIN)
+
+
+def observable(name: str, *values: object, annotations: tuple[object, ...] = ()) -> ObservableProperty:
+    return ObservableProperty(name, values, annotations, 1)
+
+
+def lines(observation: Observation, namespace: str | None = None) -> list[str]:
+    return [f"{p.kind} {text(p.literal)}" for p in writer().percepts(observation, namespace)]
+
+
+def test_signals_come_first_then_changes_additions_and_removals() -> None:
+    observation = Observation(
+        LAMP,
+        signals=(Signal("tick", (1,)), Signal("tock", ())),
+        changed=((observable("power", 1), observable("power", 2)),),
+        added=(observable("on"),),
+        removed=(observable("off"),),
+    )
+    assert lines(observation) == [
+        "signal tick(1)", "signal tock", "remove power(1)", "add power(2)", "add on", "remove off"
+    ]  # fmt: skip
+
+
+def test_the_annotations_tell_where_a_percept_comes_from() -> None:
+    signal, added = writer().percepts(Observation(LAMP, (Signal("tick", ()),), added=(observable("on"),)))
+    names = [a[0].name for a in added.annotations]
+    assert names == ["artifact_id", "artifact_name", "percept_type", "source", "workspace"]
+    assert added.annotations == annotation_set(added.annotations)
+    by_name = {a[0].name: a[1:] for a in added.annotations}
+    assert by_name["artifact_id"] == (Reference(LAMP),)
+    assert by_name["artifact_name"] == (atom("'Lamp'"),)
+    assert by_name["percept_type"] == (atom("obs_prop"),)
+    assert by_name["workspace"] == ("/main/lab", Reference(MAIN))
+    assert structure("percept_type", atom("obs_ev")) in signal.annotations
+
+
+def test_the_reference_to_an_artifact_is_always_the_same() -> None:
+    write = writer()
+    first, second = [
+        write.percepts(Observation(LAMP, added=(observable("on", i),)))[0].annotations for i in (1, 2)
+    ]
+    assert first is second
+
+
+def test_annotations_of_the_property_are_added() -> None:
+    marked = observable("on", annotations=(Structure("unit", (Atom("volt"),)), Atom("a")))
+    (percept,) = writer().percepts(Observation(LAMP, added=(marked,)))
+    assert atom("a") in percept.annotations
+    assert structure("unit", atom("volt")) in percept.annotations
+    assert percept.annotations == annotation_set(percept.annotations)
+
+
+def test_percepts_go_to_the_namespace_of_the_focus() -> None:
+    assert lines(Observation(LAMP, added=(observable("on", 1),)), "lab") == ["add lab::on(1)"]
+
+
+def test_a_missing_value_is_the_atom_null() -> None:
+    assert lines(Observation(LAMP, added=(observable("pose", None, [1, None]),))) == [
+        "add pose(null,[1,null])"
+    ]
+
+
+def test_a_percept_carries_the_cause_of_its_observation() -> None:
+    why = cause("sample", "odom")
+    assert writer().percepts(Observation(LAMP, added=(observable("on"),), cause=why))[0].cause is why
+
+
+def test_percepts_about_the_body_have_no_artifact() -> None:
+    percept = writer().own("add", "joinedWsp", Reference(MAIN), atom("main"))
+    assert [text(a) for a in percept.annotations] == ["percept_type(obs_prop)", "source(percept)"]

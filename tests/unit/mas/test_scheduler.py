@@ -1,0 +1,132 @@
+"""Turns of the agents."""
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.errors import InternalError
+from jacaros.mas.scheduler import Scheduler
+
+
+class Worker:
+    """Makes a given number of cycles and notes its turns."""
+
+    def __init__(self, name: str, cycles: int, log: list[str]) -> None:
+        self.ready = False
+        self.name, self.cycles, self.log = name, cycles, log
+
+    def run(self, fuel: int) -> bool:
+        self.log.append(self.name)
+        self.cycles -= min(fuel, self.cycles)
+        return self.cycles > 0
+
+
+def test_ready_agents_take_turns_first_come_first_served() -> None:
+    log: list[str] = []
+    clock = VirtualClock()
+
+    async def main() -> None:
+        scheduler = Scheduler(clock)
+        for name, cycles in (("a", 120), ("b", 10), ("c", 60)):
+            scheduler.make_ready(Worker(name, cycles, log))
+        await clock.sleep(1)
+
+    run(main, clock)
+    assert log == ["a", "b", "c", "a", "c", "a"]
+
+
+def test_an_agent_is_queued_once() -> None:
+    log: list[str] = []
+    clock = VirtualClock()
+
+    async def main() -> None:
+        scheduler = Scheduler(clock)
+        worker = Worker("a", 1, log)
+        scheduler.make_ready(worker)
+        scheduler.make_ready(worker)
+        assert not scheduler.idle
+        await clock.sleep(1)
+        assert scheduler.idle
+
+    run(main, clock)
+    assert log == ["a"]
+
+
+def test_endless_cycles_let_timers_and_virtual_time_go_on() -> None:
+    clock = VirtualClock()
+    endless = Worker("a", 10**9, [])
+
+    async def main() -> float:
+        scheduler = Scheduler(clock)
+        scheduler.make_ready(endless)
+        await clock.sleep(0.01)
+        scheduler.stop()
+        return clock.elapsed
+
+    assert run(main, clock) == pytest.approx(0.01)
+    assert 10**9 - endless.cycles >= 10 * VirtualClock.CYCLES_PER_MILLISECOND
+
+
+def test_short_turns_without_end_move_virtual_time_too() -> None:
+    clock = VirtualClock()
+
+    class Chatter(Worker):
+        def run(self, fuel: int) -> bool:
+            scheduler.make_ready(self)
+            return False
+
+    scheduler = Scheduler(clock)
+
+    async def main() -> None:
+        scheduler.make_ready(Chatter("a", 1, []))
+        await clock.sleep(0.002)
+        scheduler.stop()
+
+    run(main, clock)
+    assert clock.elapsed >= 0.002
+
+
+def test_idleness_is_told_when_the_last_agent_is_done() -> None:
+    clock = VirtualClock()
+    told: list[float] = []
+
+    async def main() -> None:
+        scheduler = Scheduler(clock, on_idle=lambda: told.append(clock.elapsed))
+        scheduler.make_ready(Worker("a", 200, []))
+        await clock.sleep(1)
+
+    run(main, clock)
+    assert len(told) == 1
+
+
+def test_what_escapes_from_an_agent_ends_all_turns() -> None:
+    clock = VirtualClock()
+    errors: list[BaseException] = []
+    log: list[str] = []
+
+    class Broken(Worker):
+        def run(self, fuel: int) -> bool:
+            raise InternalError("broken")
+
+    async def main() -> None:
+        scheduler = Scheduler(clock, on_error=errors.append)
+        scheduler.make_ready(Broken("a", 1, []))
+        scheduler.make_ready(Worker("b", 1, log))
+        await clock.sleep(1)
+
+    run(main, clock)
+    assert [str(e) for e in errors] == ["broken"]
+    assert log == []
+
+
+def test_nobody_becomes_ready_after_the_stop() -> None:
+    clock = VirtualClock()
+    log: list[str] = []
+
+    async def main() -> None:
+        scheduler = Scheduler(clock)
+        scheduler.stop()
+        scheduler.make_ready(Worker("a", 1, log))
+        await clock.sleep(1)
+
+    run(main, clock)
+    assert log == []
