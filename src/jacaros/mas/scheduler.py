@@ -14,7 +14,7 @@ from jacaros.clock import Clock
 class Runnable(Protocol):
     """An agent as the scheduler sees it."""
 
-    ready: bool
+    queued: bool
     """True while it stands in the queue; kept by the scheduler."""
 
     def run(self, fuel: int) -> bool:
@@ -56,9 +56,9 @@ class Scheduler:
 
     def make_ready(self, agent: Runnable) -> None:
         """Let *agent* have a turn soon; nothing happens when it already waits for one."""
-        if agent.ready or self._stopped:
+        if agent.queued or self._stopped:
             return
-        agent.ready = True
+        agent.queued = True
         self._queue.append(agent)
         self._call_soon()
 
@@ -82,13 +82,13 @@ class Scheduler:
         try:
             while queue and left > 0:
                 agent = queue.popleft()
-                agent.ready = False
+                agent.queued = False
                 more = agent.run(self.QUANTUM)
                 spent = self.QUANTUM if more else 1
                 left -= spent
                 self._clock.busy(spent)
-                if more and not agent.ready and not self._stopped:
-                    agent.ready = True
+                if more and not agent.queued and not self._stopped:
+                    agent.queued = True
                     queue.append(agent)
         except Exception as error:
             self._report(error)

@@ -11,7 +11,7 @@ class Worker:
     """Makes a given number of cycles and notes its turns."""
 
     def __init__(self, name: str, cycles: int, log: list[str]) -> None:
-        self.ready = False
+        self.queued = False
         self.name, self.cycles, self.log = name, cycles, log
 
     def run(self, fuel: int) -> bool:

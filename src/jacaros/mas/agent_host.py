@@ -1,0 +1,196 @@
+"""What stands between one mind and its run: Jason's agent architecture."""
+
+from collections.abc import Callable, Sequence
+from random import Random
+from typing import Protocol
+
+from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.bdi.architecture import Timer
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.clock import Clock
+from jacaros.mas.activity import Activity, AgentTimer
+from jacaros.mas.console import Console
+from jacaros.mas.scheduler import Scheduler
+from jacaros.terms.values import String, atom, functor
+
+_ERROR_MSG = functor("error_msg", 1)
+_REASON = functor("env_failure_reason", 1)
+
+
+class Mind(Protocol):
+    """An agent as its host sees it (`jacaros.bdi.agent.Agent`)."""
+
+    def run(self, fuel: int) -> bool:
+        """Make reasoning cycles; True when there is more to do."""
+
+    def receive(self, message: SpeechAct) -> None:
+        """Take a message in."""
+
+    def perceive(self, percepts: list[Percept]) -> None:
+        """Take percepts in."""
+
+    def complete(self, act_id: int, completion: Completion) -> None:
+        """Be told the end of an action."""
+
+
+class Body(Protocol):
+    """What carries out the actions of an agent (`jacaros.body.body.AgentBody`)."""
+
+    def act(self, act: Act) -> None:
+        """Begin an action."""
+
+    def cancel_act(self, act_id: int) -> None:
+        """Give an action up."""
+
+    def suspend_act(self, act_id: int) -> None:
+        """Pause the operation of an action, if it can be paused."""
+
+    def resume_act(self, act_id: int) -> None:
+        """Let it go on."""
+
+    def close(self) -> None:
+        """Give all actions and focused artifacts up."""
+
+
+class Run(Protocol):
+    """What a host asks of the run that its agent belongs to."""
+
+    clock: Clock
+    scheduler: Scheduler
+    activity: Activity
+    console: Console
+
+    def deliver(self, message: SpeechAct) -> bool:
+        """Bring a message to its receiver; False when there is none."""
+
+    def agent_names(self) -> Sequence[str]:
+        """Names of all agents, in the order of their making."""
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        """End the run after *delay* seconds."""
+
+    def create_agent(self, name: str, source: str | None) -> str | None:
+        """Make and start an agent; its final name, or None with the reason logged."""
+
+    def kill_agent(self, name: str) -> bool:
+        """End an agent; False when there is none of that name."""
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        """Name and text of a program file."""
+
+
+class AgentHost:
+    """Runs one mind, and is its `jacaros.bdi.architecture.Architecture`.
+
+    Args:
+        name: of the agent.
+        run: the run that it belongs to.
+        random: the agent's own generator.
+
+    Attributes:
+        queued: True while it waits for a turn; kept by the scheduler.
+        mind: set before the first turn.
+        body: None in a project without environment.
+    """
+
+    mind: Mind
+
+    def __init__(self, name: str, run: Run, random: Random) -> None:
+        self.name = name
+        self.random = random
+        self.queued = False
+        self.body: Body | None = None
+        self._run = run
+        self._ended = False
+
+    def run(self, fuel: int) -> bool:
+        """Let the mind make up to *fuel* cycles; True when there is more to do."""
+        return not self._ended and self.mind.run(fuel)
+
+    def end(self) -> None:
+        """Let nothing come in or go out any more."""
+        self._ended = True
+        if self.body is not None:
+            self.body.close()
+
+    def receive(self, message: SpeechAct) -> None:
+        """Hand a message to the mind."""
+        self.mind.receive(message)
+
+    # From here on, the port `jacaros.bdi.architecture.Architecture`.
+
+    def now(self) -> float:
+        """Seconds since the Unix epoch on the run's clock."""
+        return self._run.clock.now()
+
+    def ready(self) -> None:
+        """The mind has something to do."""
+        self._run.scheduler.make_ready(self)
+
+    def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* after *delay* seconds."""
+        return AgentTimer(self._run.clock, self._run.activity, delay, callback)
+
+    def act(self, act: Act) -> None:
+        """Begin an external action; without an environment it fails at once."""
+        if self.body is not None:
+            self.body.act(act)
+        else:
+            self.mind.complete(act.id, without_environment(act))
+
+    def cancel_act(self, act_id: int) -> None:
+        """The intention behind an act was dropped."""
+        if self.body is not None:
+            self.body.cancel_act(act_id)
+
+    def suspend_act(self, act_id: int) -> None:
+        """The intention behind an act was suspended."""
+        if self.body is not None:
+            self.body.suspend_act(act_id)
+
+    def resume_act(self, act_id: int) -> None:
+        """The intention behind an act was resumed."""
+        if self.body is not None:
+            self.body.resume_act(act_id)
+
+    def send(self, message: SpeechAct) -> bool:
+        """Deliver a message; False when there is no such agent."""
+        return self._run.deliver(message)
+
+    def agent_names(self) -> Sequence[str]:
+        """Names of all agents, in the order of their making."""
+        return self._run.agent_names()
+
+    def print(self, text: str) -> None:
+        """Show a line of the program's output."""
+        self._run.console.print(self.name, text)
+
+    def log(self, level: str, text: str) -> None:
+        """Tell people about trouble."""
+        self._run.console.log(f"[{self.name}] {level}: {text}", level)
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        """End the run after *delay* seconds."""
+        self._run.stop_system(delay, exit_code)
+
+    def create_agent(self, name: str, source: str | None) -> str | None:
+        """Make an agent."""
+        return self._run.create_agent(name, source)
+
+    def kill_agent(self, name: str) -> bool:
+        """End another agent."""
+        return self._run.kill_agent(name)
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        """Name and text of a program file."""
+        return self._run.read_program(path)
+
+
+def without_environment(act: Act) -> Completion:
+    """How an action ends in a project that has no environment."""
+    text = (
+        f"nobody can do {act.functor!r}: the project has no environment "
+        "(a line `environment: jacaros.Environment` in the project file gives it one)"
+    )
+    reason = (_REASON, atom("no_environment"))
+    return Completion(False, (), ((_ERROR_MSG, String(text)), reason))
