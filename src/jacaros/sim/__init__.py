@@ -2,8 +2,23 @@
 
 from jacaros.sim.description import WorldDescription
 from jacaros.sim.errors import WorldError
-from jacaros.sim.ground_truth import GroundTruth
+from jacaros.sim.ground_truth import Event, GroundTruth, Sample
+from jacaros.sim.node import SimNode
+from jacaros.sim.process import serve
+from jacaros.sim.robot_node import RobotNode
 from jacaros.sim.world import World
 from jacaros.sim.world_file import read_world, shipped_worlds
 
-__all__ = ["GroundTruth", "World", "WorldDescription", "WorldError", "read_world", "shipped_worlds"]
+__all__ = [
+    "Event",
+    "GroundTruth",
+    "RobotNode",
+    "Sample",
+    "SimNode",
+    "World",
+    "WorldDescription",
+    "WorldError",
+    "read_world",
+    "serve",
+    "shipped_worlds",
+]

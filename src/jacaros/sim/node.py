@@ -1,0 +1,62 @@
+"""The world as a ROS node: all its robots over any backend, in the time of any clock."""
+
+from jacaros.clock import Clock, Timer
+from jacaros.ros.backend import Backend
+from jacaros.sim.robot_node import TICKS_PER_SECOND, RobotNode
+from jacaros.sim.world import World
+from jacaros.sim.world_time import WorldTime
+
+
+class SimNode:
+    """Runs a world on a clock and a ROS graph; agents reach it over topics only.
+
+    Args:
+        world: the world; its time goes on from where it is.
+        backend: the graph; it must be started before `start`, and is not closed by `close`.
+        clock: the clock that the world follows.
+    """
+
+    def __init__(self, world: World, backend: Backend, clock: Clock) -> None:
+        self.world, self.backend, self.clock = world, backend, clock
+        self.time = WorldTime(world, clock)
+        self.robots: list[RobotNode] = []
+        self._timer: Timer | None = None
+        self._ticks = 0
+
+    def start(self) -> None:
+        """Join the graph and let the time of the world run, from now on.
+
+        Raises:
+            RosError: the backend is not started, or a namespace or message type does not suit it.
+        """
+        self.time = WorldTime(self.world, self.clock)
+        self.robots = [RobotNode(self.time, robot, self.backend) for robot in self.world.robots.values()]
+        self._ticks = 0
+        self._wait_for_tick()
+
+    def _wait_for_tick(self) -> None:
+        period = 1.0 / TICKS_PER_SECOND
+        self._ticks += 1
+        if self.clock.virtual:
+            delay = period
+        else:
+            # From the start, not from the last tick: delays of the loop must not add up.
+            due = self.time.epoch + self._ticks * period
+            delay = max(0.0, due - self.clock.now())
+        self._timer = self.clock.call_later(delay, self._tick)
+
+    def _tick(self) -> None:
+        self._wait_for_tick()
+        self.time.catch_up()
+        for robot in self.robots:
+            robot.publish()
+
+    def close(self) -> None:
+        """Stop the world where it is and leave the graph."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+            self.time.catch_up()
+        for robot in self.robots:
+            robot.close()
+        self.robots = []

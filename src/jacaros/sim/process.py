@@ -1,0 +1,92 @@
+"""The world as a process of its own on a ROS graph, with a file of what truly happens in it."""
+
+import asyncio
+import json
+import signal
+from pathlib import Path
+from types import TracebackType
+
+from jacaros.clock import Clock
+from jacaros.ros.backend import Backend
+from jacaros.sim.ground_truth import Record, header
+from jacaros.sim.node import SimNode
+from jacaros.sim.world import World
+
+_SIGNALS = (signal.SIGTERM, signal.SIGINT)
+
+
+class GroundTruthFile:
+    """Writes the ground truth of a world as JSON lines while it runs; every line is flushed at once.
+
+    A context manager; the file ends with an ``end`` record when the world was stopped in good order.
+    """
+
+    def __init__(self, path: str | Path, world: World, epoch: float) -> None:
+        self._world = world
+        self._file = Path(path).open("w", encoding="utf-8")  # noqa: SIM115 - closed in __exit__
+        truth = world.ground_truth
+        self._write(header(truth.world, world.description.seed, epoch))
+        for robot in truth.robots:
+            self._write({"kind": "sample", "robot": robot, **truth.latest(robot)._asdict()})
+        self._stop_listening = truth.listen(self._write)
+
+    def _write(self, record: Record) -> None:
+        self._file.write(json.dumps(record) + "\n")
+        self._file.flush()
+
+    def __enter__(self) -> "GroundTruthFile":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop_listening()
+        truth = self._world.ground_truth
+        for robot in truth.robots:
+            self._write({"kind": "sample", "robot": robot, **truth.latest(robot)._asdict()})
+        self._write({"kind": "end", "time": self._world.time})
+        self._file.close()
+
+
+async def serve(
+    world: World,
+    backend: Backend,
+    clock: Clock,
+    duration: float | None = None,
+    ground_truth_path: str | Path | None = None,
+) -> None:
+    """Run *world* as a node of its own until SIGTERM or SIGINT, or for *duration* seconds of the clock.
+
+    Args:
+        world: the world.
+        backend: a backend of its own; it is started and closed here.
+        clock: the clock that the world follows.
+        duration: seconds, or None for no end.
+        ground_truth_path: file to write; `jacaros.sim.ground_truth.GroundTruth.read` reads it.
+
+    Raises:
+        OSError: the file cannot be written.
+        RosError: the backend refuses a name or a type.
+    """
+    stop = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in _SIGNALS:
+        loop.add_signal_handler(number, stop.set)
+    timer = clock.call_later(duration, stop.set) if duration is not None else None
+    node = SimNode(world, backend, clock)
+    try:
+        await backend.start()
+        node.start()
+        if ground_truth_path is None:
+            await stop.wait()
+        else:
+            with GroundTruthFile(ground_truth_path, world, node.time.epoch):
+                await stop.wait()
+                node.close()
+    finally:
+        if timer is not None:
+            timer.cancel()
+        node.close()
+        await backend.close()
+        for number in _SIGNALS:
+            loop.remove_signal_handler(number)

@@ -1,0 +1,37 @@
+"""Joins a world to a clock: whenever somebody looks, the world makes all steps that are due."""
+
+import math
+
+from jacaros.clock import Clock
+from jacaros.sim.world import STEP, World
+
+_NEARLY = 1e-3
+"""Part of a step by which a float's error may make a step seem not yet due."""
+
+
+class WorldTime:
+    """The time of a world on a clock.
+
+    A world cannot be seen but through its messages, so it is stepped just before something is published or
+    commanded, several steps of 20 ms at once: a command applies at the first step after the moment it came,
+    exactly as if the steps had been made one by one, and a virtual run need not stop fifty times a second.
+
+    Attributes:
+        world: the world.
+        clock: the clock.
+        epoch: the clock's time at which the world's time was 0, in seconds.
+    """
+
+    def __init__(self, world: World, clock: Clock) -> None:
+        self.world, self.clock = world, clock
+        self.epoch = clock.now() - world.time
+
+    def catch_up(self) -> None:
+        """Make all steps that are due now."""
+        due = math.floor((self.clock.now() - self.epoch) / STEP + _NEARLY) - round(self.world.time / STEP)
+        for _ in range(due):
+            self.world.step()
+
+    def now(self) -> float:
+        """When the present state of the world was, on the clock (seconds): the stamp of its messages."""
+        return self.epoch + self.world.time
