@@ -291,9 +291,20 @@ class Rule(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class RegisteredFunction(Node):
+    """``{ register_function("name.x", Arity, "rule") }``: the rule (or internal action) *implementation*, which has
+    one argument more for the result, may be called as the arithmetic function *name*."""
+
+    name: str
+    arity: int
+    implementation: str
+
+
+@dataclass(frozen=True, slots=True)
 class Program:
     """One agent program with its includes already in place, in source order per kind."""
 
     beliefs: tuple[Literal | Rule, ...] = ()
     goals: tuple[Literal, ...] = ()
     plans: tuple[Plan, ...] = ()
+    functions: tuple[RegisteredFunction, ...] = ()

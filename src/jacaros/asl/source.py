@@ -28,5 +28,5 @@ class SourceFile:
 
     @cached_property
     def lines(self) -> tuple[str, ...]:
-        """The lines without their ends."""
-        return tuple(self.text.splitlines())
+        """The lines without their ends; only a line feed (after an optional carriage return) ends a line."""
+        return tuple(line.removesuffix("\r") for line in self.text.split("\n"))

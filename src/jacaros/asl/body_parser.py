@@ -1,0 +1,254 @@
+"""Plan bodies: steps, control statements, forks and groups."""
+
+from typing import Final
+
+from jacaros.asl import nodes
+from jacaros.asl.lexer import Token
+from jacaros.asl.term_parser import TermParser
+
+_CONTROL: Final = frozenset({"if", "while", "for"})
+_STEP_STARTS: Final = _CONTROL | frozenset(
+    """atom variable number string true false not ! !! ? + - ~ :: ( [ { ^ else elif error""".split()
+)
+_CHANGES: Final = frozenset({"+", "-", "-+", "++", "--", "+<", "+>", "-++"})
+_FORMULA_AFTER_GROUP: Final = frozenset(
+    {"<", "<=", ">", ">=", "==", "\\==", "=", "=..", "*", "/", "**", "div", "mod", "&", "|"}
+)
+"""What shows that the round brackets before it held a formula and not a group of steps."""
+
+
+class BodyParser(TermParser):
+    """Reads what stands behind ``<-`` and in the braces of statements."""
+
+    def body(self) -> nodes.Body:
+        """Steps up to what cannot be part of a body; a last ``;`` is allowed."""
+        start = self.token
+        steps: list[nodes.Step] = []
+        while self.token.kind in _STEP_STARTS and not self.at_plan():
+            steps.extend(self._or_fork())
+            if not self._separator():
+                break
+        return nodes.Body(tuple(steps), span=self.span_from(start) if steps else self.span_of(start))
+
+    def _separator(self) -> bool:
+        """Take what stands between two steps; False at the end of the body."""
+        token = self.token
+        if token.kind == ";":
+            self.advance()
+            if self.token.kind == ";":
+                self.report("there is no step between the two ';'")
+                self.advance()
+            return True
+        if token.kind == ",":
+            self.report("steps are separated by ';', not by ','")
+            self.advance()
+            return True
+        if self._after_statement():
+            return True
+        if token.kind == "error" or token.kind not in _STEP_STARTS or self.at_plan() or self._at_subplans():
+            return False
+        message, hint = self._explain(token)
+        self.report(
+            message or "a ';' is missing before this step",
+            hint=hint or "steps are separated by ';', the last one is followed by '.'",
+        )
+        if message is not None:
+            return False
+        return True
+
+    def _after_statement(self) -> bool:
+        """Whether a control statement has just ended: behind it the ``;`` may be left out."""
+        return self._statement_end == self.index
+
+    _statement_end = -1
+
+    def _at_subplans(self) -> bool:
+        return self.token.kind == "{" and self.peek().kind in ("+", "-", "^", "@")
+
+    # forks and groups
+
+    def _or_fork(self) -> list[nodes.Step]:
+        return self._fork("|||", "or")
+
+    def _fork(self, symbol: str, operator: str) -> list[nodes.Step]:
+        """Branches joined by *symbol*; ``|&|`` binds tighter than ``|||``."""
+        start = self.token
+        steps = self._branch(symbol)
+        if self.token.kind != symbol:
+            return steps
+        branches = [self._as_body(start, steps)]
+        while self.accept(symbol):
+            start_of_branch = self.token
+            branches.append(self._as_body(start_of_branch, self._branch(symbol)))
+        return [nodes.Fork(operator, tuple(branches), span=self.span_from(start))]
+
+    def _branch(self, symbol: str) -> list[nodes.Step]:
+        return self._fork("|&|", "and") if symbol == "|||" else self._factor()
+
+    def _as_body(self, start: Token, steps: list[nodes.Step]) -> nodes.Body:
+        return nodes.Body(tuple(steps), span=self.span_from(start))
+
+    def _factor(self) -> list[nodes.Step]:
+        kind = self.token.kind
+        if kind in _CONTROL:
+            statement = self._statement()
+            self._statement_end = self.index
+            return [statement]
+        if kind == "(" and not self._brackets_hold_formula():
+            return self._group()
+        step = self._step()
+        return [] if step is None else [step]
+
+    def _group(self) -> list[nodes.Step]:
+        opener = self.advance()
+        self.enter()
+        group = self.body()
+        self.leave()
+        self.close(opener)
+        if not group.steps:
+            self.report("the brackets hold no step", self.span_of(opener))
+        return list(group.steps)
+
+    def _brackets_hold_formula(self) -> bool:
+        behind = self.tokens[self.after_brackets(self.index)]
+        return behind.kind in _FORMULA_AFTER_GROUP
+
+    # control statements
+
+    def _statement(self) -> nodes.Step:
+        start = self.advance()
+        self.enter()
+        condition = self._condition_of(start)
+        body = self._block(start)
+        step: nodes.Step
+        if start.kind == "while":
+            step = nodes.While(condition, body, span=self.span_from(start))
+        elif start.kind == "for":
+            step = nodes.For(condition, body, span=self.span_from(start))
+        else:
+            step = self._if(start, condition, body)
+        self.leave()
+        return step
+
+    def _if(self, start: Token, condition: nodes.Term, then: nodes.Body) -> nodes.If:
+        """The rest of an ``if``; the chain of ``elif`` is read in a loop and folded from its end."""
+        cases = [(start, condition, then)]
+        otherwise: nodes.Body | None = None
+        while self.token.kind in ("elif", "else"):
+            word = self.advance()
+            if word.kind == "else" and self.token.kind == "if":
+                self.report("'else if' is written elif", self.span_of(word), "elif (condition) { ... }")
+                self.advance()
+            elif word.kind == "else":
+                otherwise = self._block(word)
+                break
+            cases.append((word, self._condition_of(word), self._block(word)))
+        while True:
+            word, condition, then = cases.pop()
+            step = nodes.If(condition, then, otherwise, span=self.span_from(word))
+            if not cases:
+                return step
+            otherwise = nodes.Body((step,), span=step.span)
+
+    def _condition_of(self, word: Token) -> nodes.Term:
+        opener = self.token
+        if opener.kind != "(":
+            self.unexpected(f"'(' and the condition of '{word.kind}'")
+        self.advance()
+        condition = self.condition()
+        self.close(opener)
+        return condition
+
+    def _block(self, word: Token) -> nodes.Body:
+        opener = self.token
+        if opener.kind != "{":
+            self.unexpected(f"'{{' and the steps of '{word.kind}'")
+        self.advance()
+        body = self.body()
+        self.close(opener)
+        return body
+
+    # steps
+
+    def _step(self) -> nodes.Step | None:
+        """One simple step; None for ``true``, which does nothing."""
+        start = self.token
+        kind = start.kind
+        if kind in ("!", "!!"):
+            self.advance()
+            goal = self._goal()
+            return nodes.Achieve(goal, kind == "!!", span=self.span_from(start))
+        if kind == "?":
+            self.advance()
+            formula = self.condition()
+            return nodes.Test(formula, span=self.span_from(start))
+        if kind in ("+", "-", "^"):
+            return self._belief_change()
+        if kind in ("else", "elif"):
+            self.fail(f"'{kind}' without an 'if' before it", hint="'if' and 'else' are not separated by ';'")
+        return self._formula_step(self.expression())
+
+    def _goal(self) -> nodes.Literal | nodes.Variable:
+        if self.token.kind not in ("atom", "variable", "~", "::"):
+            self.unexpected("a goal")
+        goal = self.operand(formula=True)
+        if isinstance(goal, nodes.Literal | nodes.Variable):
+            return goal
+        self.fail("an internal action cannot be a goal", goal.span, "write it without '!'")
+
+    def _belief_change(self) -> nodes.BeliefChange:
+        start = self.advance()
+        operator = start.kind
+        while self.token.kind in ("+", "-", "<", ">") and self.token.column == self.previous().end:
+            operator += self.advance().kind
+        if operator not in _CHANGES:
+            self.fail(
+                f"there is no '{operator}'", self.span_from(start), "beliefs are changed by +b, -b and -+b"
+            )
+        if self.token.kind in ("!", "?", "!!"):
+            sign = self.token.kind
+            self.report(
+                f"'{operator}{sign}' begins a plan and is no step of a body",
+                self.span_from(start).to(self.span_of(self.token)),
+                f"a goal is posted by {sign}g, and dropped by .drop_desire(g)",
+            )
+            self.advance()
+        if self.token.kind not in ("atom", "variable", "~", "::", "{"):
+            self.unexpected("a belief")
+        operand = self.operand(formula=True)
+        if isinstance(operand, nodes.TriggerTerm):
+            plan = nodes.Plan(None, operand.trigger, None, nodes.Body(span=operand.span), span=operand.span)
+            operand = nodes.PlanTerm(plan, span=operand.span)
+        allowed = (nodes.Literal, nodes.Variable, nodes.PlanTerm, nodes.RuleTerm)
+        if not isinstance(operand, allowed):
+            self.report(f"'{operator}' needs a belief, a plan or a rule", operand.span)
+        return nodes.BeliefChange(operator, operand, span=self.span_from(start))
+
+    def _formula_step(self, term: nodes.Term) -> nodes.Step | None:
+        """An expression as a step: action, internal action, relation or variable."""
+        if isinstance(term, nodes.Literal):
+            if term.functor == "true" and term.span is not None and not term.arguments:
+                return None
+            return nodes.ExternalAction(term, span=term.span)
+        if isinstance(term, nodes.Relation | nodes.InternalAction):
+            return nodes.Constraint(term, span=term.span)
+        if isinstance(term, nodes.Variable):
+            return nodes.ExternalAction(term, span=term.span)
+        if isinstance(term, nodes.FunctionCall):
+            action = nodes.InternalAction(term.name, term.arguments, span=term.span)
+            return nodes.Constraint(action, span=term.span)
+        if isinstance(term, nodes.Not | nodes.And | nodes.Or):
+            return self._condition_as_action(term)
+        hint = "group steps with round brackets" if isinstance(term, nodes.BodyTerm) else None
+        self.fail("this is a term and no step of a body", term.span, hint)
+
+    def _condition_as_action(self, term: nodes.Not | nodes.And | nodes.Or) -> nodes.ExternalAction:
+        """A bare condition is an action of that name in the language; people mean a test."""
+        word = {nodes.Not: "not", nodes.And: "&", nodes.Or: "|"}[type(term)]
+        operands = (term.operand,) if isinstance(term, nodes.Not) else (term.left, term.right)
+        if term.span is not None:
+            hint = (
+                "to test the condition write ?(not f)" if word == "not" else f"to test it write ?(a {word} b)"
+            )
+            self.warn(f"'{word}' here is an action of the environment and no test", term.span, hint)
+        return nodes.ExternalAction(nodes.Literal(word, operands, span=term.span), span=term.span)

@@ -1,0 +1,225 @@
+"""The place of the parser in the tokens, and how it reports what is wrong there."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Final, NoReturn
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.lexer import RESERVED, Token
+from jacaros.asl.source import SourceFile, Span
+
+MAX_NESTING: Final = 150
+"""How deep brackets and statements may be nested: far more than people write, and safe for the call stack."""
+
+CLOSERS: Final = {"(": ")", "[": "]", "{": "}"}
+_MATCHING: Final = {closer: opener for opener, closer in CLOSERS.items()}
+
+
+class SyntaxPanic(Exception):
+    """The clause cannot be read any further; what is wrong has been reported."""
+
+
+@dataclass
+class Names:
+    """What all files of one program share: the numbers given out, and the functions that are registered."""
+
+    unnamed: Iterator[int]
+    labels: Iterator[int]
+    local_namespaces: Iterator[int]
+    functions: dict[str, int] = field(default_factory=dict)
+
+
+class Cursor:
+    """The tokens of one file and a place in them; collects the diagnostics."""
+
+    def __init__(self, file: SourceFile, tokens: list[Token], diagnostics: list[Diagnostic]) -> None:
+        self.file = file
+        self.tokens = tokens
+        self.diagnostics = diagnostics
+        self.index = 0
+        self.token = tokens[0]
+        self._nesting = 0
+
+    # places
+
+    def advance(self) -> Token:
+        """Take the current token (the last one, of kind ``end``, is never passed)."""
+        token = self.token
+        if token.kind != "end":
+            self.index += 1
+            self.token = self.tokens[self.index]
+        return token
+
+    def peek(self, distance: int = 1) -> Token:
+        """The token *distance* ahead."""
+        return self.tokens[min(self.index + distance, len(self.tokens) - 1)]
+
+    def previous(self) -> Token:
+        """The token before the current one."""
+        return self.tokens[max(self.index - 1, 0)]
+
+    def accept(self, kind: str) -> bool:
+        """Take the current token if it is of that *kind*."""
+        if self.token.kind != kind:
+            return False
+        self.advance()
+        return True
+
+    def span_of(self, token: Token) -> Span:
+        """The place of one token."""
+        return Span(self.file, token.line, token.column, token.line, token.end)
+
+    def span_from(self, start: Token) -> Span:
+        """The stretch from *start* to the token taken last."""
+        last = self.tokens[self.index - 1] if self.index else start
+        return Span(self.file, start.line, start.column, last.line, last.end)
+
+    # nesting
+
+    def enter(self) -> None:
+        """Go one level deeper into brackets or statements.  A clause that is given up leaves by `reset_nesting`."""
+        self._nesting += 1
+        if self._nesting > MAX_NESTING:
+            self.fail(
+                "this is nested too deeply",
+                hint=f"at most {MAX_NESTING} levels of brackets are read; give the inner part a name of its own",
+            )
+
+    def leave(self) -> None:
+        """Come back from one level."""
+        self._nesting -= 1
+
+    def reset_nesting(self) -> None:
+        """Back to the outermost level, for the next clause."""
+        self._nesting = 0
+
+    # reports
+
+    def report(self, message: str, span: Span | None = None, hint: str | None = None) -> None:
+        """Record an error; reading goes on."""
+        self.diagnostics.append(Diagnostic("error", message, span or self.span_of(self.token), hint))
+
+    def warn(self, message: str, span: Span, hint: str | None = None) -> None:
+        """Record a warning."""
+        self.diagnostics.append(Diagnostic("warning", message, span, hint))
+
+    def fail(self, message: str, span: Span | None = None, hint: str | None = None) -> NoReturn:
+        """Record an error and give up the clause.  Nothing is recorded at a token the lexer already reported."""
+        if self.token.kind != "error":
+            self.report(message, span, hint)
+        raise SyntaxPanic
+
+    def unexpected(self, wanted: str) -> NoReturn:
+        """The current token does not fit."""
+        token = self.token
+        if token.kind == "end":
+            self.fail(f"the file ends where {wanted} is expected")
+        message, hint = self._explain(token)
+        self.fail(message or f"{wanted} is expected, not '{token.text}'", hint=hint)
+
+    def _explain(self, token: Token) -> tuple[str | None, str | None]:
+        """A better message or hint for mistakes that are known from other languages."""
+        before = self.previous()
+        joined = before.line == token.line and before.end == token.column
+        pair = before.text + token.text if joined else ""
+        if token.kind in RESERVED:
+            return (
+                f"'{token.text}' is a reserved word and cannot be used here",
+                f"as an atom it is written between single quotes: '{token.text}'",
+            )
+        if pair in ("&&", "||"):
+            return f"there is no '{pair}'", f"'and' is &, 'or' is |: write one '{token.text}'"
+        if pair in ("=<", "=>", "->"):
+            return f"there is no '{pair}'", {"=<": "write <=", "=>": "write >=", "->": "write <-"}[pair]
+        following = self.peek()
+        if token.kind == "!" and following.kind in ("=", "==") and following.column == token.end:
+            return f"there is no '!{following.text}'", r"'not equal' is written \=="
+        if token.kind == "-" and following.kind == ">" and following.column == token.end:
+            return "there is no '->'", "the body of a plan begins with <-"
+        if (
+            token.kind == "atom"
+            and token.text.startswith(".")
+            and joined
+            and before.kind in (")", "]", "atom")
+        ):
+            return (
+                f"'{token.text}' is read as one word",
+                "put a blank or a line end after the final '.'",
+            )
+        return None, None
+
+    def close(self, opener: Token) -> None:
+        """Take the bracket that closes *opener*.  A wrong bracket is reported and taken for the right one."""
+        closer = CLOSERS[opener.kind]
+        token = self.token
+        if token.kind == closer:
+            self.advance()
+            return
+        where = f"it was opened at line {opener.line}, column {opener.column}"
+        if token.kind in _MATCHING:
+            self.report(
+                f"'{opener.kind}' is closed by '{token.kind}'", hint=f"{where}; close it with '{closer}'"
+            )
+            self.advance()
+            return
+        found = "the end of the file" if token.kind == "end" else f"'{token.text}'"
+        message, hint = self._explain(token)
+        self.fail(
+            message or f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
+            hint=hint or where,
+        )
+
+    # looking ahead
+
+    def after_brackets(self, index: int) -> int:
+        """The index behind the bracket that closes the one at *index* (or of the end of the file)."""
+        depth = 0
+        tokens = self.tokens
+        while tokens[index].kind != "end":
+            kind = tokens[index].kind
+            if kind in CLOSERS:
+                depth += 1
+            elif kind in _MATCHING:
+                depth -= 1
+                if depth == 0:
+                    return index + 1
+            index += 1
+        return index
+
+    def after_literal(self, index: int) -> int:
+        """The index behind the literal or variable at *index*, or *index* itself if there is none."""
+        tokens, start = self.tokens, index
+        if tokens[index].kind == "::":
+            index += 1
+        elif tokens[index].kind in ("atom", "variable") and tokens[index + 1].kind == "::":
+            index += 2
+        if tokens[index].kind == "~":
+            index += 1
+        if tokens[index].kind not in ("atom", "variable"):
+            return start
+        index += 1
+        for bracket in ("(", "["):
+            if tokens[index].kind == bracket:
+                index = self.after_brackets(index)
+        return index
+
+    def at_plan(self, index: int | None = None) -> bool:
+        """Whether a plan begins at *index*: a label, a goal trigger, or a belief trigger that goes on like a plan.
+
+        A belief trigger alone looks like a body step (``+b(X)``), so it needs a context, a goal condition or a
+        body behind it.
+        """
+        at = self.index if index is None else index
+        token = self.tokens[at]
+        if token.kind == "@":
+            return True
+        if token.kind not in ("+", "-", "^"):
+            return False
+        following = self.tokens[at + 1]
+        if following.kind in ("!", "?"):
+            return not self._spells_unequal(following, at + 1)
+        behind = self.after_literal(at + 1)
+        return behind > at + 1 and self.tokens[behind].kind in (":", "<-", "<:")
+
+    def _spells_unequal(self, token: Token, index: int) -> bool:
+        return token.kind == "!" and self.tokens[index + 1].kind == "="

@@ -1,0 +1,1 @@
+"""Directives: what `{ name(...) }` and `{ begin name(...) } ... { end }` do to the clauses of a program."""

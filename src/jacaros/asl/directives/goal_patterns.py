@@ -1,0 +1,119 @@
+"""Declarative goals: patterns that tie a goal to the belief that it is achieved."""
+
+from dataclasses import replace
+
+from jacaros.asl import nodes
+from jacaros.asl.directives.pattern import PatternCall, PatternError, achieves, on, with_plans
+from jacaros.asl.section import Section
+
+
+def declarative(call: PatternCall, section: Section) -> Section:
+    """``dg(g)``: the goal is achieved when, and only when, *g* is believed.
+
+    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g, and ``+g <- .succeed_goal(g)``.  The reference
+    also takes a goal that is already intended for achieved, which makes the retry of ``bdg`` and ``bc`` end at
+    once; ours does not.
+    """
+    call.at_most(1)
+    goal = call.literal(0, "the goal")
+    believed = call.plan(on("+!", goal), context=goal)
+    plans = [_tested(plan, call) if achieves(plan, goal) else plan for plan in section.plans]
+    succeed = call.plan(on("+", goal), call.internal(".succeed_goal", goal))
+    return with_plans(section, [believed], plans, [succeed])
+
+
+def backtracking(call: PatternCall, section: Section, possible: nodes.Term | None = None) -> Section:
+    """``bdg(g)``: a declarative goal that is tried again when a plan for it fails, as long as *possible* holds."""
+    goal = call.literal(0, "the goal")
+    inner = declarative(call, section)
+    retry = call.plan(on("-!", goal), call.achieve(goal), context=possible)
+    return with_plans(inner, [], inner.plans, [retry])
+
+
+def exclusive(call: PatternCall, section: Section) -> Section:
+    """``ebdg(g)``: a backtracking declarative goal for which each plan is tried at most once.
+
+    The plans that were tried are remembered in beliefs ``p__tried(Plan, g)``, which go when the goal ends.  When no
+    plan is left the goal fails (in the reference it is tried for ever).
+    """
+    goal = call.literal(0, "the goal")
+    plans: list[nodes.Plan] = []
+    for plan in section.plans:
+        plans.append(_tried_once(plan, len(plans), call) if achieves(plan, goal) else plan)
+    inner = declarative(call, replace(section, plans=plans))
+    forget = call.internal(".abolish", _tried(nodes.Variable("P__any", span=call.span), goal))
+    no_plan = nodes.Literal("error", (nodes.Literal("no_applicable"),), span=call.span)
+    exhausted = replace(goal, annotations=nodes.Annotations((no_plan,)))
+    message = nodes.Literal(
+        "error_msg", (nodes.String("all plans for the goal have been tried"),), span=call.span
+    )
+    give_up = call.plan(on("-!", exhausted), forget, call.internal(".fail", no_plan, message))
+    retry = call.plan(on("-!", goal), call.achieve(goal))
+    *others, succeed = inner.plans
+    assert isinstance(succeed.body, nodes.Body)
+    succeed = replace(succeed, body=replace(succeed.body, steps=(forget, *succeed.body.steps)))
+    return with_plans(inner, others, [succeed], [give_up, retry])
+
+
+def maintenance(call: PatternCall, section: Section) -> Section:
+    """``mg(g)`` or ``mg(g, pattern)``: *g*, which holds at first, is pursued again whenever it is lost.
+
+    With a second argument the plans for g are treated by that pattern.
+    """
+    call.at_most(2)
+    goal = call.literal(0, "the goal")
+    inner = section
+    if len(call.arguments) > 1:
+        inner = nested(call, section, 1)
+    pursue = call.plan(on("-", goal), call.achieve(goal))
+    return replace(with_plans(inner, [], inner.plans, [pursue]), beliefs=[*_initial(goal), *inner.beliefs])
+
+
+def nested(call: PatternCall, section: Section, index: int) -> Section:
+    """Apply the pattern that argument *index* names to the plans for the goal."""
+    name = call.literal(index, "the name of a pattern").functor
+    pattern = {"dg": declarative, "bdg": backtracking, "ebdg": exclusive}.get(name)
+    if pattern is None:
+        raise PatternError(f"'{name}' is no pattern for declarative goals", "use dg, bdg or ebdg")
+    return pattern(replace(call, name=name, arguments=call.arguments[:1]), section)
+
+
+def _initial(goal: nodes.Literal) -> list[nodes.Literal]:
+    """The belief that the goal holds, unless it has variables."""
+    stack: list[nodes.Term] = list(goal.arguments)
+    while stack:
+        term = stack.pop()
+        if isinstance(term, nodes.Variable):
+            return []
+        if isinstance(term, nodes.Literal):
+            stack.extend(term.arguments)
+        elif isinstance(term, nodes.ListTerm):
+            stack.extend(term.items)
+    return [goal]
+
+
+def _tested(plan: nodes.Plan, call: PatternCall) -> nodes.Plan:
+    """*plan* with a last step that tests its own goal."""
+    assert isinstance(plan.body, nodes.Body)
+    test = nodes.Test(_own_goal(plan), span=call.span)
+    return replace(plan, body=replace(plan.body, steps=(*plan.body.steps, test)))
+
+
+def _tried_once(plan: nodes.Plan, index: int, call: PatternCall) -> nodes.Plan:
+    """*plan* for those goals only for which it has not been tried."""
+    assert isinstance(plan.body, nodes.Body)
+    mark = _tried(nodes.Number(float(index), span=call.span), _own_goal(plan))
+    untried: nodes.Term = nodes.Not(mark, span=call.span)
+    context = untried if plan.context is None else nodes.And(untried, plan.context, span=plan.context.span)
+    steps = (call.change("+", mark), *plan.body.steps)
+    return replace(plan, context=context, body=replace(plan.body, steps=steps))
+
+
+def _own_goal(plan: nodes.Plan) -> nodes.Literal:
+    """The goal of a plan with the plan's own variables, without annotations."""
+    assert isinstance(plan.trigger.literal, nodes.Literal)
+    return replace(plan.trigger.literal, annotations=None)
+
+
+def _tried(index: nodes.Term, goal: nodes.Literal) -> nodes.Literal:
+    return nodes.Literal("p__tried", (index, goal), span=goal.span)

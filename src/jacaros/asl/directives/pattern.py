@@ -1,0 +1,105 @@
+"""What the goal patterns have in common: their arguments, and the plans they are built of.
+
+A pattern is a function from the clauses of its block to the clauses that take their place.  Where the patterns of
+the reference interpreter are known to misbehave ours follow the idea of the pattern; each function says so.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from jacaros.asl import nodes
+from jacaros.asl.section import Section
+from jacaros.asl.source import Span
+
+TRUE = nodes.Literal("true")
+
+
+class PatternError(Exception):
+    """A pattern is used wrongly; the message and the hint are for people."""
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.hint = hint
+
+
+@dataclass(frozen=True)
+class PatternCall:
+    """One use of a pattern.
+
+    ``arguments`` belong to the namespace of the block, and their unnamed variables have got names, so that one
+    argument may be put into several places of one plan.  ``number`` differs for each use in a program;
+    ``parse_trigger`` and ``parse_formula`` read arguments given as text.
+    """
+
+    name: str
+    arguments: tuple[nodes.Term, ...]
+    span: Span | None
+    number: int
+    parse_trigger: Callable[[str], nodes.Trigger]
+    parse_formula: Callable[[str], nodes.Term]
+
+    def literal(self, index: int, what: str) -> nodes.Literal:
+        """The argument *index*, which has to be a literal."""
+        if index >= len(self.arguments):
+            raise PatternError(f"'{self.name}' needs {what} as argument {index + 1}")
+        argument = self.arguments[index]
+        if not isinstance(argument, nodes.Literal):
+            raise PatternError(f"argument {index + 1} of '{self.name}' is {what}, which is a literal")
+        return argument
+
+    def at_most(self, count: int) -> None:
+        """Refuse more than *count* arguments."""
+        if len(self.arguments) > count:
+            raise PatternError(f"'{self.name}' has at most {count} argument{'s' if count > 1 else ''}")
+
+    # parts of the plans that a pattern adds; all have the place of the directive
+
+    def plan(
+        self,
+        trigger: nodes.Trigger,
+        *steps: nodes.Step,
+        context: nodes.Term | None = None,
+    ) -> nodes.Plan:
+        """A plan without label."""
+        return nodes.Plan(None, trigger, context, nodes.Body(steps, span=self.span), span=self.span)
+
+    def achieve(self, goal: nodes.Literal, separate: bool = False) -> nodes.Step:
+        """``!goal`` or ``!!goal``."""
+        return nodes.Achieve(goal, separate, span=self.span)
+
+    def internal(self, name: str, *arguments: nodes.Term) -> nodes.Step:
+        """An internal action as a step."""
+        return nodes.Constraint(nodes.InternalAction(name, arguments, span=self.span), span=self.span)
+
+    def change(self, operator: str, belief: nodes.Literal) -> nodes.Step:
+        """``+belief``, ``-belief``, ``+>belief``."""
+        return nodes.BeliefChange(operator, belief, span=self.span)
+
+
+def on(event: str, literal: nodes.Literal) -> nodes.Trigger:
+    """A trigger: *event* is ``+!``, ``-!``, ``+`` or ``-``."""
+    return nodes.Trigger(event[0], event[1:], literal, span=literal.span)
+
+
+def same_goal(literal: nodes.Literal | nodes.Variable, goal: nodes.Literal) -> bool:
+    """Whether a plan's trigger *literal* is about *goal*: name, number of arguments, sign and namespace."""
+    return (
+        isinstance(literal, nodes.Literal)
+        and literal.functor == goal.functor
+        and len(literal.arguments) == len(goal.arguments)
+        and literal.negated == goal.negated
+        and literal.namespace == goal.namespace
+    )
+
+
+def achieves(plan: nodes.Plan, goal: nodes.Literal) -> bool:
+    """Whether *plan* is one for ``+!goal``."""
+    trigger = plan.trigger
+    return trigger.operator == "+" and trigger.kind == "!" and same_goal(trigger.literal, goal)
+
+
+def with_plans(
+    section: Section, before: list[nodes.Plan], plans: list[nodes.Plan], after: list[nodes.Plan]
+) -> Section:
+    """*section* with other plans."""
+    return replace(section, plans=[*before, *plans, *after])

@@ -1,0 +1,267 @@
+"""Carries out the directives of a program: includes, namespaces, functions and goal patterns."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from difflib import get_close_matches
+from itertools import count
+from typing import Final, TypeVar
+
+from jacaros.asl import nodes
+from jacaros.asl.cursor import Names, SyntaxPanic
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.directives.commitment import blind, open_minded, relativised, single_minded
+from jacaros.asl.directives.goal_patterns import backtracking, declarative, exclusive, maintenance
+from jacaros.asl.directives.libraries import is_known_library, is_library
+from jacaros.asl.directives.pattern import PatternCall, PatternError
+from jacaros.asl.directives.sequenced import sequenced
+from jacaros.asl.namespaces import Namespaces
+from jacaros.asl.plan_parser import PlanParser
+from jacaros.asl.program_parser import ProgramParser
+from jacaros.asl.section import Section
+from jacaros.asl.source import SourceFile, Span
+
+Read = Callable[[str, str], tuple[str, str]]
+"""``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError."""
+
+PATTERNS: Final[dict[str, Callable[[PatternCall, Section], Section]]] = {
+    "dg": declarative,
+    "bdg": backtracking,
+    "ebdg": exclusive,
+    "mg": maintenance,
+    "bc": blind,
+    "smc": single_minded,
+    "rc": relativised,
+    "omc": open_minded,
+    "sga": sequenced,
+}
+_Result = TypeVar("_Result")
+_SIMPLE: Final = ("include", "namespace", "register_function")
+_MAX_INCLUDES: Final = 40
+
+
+class DirectiveProcessor:
+    """The directives of one program with all its files."""
+
+    def __init__(self, read: Read | None, names: Names, diagnostics: list[Diagnostic]) -> None:
+        self._read = read
+        self._names = names
+        self._diagnostics = diagnostics
+        self._open_files: list[str] = []
+        self._pattern_numbers = count(1)
+
+    def read_file(self, file: SourceFile, namespaces: Namespaces | None = None) -> Section:
+        """All clauses of *file* and of what it includes."""
+        self._open_files.append(file.name)
+        section = ProgramParser(file, self._names, self._diagnostics, self, namespaces).file_clauses()
+        self._open_files.pop()
+        return section
+
+    def apply(self, parser: ProgramParser, directive: nodes.Literal, section: Section) -> None:
+        """Carry out a directive without a block."""
+        name = directive.functor
+        if name == "include":
+            section.extend(self._include(parser, directive))
+        elif name == "namespace":
+            parser.namespaces.current = self._namespace(parser, directive)
+        elif name == "register_function":
+            function = self._function(parser, directive)
+            if function is not None:
+                section.functions.append(function)
+        elif name in PATTERNS:
+            parser.report(
+                f"'{name}' needs a block", directive.span, f"{{ begin {name}(...) }} plans {{ end }}"
+            )
+        else:
+            parser.report(f"there is no directive '{name}'", directive.span, _meant(name))
+
+    def apply_to_block(self, parser: ProgramParser, directive: nodes.Literal, section: Section) -> None:
+        """Read the block of a directive and put what becomes of it into *section*."""
+        name = directive.functor
+        if name == "namespace":
+            outside = parser.namespaces.current
+            parser.namespaces.current = self._namespace(parser, directive)
+            section.extend(parser.block(directive))
+            parser.namespaces.current = outside
+            return
+        if name not in PATTERNS:
+            hint = f"write {{ {name}(...) }} without begin" if name in _SIMPLE else _meant(name)
+            parser.report(f"there is no directive '{name}' with a block", directive.span, hint)
+            section.extend(parser.block(directive))
+            return
+        block = parser.block(directive)
+        try:
+            section.extend(PATTERNS[name](self._call(parser, directive), block))
+        except PatternError as error:
+            parser.report(str(error), directive.span, error.hint)
+            section.extend(block)
+
+    # include
+
+    def _include(self, parser: ProgramParser, directive: nodes.Literal) -> Section:
+        arguments = directive.arguments
+        if not 1 <= len(arguments) <= 2 or not isinstance(arguments[0], nodes.String):
+            parser.report(
+                "'include' needs the name of a file as a string", directive.span, '{ include("file.asl") }'
+            )
+            return Section()
+        path = arguments[0].value
+        namespaces = Namespaces(parser.namespaces.current, dict(parser.namespaces.local))
+        if len(arguments) == 2:
+            namespaces.current = self._include_namespace(parser, arguments[1])
+        found = self._find(parser, path, directive)
+        if found is None:
+            return Section()
+        if found.name in self._open_files or len(self._open_files) > _MAX_INCLUDES:
+            parser.report(
+                f"'{path}' includes itself", directive.span, "files cannot include each other in a circle"
+            )
+            return Section()
+        return self.read_file(found, namespaces)
+
+    def _find(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> SourceFile | None:
+        """The included file; a library that is part of the system gives nothing."""
+        try:
+            if self._read is None:
+                raise FileNotFoundError(path)
+            name, text = self._read(path, parser.file.name)
+            return SourceFile(name, text)
+        except FileNotFoundError:
+            if is_known_library(path):
+                return None
+            if is_library(path):
+                parser.warn(f"the library '{path}' is not known; nothing is included", _place(directive))
+                return None
+            parser.report(
+                f"the included file '{path}' is not found",
+                directive.span,
+                f"it is looked for beside {parser.file.name} and in the source paths of the project",
+            )
+        except (OSError, UnicodeError) as error:
+            parser.report(f"the included file '{path}' cannot be read: {error}", directive.span)
+        return None
+
+    def _include_namespace(self, parser: ProgramParser, term: nodes.Term) -> str | None:
+        if isinstance(term, nodes.Literal) and not term.arguments:
+            return parser.namespaces.resolve(term.functor)
+        if isinstance(term, nodes.String):
+            return parser.namespaces.resolve(term.value)
+        if isinstance(term, nodes.Variable):
+            return f"{term.name}#{next(self._names.local_namespaces)}"
+        parser.report("the namespace of an include is an atom", term.span)
+        return None
+
+    # namespaces and functions
+
+    def _namespace(self, parser: ProgramParser, directive: nodes.Literal) -> str | None:
+        """The namespace that the directive puts in force."""
+        arguments = directive.arguments
+        names = [term.functor for term in arguments if isinstance(term, nodes.Literal) and not term.arguments]
+        if (
+            not 1 <= len(arguments) <= 2
+            or len(names) != len(arguments)
+            or names[1:] not in ([], ["local"], ["global"])
+        ):
+            parser.report(
+                "'namespace' needs an atom, and local or global if need be",
+                directive.span,
+                "as in { namespace(robot) } or { begin namespace(robot, local) }",
+            )
+            return parser.namespaces.current
+        name = names[0]
+        if names[1:] == ["local"] and name not in parser.namespaces.local:
+            # A name nobody can write, so that the namespace cannot be reached from outside.
+            parser.namespaces.local[name] = f"{name}#{next(self._names.local_namespaces)}"
+        return parser.namespaces.resolve(name)
+
+    def _function(self, parser: ProgramParser, directive: nodes.Literal) -> nodes.RegisteredFunction | None:
+        arguments = directive.arguments
+        if len(arguments) == 1 and isinstance(arguments[0], nodes.String):
+            parser.warn(
+                f"the function {arguments[0].value} is written in Java and not available",
+                _place(directive),
+                'a rule can be a function: { register_function("my.sum", 2, "sum") }',
+            )
+            return None
+        match arguments:
+            case (nodes.String(value=name), nodes.Number(value=arity), nodes.String(value=rule)):
+                if "." not in name.strip(".") or name.startswith("."):
+                    parser.report(
+                        f"the function name '{name}' must contain a dot and not begin with one",
+                        arguments[0].span,
+                        "as in my.sum",
+                    )
+                    return None
+                self._names.functions[name] = int(arity)
+                return nodes.RegisteredFunction(name, int(arity), rule, span=directive.span)
+        parser.report(
+            "'register_function' needs a name, a number of arguments and a rule",
+            directive.span,
+            '{ register_function("my.sum", 2, "sum") }',
+        )
+        return None
+
+    # patterns
+
+    def _call(self, parser: ProgramParser, directive: nodes.Literal) -> PatternCall:
+        def reader(text: str) -> PlanParser:
+            text_parser = PlanParser(SourceFile(f"'{text}'", text), self._names, [])
+            text_parser.namespaces = parser.namespaces
+            return text_parser
+
+        def parse_trigger(text: str) -> nodes.Trigger:
+            text_parser = reader(text)
+            return _parse_text(text_parser, text_parser.trigger, "trigger")
+
+        def parse_formula(text: str) -> nodes.Term:
+            text_parser = reader(text)
+            return _parse_text(text_parser, text_parser.condition, "condition")
+
+        arguments = tuple(
+            self._placed(parser.namespaces, _with_named_variables(argument))
+            for argument in directive.arguments
+        )
+        number = next(self._pattern_numbers)
+        return PatternCall(directive.functor, arguments, directive.span, number, parse_trigger, parse_formula)
+
+    def _placed(self, namespaces: Namespaces, argument: nodes.Term) -> nodes.Term:
+        """A goal or belief given to a pattern belongs to the namespace of the block."""
+        if isinstance(argument, nodes.Literal) and argument.namespace is None:
+            return replace(argument, namespace=namespaces.of_literal(argument.functor))
+        return argument
+
+
+def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _Result:
+    """What *read* makes of the whole text of *parser*; a wrong text is a wrong argument of the directive."""
+    try:
+        result = read()
+    except SyntaxPanic:
+        result = None
+    if result is None or parser.token.kind != "end" or parser.diagnostics:
+        reason = (
+            parser.diagnostics[0].message if parser.diagnostics else f"'{parser.token.text}' does not fit"
+        )
+        raise PatternError(f"{parser.file.name} is no {what}: {reason}")
+    return result
+
+
+def _with_named_variables(term: nodes.Term) -> nodes.Term:
+    """*term* with names for its unnamed variables, so that it means the same in several places of a plan."""
+    if isinstance(term, nodes.Variable) and term.unnamed:
+        return nodes.Variable(f"P_{term.name}", span=term.span)
+    if isinstance(term, nodes.Literal):
+        return replace(term, arguments=tuple(map(_with_named_variables, term.arguments)))
+    if isinstance(term, nodes.ListTerm):
+        tail = None if term.tail is None else _with_named_variables(term.tail)
+        return replace(term, items=tuple(map(_with_named_variables, term.items)), tail=tail)
+    return term
+
+
+def _meant(name: str) -> str | None:
+    close = get_close_matches(name, [*_SIMPLE, *PATTERNS], 1)
+    return f"did you mean '{close[0]}'?" if close else None
+
+
+def _place(directive: nodes.Literal) -> Span:
+    """The place of a directive, which the parser always gives."""
+    assert directive.span is not None
+    return directive.span

@@ -1,0 +1,54 @@
+"""Labels of plans: two different plans cannot share one."""
+
+from dataclasses import fields, is_dataclass
+
+from jacaros.asl import nodes
+from jacaros.asl.diagnostics import Diagnostic
+
+
+def check_labels(plans: list[nodes.Plan], diagnostics: list[Diagnostic]) -> None:
+    """Report labels that two different plans have; a repetition of one and the same plan is taken out of *plans*.
+
+    Repetitions come about when a file is included twice.
+    """
+    known: dict[tuple[object, str], nodes.Plan] = {}
+    repeated: list[int] = []
+    for index, plan in enumerate(plans):
+        if plan.subplans:
+            check_labels(list(plan.subplans), diagnostics)
+        if not isinstance(plan.label, nodes.Literal):
+            continue
+        first = known.setdefault((plan.label.namespace, plan.label.functor), plan)
+        if first is plan:
+            continue
+        if _shape(first) == _shape(plan):
+            repeated.append(index)
+        else:
+            diagnostics.append(_two_plans(first, plan))
+    for index in reversed(repeated):
+        del plans[index]
+
+
+def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
+    assert isinstance(second.label, nodes.Literal)
+    where = ""
+    if first.span is not None:
+        where = f"; the first one is at {first.span.file.name}, line {first.span.line}"
+    return Diagnostic(
+        "error",
+        f"two different plans have one label, @{second.label.functor}{where}",
+        second.label.span or second.span,
+        "give one of them another label",
+    )
+
+
+def _shape(node: object) -> object:
+    """The tree without places and without the numbers of unnamed variables, to be compared."""
+    if isinstance(node, nodes.Variable) and node.unnamed:
+        return "_"
+    if isinstance(node, tuple):
+        return tuple(_shape(part) for part in node)
+    if is_dataclass(node):
+        parts = (_shape(getattr(node, part.name)) for part in fields(node) if part.name != "span")
+        return (type(node).__name__, *parts)
+    return node

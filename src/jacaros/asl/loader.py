@@ -1,0 +1,188 @@
+"""Program texts to programs: the entry points of the front end."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from itertools import count
+from typing import TypeVar
+
+from jacaros.asl import nodes
+from jacaros.asl.cursor import Names, SyntaxPanic
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.directives.processor import DirectiveProcessor, Read
+from jacaros.asl.errors import AslError
+from jacaros.asl.labels import check_labels
+from jacaros.asl.plan_parser import PlanParser
+from jacaros.asl.source import SourceFile
+
+Result = TypeVar("Result")
+
+_run_time_names = Names(count(1_000_000), count(1_000_000), count(1_000_000))
+"""Numbers for what is read at run time, apart from those of programs."""
+
+
+def load_program(name: str, text: str, read: Read | None = None) -> tuple[nodes.Program, list[Diagnostic]]:
+    """The program in *text*, with its includes, and the warnings.
+
+    Parameters
+    ----------
+    name: what diagnostics call the file; also given to *read* as the including file.
+    text: the AgentSpeak source.
+    read: ``read(path, including_name) -> (name, text)`` finds an included file; raises FileNotFoundError.
+
+    Raises
+    ------
+    AslError: with all errors of all files.
+
+    """
+    diagnostics: list[Diagnostic] = []
+    names = Names(count(1), count(1), count(1))
+    processor = DirectiveProcessor(read, names, diagnostics)
+    section = processor.read_file(SourceFile(name, text))
+    check_labels(section.plans, diagnostics)
+    return section.program(), _settled(diagnostics)
+
+
+def parse_term(text: str, name: str = "<string>", functions: Mapping[str, int] | None = None) -> nodes.Term:
+    """The term in *text*; a final '.' is allowed.
+
+    *functions* are the registered arithmetic functions with their numbers of arguments.  Unnamed variables get
+    numbers that no program has.
+
+    Raises
+    ------
+    AslError: if the text is no term.
+
+    """
+    return _parse(text, name, functions, PlanParser.expression)
+
+
+def parse_formula(
+    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
+) -> nodes.Term:
+    """The condition in *text*; as `parse_term`."""
+    return _parse(text, name, functions, PlanParser.condition)
+
+
+def parse_literal(
+    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
+) -> nodes.Literal:
+    """The literal in *text*; as `parse_term`."""
+
+    def literal(parser: PlanParser) -> nodes.Literal:
+        start = parser.token
+        term = parser.operand(formula=True)
+        if not isinstance(term, nodes.Literal):
+            parser.fail("a literal is expected", parser.span_from(start))
+        return term
+
+    return _parse(text, name, functions, literal)
+
+
+def parse_trigger(
+    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
+) -> nodes.Trigger:
+    """The trigger in *text* (``+!g(X)``); as `parse_term`."""
+    return _parse(text, name, functions, PlanParser.trigger)
+
+
+def parse_plan(text: str, name: str = "<string>", functions: Mapping[str, int] | None = None) -> nodes.Plan:
+    """The one plan in *text*, with or without its final '.' and with or without braces around it.
+
+    Raises
+    ------
+    AslError: if the text is no plan.
+
+    """
+
+    def plan(parser: PlanParser) -> nodes.Plan:
+        if parser.token.kind != "{":
+            return parser.plan()
+        start = parser.token
+        term = parser.braces()
+        if not isinstance(term, nodes.PlanTerm):
+            parser.fail("a plan is expected", parser.span_from(start))
+        return term.plan
+
+    return _parse(text, name, functions, plan)
+
+
+def parse_plans(text: str, name: str = "<string>") -> tuple[nodes.Plan, ...]:
+    """The plans in *text*, each with its final '.' (the last one may lack it).
+
+    Raises
+    ------
+    AslError: with all errors, also when the text holds beliefs or goals.
+
+    """
+    diagnostics: list[Diagnostic] = []
+    if not text.rstrip().endswith((".", "}")):
+        text = f"{text}\n."
+    section = DirectiveProcessor(None, _run_time_names, diagnostics).read_file(SourceFile(name, text))
+    for clause in (*section.beliefs, *section.goals):
+        diagnostics.append(Diagnostic("error", "only plans are expected", clause.span))
+    _settled(diagnostics)
+    return tuple(section.plans)
+
+
+def parse_literals(text: str, name: str = "<string>") -> tuple[nodes.Literal, ...]:
+    """The literals in *text*, with ',' between them, as in the options of project files.
+
+    Raises
+    ------
+    AslError: if the text is anything else.
+
+    """
+
+    def literals(parser: PlanParser) -> tuple[nodes.Literal, ...]:
+        found = []
+        while parser.token.kind != "end":
+            start = parser.token
+            parser.accept("!")
+            term = parser.operand(formula=True)
+            if not isinstance(term, nodes.Literal):
+                parser.fail("a literal is expected", parser.span_from(start))
+            found.append(term)
+            if not (parser.accept(",") or parser.accept(".") or parser.accept(";")):
+                break
+        return tuple(found)
+
+    return _parse(text, name, None, literals)
+
+
+def _parse(
+    text: str, name: str, functions: Mapping[str, int] | None, read: Callable[[PlanParser], Result]
+) -> Result:
+    """What *read* makes of the whole of *text*."""
+    diagnostics: list[Diagnostic] = []
+    names = replace(_run_time_names, functions=dict(functions or {}))
+    parser = PlanParser(SourceFile(name, text), names, diagnostics)
+    result: Result | None = None
+    try:
+        result = read(parser)
+        parser.accept(".")
+        if parser.token.kind != "end":
+            parser.unexpected("the end")
+    except SyntaxPanic:
+        pass
+    except RecursionError:
+        parser.report("this is nested too deeply")
+    _settled(diagnostics)
+    assert result is not None
+    return result
+
+
+def _settled(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """The warnings, if there is no error; everything in the order of the text, file by file."""
+    files: dict[str, int] = {}
+    for diagnostic in diagnostics:
+        if diagnostic.span is not None:
+            files.setdefault(diagnostic.span.file.name, len(files))
+
+    def place(diagnostic: Diagnostic) -> tuple[int, int, int]:
+        span = diagnostic.span
+        return (-1, 0, 0) if span is None else (files[span.file.name], span.line, span.column)
+
+    ordered = sorted(diagnostics, key=place)
+    if any(diagnostic.severity == "error" for diagnostic in ordered):
+        raise AslError(ordered)
+    return ordered

@@ -1,0 +1,141 @@
+"""Plans, triggers, rules, and the terms in braces that hold them."""
+
+from dataclasses import replace
+
+from jacaros.asl import nodes
+from jacaros.asl.body_parser import BodyParser
+
+
+class PlanParser(BodyParser):
+    """Reads plans and all that may stand in braces."""
+
+    def plan(self, as_term: bool = False) -> nodes.Plan:
+        """A plan up to its final '.', which is not taken.
+
+        *as_term*: the plan stands in braces, where label, context and body may be variables.
+        """
+        start = self.token
+        label = self._label(as_term) if start.kind == "@" else None
+        trigger = self.trigger()
+        context = self._context()
+        goal_condition = self._part("goal condition") if self.token.kind == "<:" else None
+        body = self._plan_body()
+        inner: nodes.Body | nodes.Variable = body
+        if as_term and len(body.steps) == 1:
+            inner = _body_variable(body.steps[0]) or body
+        return nodes.Plan(label, trigger, context, inner, goal_condition, span=self.span_from(start))
+
+    def trigger(self) -> nodes.Trigger:
+        """``+!g(X)``, ``-b``, ``^!g[state(S)]``, with a variable instead of the literal, too."""
+        if self.token.kind not in ("+", "-", "^"):
+            self.unexpected("a trigger such as +!goal")
+        start = self.advance()
+        kind = self.advance().kind if self.token.kind in ("!", "?") else ""
+        if self.token.kind == "!!":
+            self.fail("a trigger has one '!'", hint="'!!' posts a goal in a body")
+        if self.token.kind not in ("atom", "variable", "~", "::"):
+            self.unexpected("a literal")
+        literal = self.operand(formula=True)
+        if not isinstance(literal, nodes.Literal | nodes.Variable):
+            self.fail("an internal action cannot trigger a plan", literal.span)
+        return nodes.Trigger(start.kind, kind, literal, span=self.span_from(start))
+
+    def _label(self, as_term: bool) -> nodes.Literal | nodes.Variable:
+        at = self.advance()
+        if self.token.kind == "[":
+            annotations = self._annotations()
+            # The name only has to differ from those people and other plans have.
+            return nodes.Literal(
+                f"p__a{next(self.names.labels)}", annotations=annotations, span=self.span_from(at)
+            )
+        if self.token.kind not in ("atom", "variable", "::"):
+            self.unexpected("the label of the plan")
+        label = self.operand(formula=True)
+        if isinstance(label, nodes.Literal) or (as_term and isinstance(label, nodes.Variable)):
+            return label
+        self.fail(
+            "a label is an atom, with annotations if need be", label.span, "as in @stop[atomic] +!stop <- ..."
+        )
+
+    def _context(self) -> nodes.Term | None:
+        if self.token.kind == ":-":
+            self.report("':-' belongs to rules", hint="a plan is written +!goal : condition <- steps.")
+            self.advance()
+            return self.condition()
+        if self.token.kind != ":":
+            return None
+        context = self._part("context")
+        while self.token.kind == ":":
+            self.report("a plan has only one context", hint="join the conditions with &")
+            self._part("context")
+        return context
+
+    def _part(self, what: str) -> nodes.Term:
+        """The condition behind ``:`` or ``<:``."""
+        sign = self.advance()
+        if self.token.kind in ("<-", "<:", ".", "}", "end"):
+            self.report(f"the {what} behind '{sign.kind}' is missing", self.span_of(sign))
+            return nodes.Literal("true", span=self.span_of(sign))
+        return self.condition()
+
+    def _plan_body(self) -> nodes.Body:
+        arrow = self.token
+        if not self.accept("<-"):
+            return nodes.Body(span=self.span_of(arrow))
+        if self.token.kind in (".", "}", "end") or self.at_plan():
+            self.report(
+                "the body behind '<-' is missing",
+                self.span_of(arrow),
+                "write the steps, or leave out '<-' if there is nothing to do",
+            )
+            return nodes.Body(span=self.span_of(arrow))
+        body = self.body()
+        if self.token.kind == "<-":
+            self.fail("a plan has only one '<-'", hint="is the final '.' of a plan missing before this one?")
+        return body
+
+    # terms in braces
+
+    def braces(self) -> nodes.Term:
+        """``{ }``, ``{ +!g }``, ``{ @l +!g : c <- b }``, ``{ h :- b }`` or ``{ a; !b }``."""
+        opener = self.advance()
+        self.enter()
+        term = self._in_braces()
+        if isinstance(term, nodes.PlanTerm | nodes.RuleTerm):
+            self.accept(".")
+        self.leave()
+        self.close(opener)
+        return replace(term, span=self.span_from(opener))
+
+    def _in_braces(self) -> nodes.Term:
+        kind, following = self.token.kind, self.peek().kind
+        if kind == "^" or (kind in ("+", "-") and following in ("!", "?")) or self.at_plan():
+            return self._plan_or_trigger()
+        behind = self.after_literal(self.index)
+        if behind > self.index and self.tokens[behind].kind == ":-":
+            return nodes.RuleTerm(self.rule())
+        return nodes.BodyTerm(self.body())
+
+    def _plan_or_trigger(self) -> nodes.Term:
+        goal = self.peek().kind in ("!", "?")
+        behind = self.after_literal(self.index + (2 if goal else 1))
+        if self.token.kind != "@" and self.tokens[behind].kind == "}":
+            return nodes.TriggerTerm(self.trigger())
+        return nodes.PlanTerm(self.plan(as_term=True))
+
+    def rule(self) -> nodes.Rule:
+        """``head :- body`` without the final '.'."""
+        start = self.token
+        head = self.operand(formula=True)
+        if not isinstance(head, nodes.Literal):
+            self.fail("the head of a rule is a literal", head.span)
+        if not self.accept(":-"):
+            self.unexpected("':-'")
+        return nodes.Rule(head, self.condition(), span=self.span_from(start))
+
+
+def _body_variable(step: nodes.Step) -> nodes.Variable | None:
+    """The variable that is this step, if it is one."""
+    if isinstance(step, nodes.ExternalAction) and isinstance(step.action, nodes.Variable):
+        return step.action
+    return None

@@ -1,0 +1,278 @@
+"""Whole files: beliefs, rules, initial goals, plans and directives, with recovery after errors."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final, Protocol
+
+from jacaros.asl import nodes
+from jacaros.asl.cursor import Names, SyntaxPanic
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.lexer import Token
+from jacaros.asl.namespaces import Namespaces
+from jacaros.asl.plan_parser import PlanParser
+from jacaros.asl.section import Section
+from jacaros.asl.source import SourceFile
+
+_DIRECTIVE_WORDS: Final = frozenset({"begin", "end", "include", "namespace", "register_function"})
+_NOT_IN_CONDITIONS: Final = frozenset(
+    {
+        ".send",
+        ".broadcast",
+        ".wait",
+        ".stopMAS",
+        ".suspend",
+        ".fork",
+        ".join",
+        ".foreach",
+        ".loop",
+        ".if_then_else",
+    }
+)
+
+
+class Directives(Protocol):
+    """What carries out the directives of a file; it reports what is wrong with them through the parser."""
+
+    def apply(self, parser: "ProgramParser", directive: nodes.Literal, section: Section) -> None:
+        """Carry out ``{ directive }``, which stands behind the clauses of *section*."""
+
+    def apply_to_block(self, parser: "ProgramParser", directive: nodes.Literal, section: Section) -> None:
+        """Read the block behind ``{ begin directive }`` and put what becomes of it into *section*."""
+
+
+class ProgramParser(PlanParser):
+    """Reads the clauses of one file."""
+
+    def __init__(
+        self,
+        file: SourceFile,
+        names: Names,
+        diagnostics: list[Diagnostic],
+        directives: Directives,
+        namespaces: Namespaces | None = None,
+    ) -> None:
+        super().__init__(file, names, diagnostics)
+        self.directives = directives
+        if namespaces is not None:
+            self.namespaces = namespaces
+
+    def file_clauses(self) -> Section:
+        """All clauses of the file."""
+        section = Section()
+        while self.token.kind != "end":
+            if self._at_end_directive():
+                self.report("'{ end }' without a '{ begin ... }' before it", hint="remove it")
+                self._take_end_directive()
+            self._recovering(self._clause, section)
+        return section
+
+    def block(self, begin: nodes.Literal) -> Section:
+        """The clauses up to ``{ end }``, which is taken; *begin* is the directive that opened the block."""
+        section = Section()
+        while not self._at_end_directive():
+            if self.token.kind == "end":
+                self.report(f"the block of '{begin.functor}' has no end", begin.span, "close it with { end }")
+                return section
+            self._recovering(self._clause, section)
+        self._take_end_directive()
+        return section
+
+    # clauses
+
+    def _recovering(self, read: Callable[[Section], None], section: Section) -> None:
+        """Read one clause; after an error go on with the next one."""
+        start = self.index
+        self.reset_nesting()
+        try:
+            read(section)
+        except SyntaxPanic:
+            self._synchronise(start)
+        except RecursionError:
+            self.report("this is nested too deeply", self.span_of(self.tokens[start]))
+            self._synchronise(start)
+
+    def _clause(self, section: Section) -> None:
+        kind = self.token.kind
+        if kind == "{":
+            self._directive(section)
+        elif kind == "!":
+            self._initial_goal(section)
+        elif kind in ("@", "+", "-", "^"):
+            section.plans.append(self._plan_clause())
+        elif kind in ("atom", "variable", "~", "::", "true", "false"):
+            self._belief_or_rule(section)
+        else:
+            self._no_clause()
+
+    def _no_clause(self) -> None:
+        kind = self.token.kind
+        if kind == "!!":
+            self.fail("an initial goal has one '!'", hint="write !goal.")
+        if kind == "?":
+            self.fail("an initial goal is an achievement goal", hint="write !goal.")
+        if kind in (".", ";"):
+            self.report(f"there is nothing before this '{kind}'", hint="remove it")
+            self.advance()
+            return
+        self.unexpected("a belief, a goal or a plan")
+
+    def _initial_goal(self, section: Section) -> None:
+        self.advance()
+        goal = self._goal()
+        if not isinstance(goal, nodes.Literal):
+            self.fail("an initial goal cannot be a variable", goal.span)
+        self._finish("goal")
+        section.goals.append(goal)
+
+    def _belief_or_rule(self, section: Section) -> None:
+        start = self.token
+        head = self.operand(formula=True)
+        if self.token.kind in ("<-", ":") and not isinstance(head, nodes.InternalAction):
+            self.fail(
+                "a plan begins with its trigger",
+                self.span_from(start),
+                "put +! before it: +!goal : condition <- steps.",
+            )
+        if not isinstance(head, nodes.Literal):
+            self._no_belief(head)
+        elif self.accept(":-"):
+            section.beliefs.append(nodes.Rule(head, self.condition(), span=self.span_from(start)))
+            self._finish("rule")
+        else:
+            section.beliefs.append(head)
+            self._finish("belief")
+
+    def _no_belief(self, term: nodes.Term) -> None:
+        if isinstance(term, nodes.InternalAction | nodes.FunctionCall):
+            self.fail(
+                f"'{term.name}' cannot stand outside a plan",
+                term.span,
+                "is it a step of the plan before, which ends too early with a '.'?",
+            )
+        self.fail("a belief is a literal", term.span)
+
+    def _plan_clause(self) -> nodes.Plan:
+        plan = self.plan()
+        _check_context(self, plan.context)
+        if self._at_subplans() or (self.token.kind == "{" and self.peek().kind == "}"):
+            # Sub-plans may also stand in place of the final '.'.
+            plan = replace(plan, subplans=self._subplans())
+            self.accept(".")
+            return plan
+        self._finish("plan")
+        if self._at_subplans() or (self.token.kind == "{" and self.peek().kind == "}"):
+            plan = replace(plan, subplans=self._subplans())
+        return plan
+
+    def _subplans(self) -> tuple[nodes.Plan, ...]:
+        opener = self.advance()
+        section = Section()
+        while self.token.kind not in ("}", "end"):
+            self._recovering(self._subplan, section)
+        if not self.accept("}"):
+            self.report("the '{' of the sub-plans is not closed", self.span_of(opener))
+        return tuple(section.plans)
+
+    def _subplan(self, section: Section) -> None:
+        if self.token.kind not in ("@", "+", "-", "^"):
+            self.unexpected("a plan")
+        section.plans.append(self._plan_clause())
+
+    def _finish(self, what: str) -> None:
+        """The final '.' of a clause.  If it is missing and the next line begins a clause, reading goes on there."""
+        if self.accept("."):
+            return
+        token = self.token
+        if token.kind == "end":
+            self.report(f"the {what} has no final '.'", hint="the file ends here")
+        elif self._begins_clause(self.index):
+            self.report(
+                f"the {what} before has no final '.'; {_naming(token)} begins here",
+                hint=f"put a '.' behind line {self.previous().line}",
+            )
+        elif token.kind == "," and what in ("belief", "goal"):
+            self.fail(f"a {what} ends with '.', not with ','", hint="write p(1). p(2).")
+        else:
+            self.unexpected("';' or '.'" if what == "plan" else "'.'")
+
+    # recovery
+
+    def _begins_clause(self, index: int) -> bool:
+        """Whether a new clause is likely to begin at *index*, which must be the first token of its line."""
+        token = self.tokens[index]
+        if not token.first:
+            return self.at_plan(index) and token.kind != "@"
+        if self.at_plan(index):
+            return True
+        if token.kind == "{":
+            return self.tokens[index + 1].text in _DIRECTIVE_WORDS
+        if token.column > 1:
+            return False
+        if token.kind == "!":
+            index += 1
+        behind = self.after_literal(index)
+        return behind > index and self.tokens[behind].kind in (".", ":-")
+
+    def _synchronise(self, start: int) -> None:
+        """Skip to behind the next final '.', or to the next line that begins a clause."""
+        if self.index == start:
+            self.advance()
+        while self.token.kind != "end":
+            if self.token.first and self._begins_clause(self.index):
+                return
+            if self.advance().kind == ".":
+                break
+        if self._at_subplans():
+            self._subplans()
+
+    # directives
+
+    def _directive(self, section: Section) -> None:
+        opener = self.advance()
+        begins = self.token.kind == "atom" and self.token.text == "begin" and self.peek().kind == "atom"
+        if begins:
+            self.advance()
+        if self.token.kind != "atom":
+            self.unexpected("the name of a directive")
+        directive = self.operand()
+        if not isinstance(directive, nodes.Literal):
+            self.fail("this is no directive", directive.span)
+        self.accept(".")
+        self.close(opener)
+        directive = replace(directive, span=self.span_from(opener))
+        if begins:
+            self.directives.apply_to_block(self, directive, section)
+        else:
+            self.directives.apply(self, directive, section)
+
+    def _at_end_directive(self) -> bool:
+        following = self.peek()
+        return self.token.kind == "{" and following.text == "end" and following.kind == "atom"
+
+    def _take_end_directive(self) -> None:
+        opener = self.advance()
+        self.advance()
+        if self.token.kind == "}":
+            self.advance()
+        else:
+            self.report("'}' is expected behind '{ end'", self.span_of(opener))
+
+
+def _naming(token: Token) -> str:
+    """What begins with *token*, for messages."""
+    if token.kind in ("@", "+", "-", "^"):
+        return "the next plan"
+    return {"!": "a goal", "{": "a directive"}.get(token.kind, "the next belief")
+
+
+def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
+    """Internal actions that act or wait cannot be asked whether they hold."""
+    stack = [formula]
+    while stack:
+        term = stack.pop()
+        if isinstance(term, nodes.And | nodes.Or):
+            stack += [term.left, term.right]
+        elif isinstance(term, nodes.Not):
+            stack.append(term.operand)
+        elif isinstance(term, nodes.InternalAction) and term.name in _NOT_IN_CONDITIONS:
+            parser.report(f"'{term.name}' acts and cannot stand in a context", term.span, "do it in the body")
