@@ -1,0 +1,357 @@
+"""Artifacts: what authors of environments write."""
+
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
+
+from jacaros.clock import Clock
+from jacaros.env.errors import InvalidArtifact, OperationFailed
+from jacaros.env.execution import OperationExecution
+from jacaros.env.ids import ArtifactId
+from jacaros.env.declaration import declare_function
+from jacaros.env.interface import Interface, interface_of
+from jacaros.env.linked_call import call_all
+from jacaros.env.operation import (
+    OPERATION,
+    Mark,
+    OperationRequest,
+    internal_operation,
+    link,
+    operation,
+)
+from jacaros.env.steps import Steps
+from jacaros.env.values import Atom, Out, Structure, plain
+from jacaros.trace import Cause
+
+__all__ = ["Artifact", "Host", "Out", "internal_operation", "link", "operation"]
+
+T = TypeVar("T")
+
+
+class Host(Protocol):
+    """The workspace of an artifact, as far as the artifact may use it."""
+
+    @property
+    def path(self) -> str:
+        """Full path, such as ``/main``."""
+
+    @property
+    def name(self) -> str:
+        """Last part of the path."""
+
+    async def make_artifact(
+        self, name: str, type_name: str, args: Sequence[object] = (), creator: str | None = None
+    ) -> ArtifactId:
+        """Make an artifact."""
+
+    def lookup(self, name: str) -> ArtifactId:
+        """Find an artifact by its name."""
+
+    def dispose_artifact(self, artifact_id: ArtifactId) -> None:
+        """Dispose an artifact."""
+
+    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
+        """Link the out port of an artifact to another artifact."""
+
+    def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
+        """The artifacts behind an out port."""
+
+    def execute_linked(self, request: OperationRequest) -> OperationExecution:
+        """Run a linked operation."""
+
+    def operations_changed(self) -> None:
+        """Be told that an artifact has other operations now."""
+
+
+class Artifact:
+    """One thing of the environment: observable properties, signals and operations.
+
+    Authors derive from it and mark methods with `operation`, `internal_operation` and `link`.  A class has
+    no constructor; a method ``init`` (``def`` or ``async def``) prepares the artifact and has the
+    parameters given to ``makeArtifact``.  All that changes properties or sends signals happens within
+    operations, ``init`` included; a callback from elsewhere uses `start`.
+
+    Attributes:
+        ports: names of the out ports, through which it calls linked operations of other artifacts.
+        name: name of the artifact in its workspace.
+        id: identity of the artifact.
+        workspace: where it lives.
+        clock: where it takes time from.
+        resources: what the host lends to artifacts, by name.
+    """
+
+    ports: ClassVar[tuple[str, ...]] = ()
+    name: str
+    id: ArtifactId
+    workspace: Host
+    clock: Clock
+    resources: Mapping[str, object]
+    interface: ClassVar[Interface]
+    _steps: Steps
+
+    def __init_subclass__(cls, **keywords: object) -> None:
+        super().__init_subclass__(**keywords)
+        for attribute in vars(cls):
+            if attribute in _RESERVED:
+                raise InvalidArtifact(
+                    f"{cls.__qualname__}.{attribute} would replace a part of Artifact; give the method another "
+                    f'name, such as @operation(name="{attribute}") def {attribute}_it(self)'
+                )
+        cls.interface = interface_of(cls)
+
+    def attach(self, steps: Steps, host: Host) -> None:
+        """Be joined with the kernel; called once, before ``init``."""
+        self.name, self.id, self.workspace = steps.id.name, steps.id, host
+        self.clock, self.resources = steps.setting.clock, steps.setting.resources
+        self._steps = steps
+        steps.hook = self.dispose
+
+    def dispose(self) -> None:
+        """Give back what the artifact holds; called when all its operations have ended.
+
+        Not called when ``init`` failed: see `on_dispose`.
+        """
+
+    def on_dispose(self, callback: Callable[[], object]) -> None:
+        """Call *callback* when the artifact ends, also when its ``init`` fails; the last one first."""
+        self._steps.cleanups.append(callback)
+
+    # ---- observable properties
+
+    def define_property(
+        self, name: str, *values: object, annotations: tuple[object, ...] | None = None
+    ) -> None:
+        """Add an observable property; a focusing agent believes ``name(values)``.
+
+        Several properties may have one name.
+
+        Args:
+            name: begins with a lower-case letter.
+            values: made plain values (see `plain`).
+            annotations: further annotations of the belief, atoms and structures.
+        """
+        self._steps.current(f"defining property {name}")
+        self._steps.publication.properties.define(name, values, annotations)
+
+    def update_property(
+        self, name: str, *values: object, annotations: tuple[object, ...] | None = None
+    ) -> None:
+        """Give the first (oldest) property called *name* new values; equal values are a change too.
+
+        Args:
+            name: name of the property.
+            values: all its values.
+            annotations: None keeps those it has.
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        self._steps.current(f"updating property {name}")
+        self._steps.publication.properties.update(name, values, annotations)
+
+    def remove_property(self, name: str, *values: object) -> None:
+        """Remove the first property called *name*, with *values* the first that has these values.
+
+        Args:
+            name: name of the property.
+            values: as many as the property has, None for any value.
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        self._steps.current(f"removing property {name}")
+        self._steps.publication.properties.remove(name, values)
+
+    def has_property(self, name: str, *values: object) -> bool:
+        """True when there is a property called *name*, with *values* one that has these values."""
+        return self._steps.publication.properties.has(name, values)
+
+    def value(self, name: str, index: int = 0) -> Any:
+        """A value of the first property called *name*; of a list or dictionary a copy.
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        return plain(self._steps.publication.properties.first(name).values[index])
+
+    def values(self, name: str) -> tuple[Any, ...]:
+        """All values of the first property called *name*.
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        return tuple(map(plain, self._steps.publication.properties.first(name).values))
+
+    # ---- signals, failure, log
+
+    def signal(self, name: str, *arguments: object) -> None:
+        """Signal to all observers that something happened; changes made so far in the step go with it."""
+        self._steps.signal(name, arguments, None)
+
+    def signal_to(self, agent: str, name: str, *arguments: object) -> None:
+        """Signal to one observer; changes made so far in the step go to all."""
+        self._steps.signal(name, arguments, agent)
+
+    def fail(self, message: str, functor: str | None = None, *arguments: object) -> NoReturn:
+        """End the operation as failed; its step is undone.
+
+        Args:
+            message: text for people.
+            functor: functor of the reason term, None for no reason.
+            arguments: arguments of the reason term; without any it is an atom.
+
+        Raises:
+            OperationFailed: always.
+        """
+        if functor is None:
+            raise OperationFailed(message)
+        raise OperationFailed(
+            message, Structure(functor, tuple(map(plain, arguments))) if arguments else Atom(functor)
+        )
+
+    def log(self, text: str) -> None:
+        """Write a line for people."""
+        self._steps.setting.log(f"[{self.name}] {text}")
+
+    # ---- the operation in progress
+
+    @property
+    def current(self) -> OperationExecution:
+        """The operation in progress: its request, its pauses.
+
+        Raises:
+            InvalidArtifact: there is none.
+        """
+        return self._steps.current("asking for the current operation")
+
+    @property
+    def caller(self) -> str | None:
+        """The agent on whose behalf the operation in progress runs.
+
+        Through links it is the agent at the beginning of the chain, in ``init`` the creator, in internal
+        operations None.
+        """
+        holder = self._steps.turns.holder
+        return holder.request.agent if holder is not None else None
+
+    def commit(self) -> None:
+        """Publish what the step has changed so far; from here on it cannot be undone."""
+        holder = self._steps.current("a commit")
+        if holder.declared is None or not holder.declared.threaded:
+            self._steps.commit()
+
+    async def sleep(self, delay: float) -> None:
+        """Wait for *delay* seconds; a step boundary, others may use the artifact meanwhile."""
+        await self._steps.leave(self.clock.sleep(delay), "sleeping")
+
+    async def until(self, guard: Callable[[], bool]) -> None:
+        """Wait until *guard* is true; a step boundary, *guard* is evaluated whenever a step has ended."""
+        await self._steps.until(guard)
+
+    async def step(self, awaitable: Awaitable[T]) -> T:
+        """Wait for anything else, such as a service call; a step boundary.
+
+        Awaiting without `step` keeps the artifact for oneself.
+        """
+        return await self._steps.leave(awaitable, "waiting for something")
+
+    async def pause_point(self, on_pause: Callable[[], None] | None = None) -> float:
+        """Wait here while the operation is paused; a step boundary only if it is.
+
+        Args:
+            on_pause: called before the waiting, within the operation.  To stop at the very moment of the
+                pause, register a callback with ``self.current.on_pause`` too.
+
+        Returns:
+            Seconds that the operation has been paused since the last pause point, 0.0 mostly.
+        """
+        return await self._steps.pause_point(on_pause)
+
+    # ---- further operations
+
+    def start(
+        self, operation: str | Callable[..., object], *arguments: object, cause: Cause | None = None
+    ) -> None:
+        """Run an internal operation as a process of its own; its failure is logged and harms nobody.
+
+        Within an operation it begins when the step has ended well; from a callback at once if the artifact
+        is free.  This is the way to change properties from a callback.
+
+        Args:
+            operation: a method marked `internal_operation` (or `operation`), or its name.
+            arguments: given as they are.
+            cause: what led to it, such as the sample of a sensor; otherwise that of the operation in progress.
+
+        Raises:
+            InvalidArtifact: there is no such operation.
+        """
+        declared = self._steps.interface.own(operation, len(arguments))
+        if declared is None:
+            wanted = operation if isinstance(operation, str) else getattr(operation, "__name__", operation)
+            raise InvalidArtifact(
+                f"artifact {self.name} has no internal operation {wanted} with {len(arguments)} arguments"
+            )
+        self._steps.start(declared, OperationRequest(self.id, declared.name, arguments, None, cause))
+
+    async def call_linked(self, port: str, operation: str, *arguments: object) -> None:
+        """Call a linked operation of all artifacts behind *port*, and wait for all; a step boundary.
+
+        Args:
+            port: one of `ports`.
+            operation: name of the linked operation.
+            arguments: inputs, and `Out` objects for its outputs.
+
+        Raises:
+            OperationFailed: nothing is linked, or a linked operation failed (with its reason).
+            InvalidArtifact: the class has no such port.
+        """
+        if port not in self.ports:
+            raise InvalidArtifact(
+                f"{type(self).__qualname__} has no out port {port!r}; its ports are {self.ports}"
+            )
+        targets = self.workspace.linked(self.id, port)
+        if not targets:
+            self.fail(
+                f"nothing is linked to port {port} of artifact {self.name}", "not_linked", self.name, port
+            )
+        call = call_all(self.workspace.execute_linked, targets, operation, arguments, self.current)
+        await self._steps.leave(call, f"calling {operation}")
+
+    def define_operation(
+        self,
+        name: str,
+        function: Callable[..., object],
+        *,
+        guard: Callable[..., object] | None = None,
+        pausable: bool = False,
+        threaded: bool = False,
+    ) -> None:
+        """Add an operation to this one artifact, such as one read from a file.
+
+        Args:
+            name: what agents call it.
+            function: gets the arguments (not the artifact); its signature counts as that of a method.
+            guard: gets the same, or nothing; the operation waits until it is true.
+            pausable: see `operation`.
+            threaded: see `operation`.
+        """
+        mark = Mark(OPERATION, name, None, pausable, threaded)
+        self._own_interface().operations.add(declare_function(mark, name, function, guard))
+
+    def remove_operation(self, name: str) -> None:
+        """Take away all operations called *name* from this one artifact."""
+        self._own_interface().operations.remove(name)
+
+    def _own_interface(self) -> Interface:
+        if self._steps.interface is type(self).interface:
+            self._steps.interface = self._steps.interface.copy()
+        self.workspace.operations_changed()
+        return self._steps.interface
+
+
+_RESERVED = frozenset(
+    name
+    for name in (*vars(Artifact), "name", "id", "workspace", "clock", "resources", "_steps")
+    if not name.startswith("__") and name not in ("ports", "dispose", "interface")
+)
+
+Artifact.interface = interface_of(Artifact)

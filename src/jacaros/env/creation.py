@@ -1,0 +1,87 @@
+"""Making artifacts: finding the type, joining object and kernel, and the reasons why it can fail."""
+
+from collections.abc import Callable
+
+from jacaros.env.artifact import Artifact, Host
+from jacaros.env.declaration import DeclaredOperation, declare_method
+from jacaros.env.errors import OperationFailed, UnknownArtifactType
+from jacaros.env.ids import ArtifactId
+from jacaros.env.operation import INTERNAL, Mark, OperationRequest
+from jacaros.env.setting import Setting
+from jacaros.env.steps import Steps
+from jacaros.env.values import Structure
+from jacaros.errors import InternalError
+
+FindType = Callable[[str], type[Artifact]]
+"""Finds the class for a type name; raises `UnknownArtifactType`."""
+
+
+def refused(why: str, what: str, message: str) -> OperationFailed:
+    """The failure with reason ``makeArtifactFailure(why, what)``."""
+    return OperationFailed(message, Structure("makeArtifactFailure", (why, what)))
+
+
+def init_failed(artifact_id: ArtifactId, message: str) -> OperationFailed:
+    """The failure of an artifact whose ``init`` failed with *message*."""
+    made = f"artifact {artifact_id.name} ({artifact_id.type_name}) cannot be made"
+    return refused("init_failed", artifact_id.name, f"{made}: {message}")
+
+
+def artifact_type_of(
+    type_name: str | type[Artifact], find_type: FindType, setting: Setting
+) -> type[Artifact]:
+    """The class for *type_name*.
+
+    Raises:
+        OperationFailed: there is none, or it cannot be loaded.
+    """
+    if not isinstance(type_name, str):
+        return type_name
+    name = str.__str__(type_name)
+    try:
+        found = find_type(name)
+    except UnknownArtifactType as unknown:
+        raise refused("unknown_artifact_template", name, str(unknown)) from None
+    except InternalError:
+        raise
+    except Exception as error:
+        setting.log_error(name, "the artifact type cannot be loaded:", error)
+        message = f"artifact type {name} cannot be loaded: {type(error).__name__}: {error}"
+        raise refused("unknown_artifact_template", name, message) from error
+    if not (isinstance(found, type) and issubclass(found, Artifact)):
+        raise refused("unknown_artifact_template", name, f"{name} is not a class derived from Artifact")
+    return found
+
+
+def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, setting: Setting) -> Steps:
+    """Make the object of an artifact and join it with what runs its operations.
+
+    Raises:
+        OperationFailed: its constructor failed.
+    """
+    try:
+        artifact = artifact_type()
+    except Exception as error:
+        setting.log_error(artifact_id.name, f"the constructor of {artifact_type.__qualname__} failed:", error)
+        raise init_failed(artifact_id, f"{type(error).__name__}: {error}") from error
+    steps = Steps(artifact_id, artifact, artifact_type.interface, tuple(artifact_type.ports), setting)
+    artifact.attach(steps, host)
+    return steps
+
+
+def init_of(artifact_type: type[Artifact], request: OperationRequest) -> DeclaredOperation:
+    """The ``init`` of *artifact_type* for the arguments of *request*; without ``init`` nothing is done.
+
+    Raises:
+        OperationFailed: it takes another number of arguments.
+    """
+    function = getattr(artifact_type, "init", _nothing)
+    declared = declare_method(Mark(INTERNAL), "init", function, artifact_type, 0)
+    count = len(request.arguments)
+    if not declared.signature.takes(count):
+        raise init_failed(request.artifact, f"its init takes ({declared.signature}), not {count} arguments")
+    return declared
+
+
+def _nothing(_: Artifact) -> None:
+    """Stand for the ``init`` of an artifact that needs none."""

@@ -1,0 +1,1 @@
+"""The artifacts that every workspace has from the beginning."""

@@ -1,0 +1,124 @@
+"""The environment of a process: a tree of workspaces with their artifacts."""
+
+from collections.abc import Callable, Mapping
+
+from jacaros.clock import Clock
+from jacaros.env.artifact import Artifact
+from jacaros.env.creation import FindType
+from jacaros.env.default.blackboard import Blackboard
+from jacaros.env.default.console import Console
+from jacaros.env.errors import OperationFailed, UnknownArtifactType, UnknownWorkspace, spelling_hint
+from jacaros.env.execution import OperationExecution
+from jacaros.env.operation import OperationRequest
+from jacaros.env.registry import Registry
+from jacaros.env.setting import Setting, log_to_stderr
+from jacaros.env.values import Structure
+from jacaros.env.workspace import Workspace
+from jacaros.trace import Tracer
+
+DEFAULT_ARTIFACTS: tuple[tuple[str, type[Artifact]], ...] = (("blackboard", Blackboard), ("console", Console))
+"""Names and types of the artifacts that every workspace has from the beginning."""
+
+
+def knows_no_type(type_name: str) -> type[Artifact]:
+    """Know no artifact type: artifacts are made from their classes.
+
+    Raises:
+        UnknownArtifactType: always.
+    """
+    raise UnknownArtifactType(type_name)
+
+
+class Environment:
+    """All workspaces of a process; ``/main`` is there from the beginning.
+
+    Args:
+        clock: where artifacts take time from.
+        resources: what the host lends to artifacts, by name.
+        find_type: finds the artifact class for a type name; raises `UnknownArtifactType`.
+        log: takes a line for people.
+        on_internal_error: told of defects of JaCaROS itself; without it they are raised where they arise.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        resources: Mapping[str, object] | None = None,
+        find_type: FindType = knows_no_type,
+        log: Callable[[str], None] = log_to_stderr,
+        on_internal_error: Callable[[BaseException], None] | None = None,
+    ) -> None:
+        self._setting = Setting(clock, resources or {}, log, None, on_internal_error)
+        self._find_type = find_type
+        self._registry = Registry()
+        self._workspaces: dict[str, Workspace] = {}
+        self._add("/main")
+
+    @property
+    def clock(self) -> Clock:
+        """Where artifacts take time from."""
+        return self._setting.clock
+
+    @property
+    def resources(self) -> Mapping[str, object]:
+        """What the host lends to artifacts, by name."""
+        return self._setting.resources
+
+    @property
+    def tracer(self) -> Tracer | None:
+        """Told of every cause that arises, None while nobody watches."""
+        return self._setting.tracer
+
+    @tracer.setter
+    def tracer(self, tracer: Tracer | None) -> None:
+        self._setting.tracer = tracer
+
+    def workspaces(self) -> tuple[Workspace, ...]:
+        """All workspaces, the oldest first."""
+        return tuple(self._workspaces.values())
+
+    def workspace(self, path: str) -> Workspace:
+        """The workspace with that full path.
+
+        Raises:
+            UnknownWorkspace: there is none.
+        """
+        found = self._workspaces.get(path)
+        if found is None:
+            hint = spelling_hint(path, self._workspaces)
+            reason = Structure("unknown_workspace", (str.__str__(path),))
+            raise UnknownWorkspace(f"there is no workspace {path}{hint}", reason)
+        return found
+
+    def create_workspace(self, path: str) -> Workspace:
+        """Make a workspace with its default artifacts.
+
+        Args:
+            path: full path; the workspace that it is a part of must be there.
+
+        Raises:
+            OperationFailed: it is there already; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the workspace above it is not there.
+        """
+        path = str.__str__(path)
+        if path in self._workspaces:
+            reason = Structure("workspace_already_present", (path,))
+            raise OperationFailed(f"there is a workspace {path} already", reason)
+        self.workspace(path.rpartition("/")[0])
+        return self._add(path)
+
+    def _add(self, path: str) -> Workspace:
+        workspace = Workspace(path, self._registry, self._setting, self._find_type)
+        self._workspaces[path] = workspace
+        for name, artifact_type in DEFAULT_ARTIFACTS:
+            workspace.create(name, artifact_type)
+        return workspace
+
+    def execute(self, request: OperationRequest) -> OperationExecution:
+        """Run an operation for an agent, wherever the artifact lives; see `Workspace.execute`."""
+        return self._workspaces["/main"].execute(request)
+
+    async def close(self) -> None:
+        """Dispose every artifact, the workspaces made last first."""
+        for workspace in reversed(self.workspaces()):
+            await workspace.close()

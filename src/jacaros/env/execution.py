@@ -1,0 +1,187 @@
+"""One operation on its way: waiting, running, paused, cancelled or ended."""
+
+import asyncio
+from collections.abc import Callable
+from typing import Protocol
+
+from jacaros.clock import Clock
+from jacaros.env.declaration import DeclaredOperation
+from jacaros.env.operation import OperationRequest
+from jacaros.trace import Cause
+
+
+class Turns(Protocol):
+    """What an execution needs of the artifact that it belongs to."""
+
+    clock: Clock
+
+    def cancel(self, execution: "OperationExecution") -> None:
+        """End *execution* without an outcome."""
+
+    def reconsider(self) -> None:
+        """See whether somebody who waits may go on now."""
+
+    def complain(self, what: str, error: Exception) -> None:
+        """Log an error of the artifact's code that harms nobody."""
+
+
+class OperationExecution:
+    """One operation on its way; the handle of its caller, and `Artifact.current` of its code.
+
+    Attributes:
+        request: what was asked for.
+        declared: the operation that serves it, None when it was refused.
+        arguments: what the operation receives.
+        cause: what led to it.
+        begun: True once its code has run.
+        cancelled: True when it was dropped; nobody is told its outcome.
+        disposed: True when it ends because its artifact is gone.
+        ended: True when all is over, code in ``finally`` included.
+        task: the task of a coroutine that has been given its first turn.
+        linked: executions in other artifacts that it waits for now.
+    """
+
+    __slots__ = (
+        "_pause",
+        "_turns",
+        "arguments",
+        "begun",
+        "cancelled",
+        "cause",
+        "declared",
+        "disposed",
+        "ended",
+        "linked",
+        "request",
+        "task",
+    )
+
+    def __init__(
+        self,
+        turns: Turns | None,
+        request: OperationRequest,
+        declared: DeclaredOperation | None = None,
+        arguments: tuple[object, ...] = (),
+        cause: Cause | None = None,
+    ) -> None:
+        self._turns = turns
+        self.request, self.declared, self.arguments, self.cause = request, declared, arguments, cause
+        self.begun = self.cancelled = self.disposed = False
+        self.ended = declared is None
+        self.task: asyncio.Task[None] | None = None
+        self.linked: list[OperationExecution] = []
+        self._pause: Pause | None = None
+
+    @property
+    def stopped(self) -> bool:
+        """True when it has been cancelled, or its artifact disposed."""
+        return self.cancelled or self.disposed
+
+    def cancel(self) -> None:
+        """Drop it: a coroutine is cancelled and its ``finally`` runs, a waiting operation is forgotten.
+
+        The outcome is not told.  What the step in progress changed is undone; what ``finally`` changes is
+        published.  An operation in a thread runs to its end.
+        """
+        if self._turns is not None:
+            self._turns.cancel(self)
+
+    def pause(self) -> None:
+        """Ask it to stop for a while; obeyed by pausable operations, and passed on through links.
+
+        An operation that has not begun does not begin before `resume`.
+        """
+        for each in self.linked:
+            each.pause()
+        if not self.pausable or self.ended or self.paused or self._turns is None:
+            return
+        pause = self._pauses(self._turns)
+        pause.since = self._turns.clock.now()
+        for callback in pause.callbacks:
+            try:
+                callback()
+            except Exception as error:
+                self._turns.complain(f"a pause callback of {self.request.operation} failed", error)
+        self._turns.reconsider()
+
+    def resume(self) -> None:
+        """Let it go on after `pause`."""
+        for each in self.linked:
+            each.resume()
+        if self._pause is None or not self.paused or self._turns is None:
+            return
+        self._pause.end()
+        self._turns.reconsider()
+
+    @property
+    def pausable(self) -> bool:
+        """True when it obeys `pause`."""
+        return self.declared is not None and self.declared.pausable
+
+    @property
+    def paused(self) -> bool:
+        """True between `pause` and `resume`."""
+        return self._pause is not None and self._pause.since is not None
+
+    def on_pause(self, callback: Callable[[], None]) -> None:
+        """Call *callback* at the moment of every `pause` from now on, at once if it is paused already.
+
+        It runs outside of the steps of the artifact: it may stop a motor, not change properties.
+        """
+        if self._turns is not None:
+            self._pauses(self._turns).callbacks.append(callback)
+            if self.paused:
+                callback()
+
+    async def resumed(self) -> None:
+        """Wait until it is not paused; to be awaited through `Artifact.pause_point` or `Artifact.step`."""
+        while self._pause is not None and self._pause.since is not None:
+            await self._pause.wait()
+
+    def take_paused_time(self) -> float:
+        """Seconds that it has been paused since this was last asked."""
+        return self._pause.take() if self._pause is not None else 0.0
+
+    def _pauses(self, turns: Turns) -> "Pause":
+        if self._pause is None:
+            self._pause = Pause(turns.clock)
+        return self._pause
+
+
+class Pause:
+    """The pauses of one execution.
+
+    Attributes:
+        since: when the present pause began, None while there is none.
+        callbacks: called when one begins.
+    """
+
+    __slots__ = ("_clock", "_spent", "_waiting", "callbacks", "since")
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self.since: float | None = None
+        self.callbacks: list[Callable[[], None]] = []
+        self._spent = 0.0
+        self._waiting: list[asyncio.Future[None]] = []
+
+    def end(self) -> None:
+        """End the present pause and wake who waits for that."""
+        if self.since is not None:
+            self._spent += self._clock.now() - self.since
+            self.since = None
+        waiting, self._waiting = self._waiting, []
+        for future in waiting:
+            if not future.done():
+                future.set_result(None)
+
+    async def wait(self) -> None:
+        """Wait for the end of the present pause."""
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiting.append(future)
+        await future
+
+    def take(self) -> float:
+        """Seconds of pause not taken before."""
+        spent, self._spent = self._spent, 0.0
+        return spent

@@ -1,0 +1,138 @@
+"""What an artifact type offers: its operations by kind, worked out once when the class is made."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.env.declaration import DeclaredOperation, declare_method
+from jacaros.env.errors import InvalidArtifact, spelling_hint
+from jacaros.env.operation import LINK, OPERATION, Mark, marks_of
+
+
+class OperationTable:
+    """Operations of one kind, found by name and number of arguments."""
+
+    __slots__ = ("_exact", "_variable")
+
+    def __init__(self) -> None:
+        self._exact: dict[tuple[str, int], DeclaredOperation] = {}
+        self._variable: dict[str, DeclaredOperation] = {}
+
+    def add(self, declared: DeclaredOperation) -> None:
+        """Add an operation; one declared deeper in the class hierarchy replaces those it overlaps.
+
+        Raises:
+            InvalidArtifact: another method of the same class takes the same number of arguments.
+        """
+        if declared.signature.rest is not None:
+            _check_overlap(self._variable.get(declared.name), declared, "any number of")
+            self._variable[declared.name] = declared
+            return
+        for arity in declared.signature.arities:
+            _check_overlap(self._exact.get((declared.name, arity)), declared, str(arity))
+            self._exact[declared.name, arity] = declared
+
+    def find(self, name: str, arity: int) -> DeclaredOperation | None:
+        """The operation for a call; one for exactly so many arguments wins over ``*args``."""
+        found = self._exact.get((name, arity))
+        if found is not None:
+            return found
+        found = self._variable.get(name)
+        return found if found is not None and found.signature.takes(arity) else None
+
+    def remove(self, name: str) -> None:
+        """Take away all operations called *name*."""
+        self._variable.pop(name, None)
+        for key in [key for key in self._exact if key[0] == name]:
+            del self._exact[key]
+
+    def copy(self) -> "OperationTable":
+        """A table that can be changed by itself."""
+        other = OperationTable()
+        other._exact.update(self._exact)
+        other._variable.update(self._variable)
+        return other
+
+    def __iter__(self) -> Iterator[DeclaredOperation]:
+        return iter({id(each): each for each in (*self._exact.values(), *self._variable.values())}.values())
+
+    def keys(self) -> list[str]:
+        """Names with numbers of arguments, such as ``inc/1`` and ``sum/any``."""
+        return [f"{name}/{arity}" for name, arity in self._exact] + [f"{name}/any" for name in self._variable]
+
+    def explain(self, name: str, arity: int) -> str:
+        """Say what there is instead of ``name/arity``."""
+        keys = self.keys()
+        same = [key for key in keys if key.rpartition("/")[0] == name]
+        if same:
+            return f"; there is {', '.join(same)}"
+        offer = f" (it offers {', '.join(keys)})" if keys else " (it offers none)"
+        return offer + spelling_hint(f"{name}/{arity}", keys)
+
+
+def _check_overlap(present: DeclaredOperation | None, new: DeclaredOperation, arity: str) -> None:
+    if present is not None and present.depth == new.depth and present.function is not new.function:
+        raise InvalidArtifact(
+            f"{present.source.__qualname__} and {new.source.__qualname__} are both "
+            f"{new.kind} {new.name} with {arity} arguments; it would be unclear which one runs"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """All operations of an artifact type, or of one artifact that defines more of its own.
+
+    Attributes:
+        operations: those for agents.
+        links: those for other artifacts.
+        internals: those it starts itself.
+    """
+
+    operations: OperationTable
+    links: OperationTable
+    internals: OperationTable
+
+    def table(self, kind: str) -> OperationTable:
+        """The table of operations of one kind."""
+        if kind == OPERATION:
+            return self.operations
+        return self.links if kind == LINK else self.internals
+
+    def own(self, operation: str | Callable[..., object], arity: int) -> DeclaredOperation | None:
+        """The operation that an artifact starts itself: by name, or by its method."""
+        if isinstance(operation, str):
+            return self.internals.find(operation, arity) or self.operations.find(operation, arity)
+        function = getattr(operation, "__func__", operation)
+        for declared in (*self.internals, *self.operations):
+            if declared.function is function and declared.signature.takes(arity):
+                return declared
+        return None
+
+    def copy(self) -> "Interface":
+        """An interface that can be changed by itself."""
+        return Interface(self.operations.copy(), self.links.copy(), self.internals.copy())
+
+
+def interface_of(artifact_type: type) -> Interface:
+    """Read the interface of an artifact class from the marks on its methods.
+
+    A method that is overridden without a decorator stays an operation, as methods of Python do.
+
+    Raises:
+        InvalidArtifact: a declaration cannot work; the message names the method.
+    """
+    marks: dict[str, tuple[int, tuple[Mark, ...]]] = {}
+    for depth, each in enumerate(reversed(artifact_type.__mro__)):
+        for attribute, member in vars(each).items():
+            if marks_of(member):
+                marks[attribute] = (depth, marks_of(member))
+    interface = Interface(OperationTable(), OperationTable(), OperationTable())
+    for attribute, (depth, declared) in sorted(marks.items(), key=_depth):
+        function = getattr(artifact_type, attribute)
+        for mark in declared if callable(function) else ():
+            interface.table(mark.kind).add(declare_method(mark, attribute, function, artifact_type, depth))
+    return interface
+
+
+def _depth(item: tuple[str, tuple[int, Any]]) -> int:
+    return item[1][0]

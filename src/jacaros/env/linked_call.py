@@ -1,0 +1,59 @@
+"""Calling the linked operations behind an out port, and waiting for all of them."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Iterable
+from functools import partial
+
+from jacaros.env.errors import OperationFailed
+from jacaros.env.execution import OperationExecution
+from jacaros.env.ids import ArtifactId
+from jacaros.env.operation import OperationOutcome, OperationRequest
+
+Execute = Callable[[OperationRequest], OperationExecution]
+
+
+async def call_all(
+    execute: Execute,
+    targets: Iterable[ArtifactId],
+    operation: str,
+    arguments: tuple[object, ...],
+    execution: OperationExecution,
+) -> None:
+    """Call *operation* of all *targets* at once on behalf of *execution*, and wait for all.
+
+    Cancelling *execution* meanwhile cancels them, pausing it pauses them.
+
+    Raises:
+        OperationFailed: one of them failed; message and reason are those of the first in the given order.
+    """
+    listed = tuple(targets)
+    outcomes: list[OperationOutcome | None] = [None] * len(listed)
+    all_done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def done(index: int, outcome: OperationOutcome) -> None:
+        outcomes[index] = outcome
+        if None not in outcomes and not all_done.done():
+            all_done.set_result(None)
+
+    agent, cause = execution.request.agent, execution.cause
+    for index, target in enumerate(listed):
+        request = OperationRequest(target, operation, arguments, agent, cause, partial(done, index))
+        linked = execute(request)
+        execution.linked.append(linked)
+        if execution.paused:
+            linked.pause()
+    await _until(all_done, execution)
+    for outcome in outcomes:
+        if outcome is not None and not outcome.ok:
+            raise OperationFailed(outcome.message or "a linked operation failed", outcome.reason)
+
+
+async def _until(all_done: Awaitable[None], execution: OperationExecution) -> None:
+    try:
+        await all_done
+    except asyncio.CancelledError:
+        for linked in execution.linked:
+            linked.cancel()
+        raise
+    finally:
+        execution.linked.clear()

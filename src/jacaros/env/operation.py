@@ -1,0 +1,158 @@
+"""Operations: how artifacts declare them, how they are asked for, and what comes of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar, overload
+
+from jacaros.env.ids import ArtifactId
+from jacaros.env.values import Atom, Structure
+from jacaros.trace import Cause
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+OPERATION = "operation"
+LINK = "linked operation"
+INTERNAL = "internal operation"
+
+
+@dataclass(frozen=True, slots=True)
+class OperationOutcome:
+    """What came of an operation; its outputs are in the `Out` objects among the arguments.
+
+    Attributes:
+        ok: False when it failed.
+        message: text for people, None when it succeeded.
+        reason: term for programs, None when it succeeded or failed without one.
+    """
+
+    ok: bool
+    message: str | None = None
+    reason: Structure | Atom | None = None
+
+
+SUCCEEDED = OperationOutcome(True)
+
+
+def ignore_outcome(outcome: OperationOutcome) -> None:
+    """Take an outcome that nobody waits for."""
+
+
+@dataclass(slots=True)
+class OperationRequest:
+    """What somebody asks of an artifact.
+
+    Attributes:
+        artifact: which one.
+        operation: name of the operation; with the number of arguments it selects the method.
+        arguments: plain values, and `Out` objects where results are wanted.
+        agent: on whose behalf, None for the environment itself.
+        cause: what led to it.
+        on_done: told the outcome once, after observers were told the changes; never after a cancel.
+    """
+
+    artifact: ArtifactId
+    operation: str
+    arguments: tuple[object, ...] = ()
+    agent: str | None = None
+    cause: Cause | None = None
+    on_done: Callable[[OperationOutcome], None] = ignore_outcome
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """What a decorator leaves on a function until its class is complete; see the decorators."""
+
+    kind: str
+    name: str | None = None
+    guard: str | None = None
+    pausable: bool = False
+    threaded: bool = False
+
+
+_MARKS = "__jacaros_operations__"
+
+
+def marks_of(function: object) -> tuple[Mark, ...]:
+    """The marks that decorators left on *function*; empty for an ordinary method."""
+    marks: tuple[Mark, ...] = getattr(function, _MARKS, ())
+    return marks
+
+
+def _marked(function: F | None, mark: Mark) -> F | Callable[[F], F]:
+    def decorate(target: F) -> F:
+        setattr(target, _MARKS, (*marks_of(target), mark))
+        return target
+
+    return decorate if function is None else decorate(function)
+
+
+@overload
+def operation(function: F, /) -> F: ...
+@overload
+def operation(
+    *, name: str | None = None, guard: str | None = None, pausable: bool = False, threaded: bool = False
+) -> Callable[[F], F]: ...
+def operation(
+    function: F | None = None,
+    /,
+    *,
+    name: str | None = None,
+    guard: str | None = None,
+    pausable: bool = False,
+    threaded: bool = False,
+) -> F | Callable[[F], F]:
+    """Make a method an operation that agents can call.
+
+    Args:
+        function: the method, a ``def`` (one step) or ``async def`` (a step up to each step boundary).
+        name: what agents call it, if not the method's name; several methods may share a name as long as
+            they take different numbers of arguments.
+        guard: name of a method with the same parameters; the operation waits until that is true.
+        pausable: the operation obeys pauses (see `Artifact.pause_point`), because it stops what it does.
+        threaded: the method blocks, so it runs in a worker thread; a plain ``def`` whose changes and
+            signals are published together when it ends.
+    """
+    return _marked(function, Mark(OPERATION, name, guard, pausable, threaded))
+
+
+@overload
+def link(function: F, /) -> F: ...
+@overload
+def link(
+    *, name: str | None = None, guard: str | None = None, pausable: bool = False, threaded: bool = False
+) -> Callable[[F], F]: ...
+def link(
+    function: F | None = None,
+    /,
+    *,
+    name: str | None = None,
+    guard: str | None = None,
+    pausable: bool = False,
+    threaded: bool = False,
+) -> F | Callable[[F], F]:
+    """Make a method a linked operation: other artifacts call it through their ports, agents cannot.
+
+    The arguments are those of `operation`; a method may be both.
+    """
+    return _marked(function, Mark(LINK, name, guard, pausable, threaded))
+
+
+@overload
+def internal_operation(function: F, /) -> F: ...
+@overload
+def internal_operation(
+    *, name: str | None = None, guard: str | None = None, threaded: bool = False
+) -> Callable[[F], F]: ...
+def internal_operation(
+    function: F | None = None,
+    /,
+    *,
+    name: str | None = None,
+    guard: str | None = None,
+    threaded: bool = False,
+) -> F | Callable[[F], F]:
+    """Make a method a process that the artifact starts itself, with `Artifact.start`.
+
+    The arguments are those of `operation`.
+    """
+    return _marked(function, Mark(INTERNAL, name, guard, False, threaded))

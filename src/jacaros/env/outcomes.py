@@ -1,0 +1,56 @@
+"""The failed outcomes that the kernel itself makes, with message and reason term."""
+
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import ArtifactId
+from jacaros.env.interface import Interface
+from jacaros.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
+from jacaros.env.signature import WrongArguments
+from jacaros.env.values import Structure
+from jacaros.errors import InternalError
+
+_CALLERS = {OPERATION: "agents", LINK: "other artifacts only", INTERNAL: "the artifact itself only"}
+
+
+def key(request: OperationRequest) -> str:
+    """Name and number of arguments, such as ``inc/1``."""
+    return f"{request.operation}/{len(request.arguments)}"
+
+
+def unknown_operation(request: OperationRequest, kind: str, interface: Interface) -> OperationOutcome:
+    """The artifact has no operation of that name and number of arguments for that caller."""
+    name, arity, artifact = request.operation, len(request.arguments), request.artifact
+    for other in (OPERATION, LINK, INTERNAL):
+        if other != kind and interface.table(other).find(name, arity) is not None:
+            hint = f"; its {other} of that name is for {_CALLERS[other]}"
+            break
+    else:
+        hint = interface.table(kind).explain(name, arity)
+    message = f"artifact {artifact.name} ({artifact.type_name}) has no {kind} {key(request)}{hint}"
+    return OperationOutcome(False, message, Structure("unknown_operation", (artifact, name)))
+
+
+def wrong_arguments(request: OperationRequest, wrong: WrongArguments) -> OperationOutcome:
+    """An argument is not of the kind that the operation wants."""
+    message = f"operation {key(request)} of artifact {request.artifact.name}: {wrong}"
+    return OperationOutcome(False, message, Structure("wrong_op_arguments", (request.artifact, key(request))))
+
+
+def not_available(artifact: ArtifactId) -> OperationOutcome:
+    """The artifact is there no more."""
+    message = f"artifact {artifact.path} is not available: it has been disposed"
+    return OperationOutcome(False, message, Structure("artifact_not_available", (artifact.name,)))
+
+
+def disposed(request: OperationRequest) -> OperationOutcome:
+    """The artifact went away while the operation was waiting or running."""
+    message = f"artifact {request.artifact.path} was disposed before {key(request)} ended"
+    return OperationOutcome(False, message, Structure("artifact_disposed", (request.artifact.name,)))
+
+
+def failed(request: OperationRequest, error: BaseException) -> OperationOutcome:
+    """The code of the operation raised *error*."""
+    if isinstance(error, OperationFailed):
+        return OperationOutcome(False, error.message, error.reason)
+    functor = "internal_error" if isinstance(error, InternalError) else "operation_error"
+    message = f"{type(error).__name__} in operation {key(request)} of {request.artifact.name}: {error}"
+    return OperationOutcome(False, message, Structure(functor, (key(request),)))

@@ -1,0 +1,166 @@
+"""The observable properties of one artifact, changed in steps that are committed or rolled back."""
+
+from typing import NamedTuple
+
+from jacaros.env.errors import InvalidArtifact, UnknownProperty, spelling_hint
+from jacaros.env.values import equal, plain
+
+
+class ObservableProperty(NamedTuple):
+    """What observers see of one property at one moment.
+
+    Attributes:
+        name: the functor of the belief.
+        values: plain values, the arguments of the belief.
+        annotations: further annotations of the belief (atoms and structures).
+        key: identity within its artifact; it stays when the values change, and is never used again.
+    """
+
+    name: str
+    values: tuple[object, ...]
+    annotations: tuple[object, ...]
+    key: int
+
+
+Change = tuple[ObservableProperty, ObservableProperty]
+"""A property before and after a step."""
+
+
+class PropertyChanges(NamedTuple):
+    """The difference that one step made: several updates of a property in it are one change."""
+
+    changed: tuple[Change, ...]
+    added: tuple[ObservableProperty, ...]
+    removed: tuple[ObservableProperty, ...]
+
+
+NO_CHANGES = PropertyChanges((), (), ())
+
+
+class PropertyStore:
+    """The properties of one artifact, and a journal of the step in progress.
+
+    Several properties may have one name, even with equal values; "the first" is the oldest.
+    """
+
+    __slots__ = ("_before", "_by_name", "_last_key")
+
+    def __init__(self) -> None:
+        self._by_name: dict[str, dict[int, ObservableProperty]] = {}
+        self._before: dict[int, tuple[str, ObservableProperty | None]] = {}
+        self._last_key = 0
+
+    def define(self, name: str, values: tuple[object, ...], annotations: tuple[object, ...] | None) -> None:
+        """Add a property.
+
+        Raises:
+            InvalidArtifact: *name* cannot be the name of a belief.
+        """
+        check_name(name)
+        self._last_key = key = self._last_key + 1
+        self._before[key] = (name, None)
+        new = ObservableProperty(name, tuple(map(plain, values)), plain_annotations(annotations or ()), key)
+        self._by_name.setdefault(name, {})[key] = new
+
+    def update(self, name: str, values: tuple[object, ...], annotations: tuple[object, ...] | None) -> None:
+        """Give the first property called *name* new values; None as annotations keeps the old ones.
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        old = self.first(name)
+        self._before.setdefault(old.key, (name, old))
+        kept = old.annotations if annotations is None else plain_annotations(annotations)
+        self._by_name[name][old.key] = ObservableProperty(name, tuple(map(plain, values)), kept, old.key)
+
+    def remove(self, name: str, template: tuple[object, ...]) -> None:
+        """Remove the first property called *name* whose values fit *template* (see `first`).
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        old = self.first(name, template)
+        self._before.setdefault(old.key, (name, old))
+        del self._by_name[name][old.key]
+
+    def first(self, name: str, template: tuple[object, ...] = ()) -> ObservableProperty:
+        """The oldest property called *name* whose values fit *template*.
+
+        Args:
+            template: as many values as the property has, None for any value; empty fits every property.
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        for found in self._by_name.get(name, {}).values():
+            if not template or _fits(template, found.values):
+                return found
+        names = [each for each, properties in self._by_name.items() if properties]
+        known = f" (it has {', '.join(names)})" if names else " (it has none)"
+        wanted = f"{name} with values like {template}" if template else name
+        raise UnknownProperty(f"no observable property {wanted}{known}{spelling_hint(name, names)}")
+
+    def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
+        """True when there is a property called *name* whose values fit *template*."""
+        return any(not template or _fits(template, p.values) for p in self._by_name.get(name, {}).values())
+
+    def committed(self) -> tuple[ObservableProperty, ...]:
+        """The properties as observers know them, in the order of their definition."""
+        known = {p.key: p for properties in self._by_name.values() for p in properties.values()}
+        for key, (_, before) in self._before.items():
+            if before is None:
+                known.pop(key, None)
+            else:
+                known[key] = before
+        return tuple(known[key] for key in sorted(known))
+
+    def commit(self) -> PropertyChanges:
+        """End the step: forget how it was before and tell what is different now."""
+        if not self._before:
+            return NO_CHANGES
+        changed, added, removed = [], [], []
+        for key, (name, before) in self._before.items():
+            now = self._by_name[name].get(key)
+            if before is None:
+                if now is not None:
+                    added.append(now)
+            elif now is None:
+                removed.append(before)
+            else:
+                changed.append((before, now))
+        self._before.clear()
+        return PropertyChanges(tuple(changed), tuple(added), tuple(removed))
+
+    def roll_back(self) -> None:
+        """Undo the step: additions, updates and removals alike."""
+        for key, (name, before) in self._before.items():
+            properties = self._by_name[name]
+            if before is None:
+                properties.pop(key, None)
+            elif key in properties:
+                properties[key] = before
+            else:
+                properties[key] = before
+                self._by_name[name] = {each: properties[each] for each in sorted(properties)}
+        self._before.clear()
+
+
+def check_name(name: str) -> None:
+    """Refuse what cannot be the functor of a belief or the name of a signal.
+
+    Raises:
+        InvalidArtifact: *name* does not begin with a lower-case letter.
+    """
+    if not name[:1].islower():
+        raise InvalidArtifact(f"{name!r} cannot name a property or signal: begin with a lower-case letter")
+
+
+def plain_annotations(annotations: tuple[object, ...]) -> tuple[object, ...]:
+    """Make annotations plain values."""
+    return tuple(map(plain, annotations))
+
+
+def _fits(template: tuple[object, ...], values: tuple[object, ...]) -> bool:
+    return len(template) == len(values) and all(
+        wanted is None or equal(plain(wanted), value) for wanted, value in zip(template, values, strict=True)
+    )

@@ -1,0 +1,103 @@
+"""What observers see of one artifact: its committed properties and its signals."""
+
+from jacaros.env.ids import ArtifactId
+from jacaros.env.observation import Observation, Observer, Signal
+from jacaros.env.property import ObservableProperty, PropertyChanges, PropertyStore
+from jacaros.env.setting import Setting
+from jacaros.trace import Cause
+
+
+class Publication:
+    """The observable side of one artifact.
+
+    Attributes:
+        properties: the properties, with those of the step in progress.
+        observers: who focuses the artifact, in the order of focusing.
+    """
+
+    __slots__ = ("_artifact", "_frozen", "_observers", "_setting", "properties")
+
+    def __init__(self, artifact: ArtifactId, setting: Setting) -> None:
+        self._artifact, self._setting = artifact, setting
+        self.properties = PropertyStore()
+        self._observers: dict[Observer, None] = {}
+        self._frozen: tuple[ObservableProperty, ...] | None = None
+
+    @property
+    def observers(self) -> tuple[Observer, ...]:
+        """Who focuses the artifact, in the order of focusing."""
+        return tuple(self._observers)
+
+    def committed(self) -> tuple[ObservableProperty, ...]:
+        """The properties as observers know them."""
+        return self._frozen if self._frozen is not None else self.properties.committed()
+
+    def freeze(self) -> None:
+        """From now on a worker thread changes the properties: observers see them as they are now."""
+        self._frozen = self.properties.committed()
+
+    def thaw(self) -> None:
+        """The worker thread is done."""
+        self._frozen = None
+
+    def add(self, observer: Observer) -> None:
+        """Let *observer* receive what is published, beginning with all properties; once is enough."""
+        if observer not in self._observers:
+            self._observers[observer] = None
+            self._show(observer, added=self.committed())
+
+    def remove(self, observer: Observer) -> None:
+        """Let *observer* receive nothing more, after the removal of all properties."""
+        if observer in self._observers:
+            del self._observers[observer]
+            self._show(observer, removed=self.committed())
+
+    def close(self) -> None:
+        """Remove all observers."""
+        for observer in self.observers:
+            self.remove(observer)
+
+    def _show(
+        self,
+        observer: Observer,
+        added: tuple[ObservableProperty, ...] = (),
+        removed: tuple[ObservableProperty, ...] = (),
+    ) -> None:
+        if added or removed:
+            self._deliver(observer, Observation(self._artifact, (), (), added, removed))
+
+    def publish(
+        self, parent: Cause | None, signals: tuple[Signal, ...] = (), addressee: str | None = None
+    ) -> None:
+        """Commit the changes of the step so far, and publish them together with *signals*.
+
+        Args:
+            parent: what led to it.
+            signals: what is signalled now.
+            addressee: the only agent that receives the signals, None for all; all receive the changes.
+        """
+        changes = self.properties.commit()
+        if not (signals or changes.changed or changes.added or changes.removed):
+            return
+        if not self._observers and self._setting.tracer is None:
+            return
+        cause = parent if self._setting.tracer is None else self._trace(parent, signals, changes)
+        complete = Observation(self._artifact, signals, *changes, cause)
+        for observer in self.observers:
+            if addressee is None or observer.agent == addressee:
+                self._deliver(observer, complete)
+            elif changes.changed or changes.added or changes.removed:
+                self._deliver(observer, Observation(self._artifact, (), *changes, cause))
+
+    def _trace(
+        self, parent: Cause | None, signals: tuple[Signal, ...], changes: PropertyChanges
+    ) -> Cause | None:
+        names = [signal.name for signal in signals] + [new.name for _, new in changes.changed]
+        names += [each.name for each in (*changes.added, *changes.removed)]
+        return self._setting.trace("property", f"{self._artifact.path} {' '.join(names)}", parent)
+
+    def _deliver(self, observer: Observer, observation: Observation) -> None:
+        try:
+            observer.observe(observation)
+        except Exception as error:
+            self._setting.report(error)

@@ -1,0 +1,51 @@
+"""All artifacts of an environment, whatever their workspace, and the links between them."""
+
+from collections.abc import Callable
+
+from jacaros.env.ids import ArtifactId
+from jacaros.env.steps import Steps
+
+
+class Registry:
+    """Finds the artifact behind an id, and the artifacts behind an out port."""
+
+    def __init__(self) -> None:
+        self._steps: dict[ArtifactId, Steps] = {}
+        self._forget: dict[ArtifactId, Callable[[ArtifactId], None]] = {}
+        self._links: dict[tuple[ArtifactId, str], list[ArtifactId]] = {}
+        self._last_number = 0
+
+    def next_number(self) -> int:
+        """A number for a new artifact."""
+        self._last_number += 1
+        return self._last_number
+
+    def add(self, steps: Steps, forget: Callable[[ArtifactId], None]) -> None:
+        """Make an artifact known; *forget* is called when it is removed."""
+        self._steps[steps.id] = steps
+        self._forget[steps.id] = forget
+
+    def find(self, artifact_id: ArtifactId) -> Steps | None:
+        """The artifact with that id, None when it is gone."""
+        return self._steps.get(artifact_id)
+
+    def remove(self, artifact_id: ArtifactId) -> None:
+        """Forget an artifact and the links from and to it."""
+        del self._steps[artifact_id]
+        for key, targets in tuple(self._links.items()):
+            kept = [target for target in targets if target is not artifact_id]
+            if kept and key[0] is not artifact_id:
+                self._links[key] = kept
+            else:
+                del self._links[key]
+        self._forget.pop(artifact_id)(artifact_id)
+
+    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
+        """Put *to_id* behind *port* of *from_id*, after those that are there; once is enough."""
+        targets = self._links.setdefault((from_id, port), [])
+        if to_id not in targets:
+            targets.append(to_id)
+
+    def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
+        """The artifacts behind *port* of *from_id*, in the order of linking."""
+        return tuple(self._links.get((from_id, port), ()))

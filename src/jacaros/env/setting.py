@@ -1,0 +1,62 @@
+"""What every artifact of an environment is given: time, the log, and who is told of defects."""
+
+import sys
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from jacaros.clock import Clock
+from jacaros.errors import InternalError
+from jacaros.trace import Cause, Tracer, cause
+
+
+def log_to_stderr(text: str) -> None:
+    """Write *text* as a line on the standard error output."""
+    print(text, file=sys.stderr)
+
+
+@dataclass(slots=True)
+class Setting:
+    """The surroundings of the artifacts of one environment.
+
+    Attributes:
+        clock: where they take time from.
+        resources: what the host lends to artifacts, such as ``ros`` and ``console``, by name.
+        log: takes a line for people, such as ``[lamp] on``.
+        tracer: told of every cause, None while nobody watches.
+        on_internal_error: told of defects of JaCaROS itself; None lets them escape.
+    """
+
+    clock: Clock
+    resources: Mapping[str, object] = field(default_factory=dict)
+    log: Callable[[str], None] = log_to_stderr
+    tracer: Tracer | None = None
+    on_internal_error: Callable[[BaseException], None] | None = None
+
+    def log_error(self, who: str, what: str, error: BaseException) -> None:
+        """Log that *what* went wrong in *who*, with the trace of *error* below the kernel."""
+        self.log(f"[{who}] {what}")
+        frames = error.__traceback__.tb_next if error.__traceback__ is not None else None
+        for line in "".join(traceback.format_exception(type(error), error, frames)).splitlines():
+            self.log(f"[{who}]   {line}")
+
+    def report(self, error: BaseException) -> None:
+        """Tell of a defect of JaCaROS itself.
+
+        Raises:
+            InternalError: nobody is there to be told.
+        """
+        if self.on_internal_error is not None:
+            self.on_internal_error(error)
+        elif isinstance(error, InternalError):
+            raise error
+        else:
+            raise InternalError(f"{type(error).__name__}: {error}") from error
+
+    def trace(self, kind: str, what: str, parent: Cause | None) -> Cause | None:
+        """The next link after *parent*; *parent* itself while nobody watches."""
+        if self.tracer is None:
+            return parent
+        arisen = cause(kind, what, parent)
+        self.tracer.record(arisen, self.clock.now())
+        return arisen

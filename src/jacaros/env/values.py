@@ -1,0 +1,150 @@
+"""Plain values: what crosses between agents and artifacts.
+
+Numbers, truth values, texts, `Atom`, `Structure`, lists and dictionaries cross by content; output
+parameters are `Out` objects; anything else crosses as an opaque reference.  Nothing here knows the terms
+of the language: the body joins the two.
+"""
+
+import dataclasses
+from typing import Any
+
+
+class Atom(str):
+    """An atom of AgentSpeak, such as ``kitchen``; a plain ``str`` is an AgentSpeak *string*.
+
+    It compares and hashes like its text, so an artifact need not care whether an agent wrote
+    ``clean(kitchen)`` or ``clean("kitchen")``.
+    """
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"Atom({str.__repr__(self)})"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Structure:
+    """A compound term such as ``aborted(3)``.
+
+    Attributes:
+        functor: the name in front of the brackets.
+        arguments: plain values, at least one; without arguments it would be an `Atom`.
+    """
+
+    functor: str
+    arguments: tuple[object, ...]
+
+    def __str__(self) -> str:
+        return text(self, quoted=True)
+
+
+class Unset:
+    """The kind of `UNSET`, the value of an output parameter that no operation has set."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return "UNSET"
+
+
+UNSET = Unset()
+"""The value of an output parameter before an operation sets it; the agent's variable stays unbound."""
+
+
+class Out:
+    """An output parameter: the place where an operation leaves a result for its caller."""
+
+    __slots__ = ("_value",)
+
+    def __init__(self) -> None:
+        self._value: object = UNSET
+
+    @property
+    def value(self) -> object:
+        """The plain value left here, or `UNSET`."""
+        return self._value
+
+    @property
+    def is_set(self) -> bool:
+        """True when a value was left here."""
+        return self._value is not UNSET
+
+    def set(self, value: object) -> None:
+        """Leave *value*, turned into a plain value (see `plain`); a later call replaces it."""
+        self._value = plain(value)
+
+    def __repr__(self) -> str:
+        return f"Out({self._value!r})"
+
+
+_SCALARS = frozenset({int, float, bool, str, Atom, type(None)})
+
+
+def plain(value: Any) -> object:
+    """Turn *value* into a plain value that shares no mutable part with it.
+
+    Lists, tuples and dictionaries are copied; a dataclass or named tuple becomes a `Structure` with the
+    class name, first letter in lower case; numpy scalars and arrays (known by their ``tolist``) become
+    numbers and lists; members of ``StrEnum`` and ``IntEnum`` become texts and numbers.  What is none of
+    these stays as it is: an opaque reference.
+    """
+    kind = type(value)
+    if kind in _SCALARS:
+        return value
+    if kind is Structure:
+        return Structure(value.functor, tuple(map(plain, value.arguments)))
+    if isinstance(value, (str, int)):
+        return str.__str__(value) if isinstance(value, str) else int(value)
+    if isinstance(value, tuple) and hasattr(value, "_fields"):
+        return _structure(kind, value)
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, dict):
+        return {plain_key(key): plain(item) for key, item in value.items()}
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return _structure(kind, (getattr(value, field.name) for field in dataclasses.fields(value)))
+    if hasattr(value, "tolist") and hasattr(value, "dtype"):
+        return plain(value.tolist())
+    return value
+
+
+def plain_key(key: Any) -> Any:
+    """Turn the key of a dictionary into a plain value; one that cannot be a key any more stays."""
+    converted = plain(key)
+    return key if isinstance(converted, (list, dict)) else converted
+
+
+def _structure(kind: type, values: Any) -> object:
+    functor = kind.__name__[:1].lower() + kind.__name__[1:]
+    arguments = tuple(plain(value) for value in values)
+    return Structure(functor, arguments) if arguments else Atom(functor)
+
+
+def equal(left: object, right: object) -> bool:
+    """Tell whether two plain values are equal to an agent: 3 and 3.0 are, 1 and ``true`` are not."""
+    if isinstance(left, bool) or isinstance(right, bool):
+        return left is right
+    if isinstance(left, list) and isinstance(right, list):
+        return len(left) == len(right) and all(map(equal, left, right))
+    if isinstance(left, Structure) and isinstance(right, Structure):
+        return left.functor == right.functor and equal(list(left.arguments), list(right.arguments))
+    return bool(left == right)
+
+
+def text(value: object, quoted: bool = False) -> str:
+    """Write *value* the way agents print it; *quoted* puts strings in double quotes."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    if isinstance(value, Structure):
+        return f"{value.functor}({_joined(value.arguments)})"
+    if isinstance(value, (list, tuple)):
+        return f"[{_joined(value)}]"
+    if isinstance(value, str) and quoted and not isinstance(value, Atom):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return str(value)
+
+
+def _joined(values: list[object] | tuple[object, ...]) -> str:
+    return ",".join(text(value, quoted=True) for value in values)

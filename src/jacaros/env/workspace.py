@@ -1,0 +1,327 @@
+"""Workspaces: where artifacts are made, found, focused, linked, used and disposed."""
+
+import asyncio
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from jacaros.env import outcomes
+from jacaros.env.artifact import Artifact
+from jacaros.env.creation import FindType, artifact_type_of, attach, init_failed, init_of, refused
+from jacaros.env.errors import OperationFailed, UnknownArtifact, spelling_hint
+from jacaros.env.execution import OperationExecution
+from jacaros.env.ids import ArtifactId
+from jacaros.env.interface import Interface
+from jacaros.env.observation import Observer
+from jacaros.env.operation import LINK, OPERATION, SUCCEEDED, OperationOutcome, OperationRequest
+from jacaros.env.property import ObservableProperty
+from jacaros.env.registry import Registry
+from jacaros.env.setting import Setting
+from jacaros.env.steps import Steps
+from jacaros.env.values import Structure
+
+Made = Callable[[ArtifactId | None, OperationOutcome], None]
+"""Told what came of making an artifact: its id, or None and why not."""
+
+
+def _nobody_waits(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
+    """Take what came of making an artifact that nobody waits for."""
+
+
+class Workspace:
+    """A named place for artifacts; made by `Environment.create_workspace`.
+
+    Ids are good in the whole environment: what takes an id works for artifacts of other workspaces too.
+
+    Attributes:
+        path: full path, such as ``/main/lab``.
+        name: last part of the path.
+    """
+
+    def __init__(self, path: str, registry: Registry, setting: Setting, find_type: FindType) -> None:
+        self.path = path
+        self.name = path.rpartition("/")[2]
+        self._registry, self._setting, self._find_type = registry, setting, find_type
+        self._artifacts: dict[str, ArtifactId] = {}
+        self._making: dict[str, Steps] = {}
+        self._providers: dict[tuple[str, int], tuple[ArtifactId, ...]] = {}
+        self._watchers: list[Callable[[ArtifactId, bool], None]] = []
+
+    # ---- artifacts come and go
+
+    async def make_artifact(
+        self,
+        name: str,
+        type_name: str | type[Artifact],
+        args: Sequence[object] = (),
+        creator: str | None = None,
+    ) -> ArtifactId:
+        """Make an artifact and wait until its ``init`` has ended.
+
+        Args:
+            name: unique in the workspace.
+            type_name: looked up by the environment's ``find_type``; or the class itself.
+            args: plain values for ``init``.
+            creator: the agent that makes it.
+
+        Raises:
+            OperationFailed: with reason ``makeArtifactFailure(Why,What)``, where Why is
+                ``"artifact_already_present"``, ``"unknown_artifact_template"`` (What is the type) or
+                ``"init_failed"``; nothing is left behind.
+        """
+        made: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
+
+        def on_done(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
+            if made.done():
+                return
+            if artifact_id is not None:
+                made.set_result(artifact_id)
+            else:
+                made.set_exception(OperationFailed(outcome.message or "", outcome.reason))
+
+        execution = self.create(name, type_name, args, creator, on_done)
+        try:
+            return await made
+        except asyncio.CancelledError:
+            execution.cancel()
+            raise
+
+    def create(
+        self,
+        name: str,
+        type_name: str | type[Artifact],
+        args: Sequence[object] = (),
+        creator: str | None = None,
+        on_done: Made = _nobody_waits,
+    ) -> OperationExecution:
+        """Make an artifact like `make_artifact`, and tell *on_done*: before this returns if ``init`` is a ``def``.
+
+        Cancelling what this gives ends the making, and nothing is left behind.
+        """
+        name = str.__str__(name)
+        request = OperationRequest(self._new_id(name, type_name, creator), "init", tuple(args), creator)
+        try:
+            artifact_type, steps = self._prepare(request.artifact, type_name)
+            declared = init_of(artifact_type, request)
+        except OperationFailed as failure:
+            on_done(None, OperationOutcome(False, failure.message, failure.reason))
+            return OperationExecution(None, request)
+        self._making[name] = steps
+        request.on_done = partial(self._made, steps, on_done)
+        return steps.initialise(declared, request)
+
+    def _new_id(self, name: str, type_name: str | type[Artifact], creator: str | None) -> ArtifactId:
+        kind = type_name if isinstance(type_name, str) else type_name.__name__
+        return ArtifactId(name, str.__str__(kind), self.path, self._registry.next_number(), creator)
+
+    def _prepare(
+        self, artifact_id: ArtifactId, type_name: str | type[Artifact]
+    ) -> tuple[type[Artifact], Steps]:
+        name = artifact_id.name
+        making = self._making.get(name)
+        if name in self._artifacts or (making is not None and not making.disposed):
+            raise refused(
+                "artifact_already_present", name, f"workspace {self.path} has an artifact {name} already"
+            )
+        artifact_type = artifact_type_of(type_name, self._find_type, self._setting)
+        return artifact_type, attach(artifact_type, artifact_id, self, self._setting)
+
+    def _made(self, steps: Steps, on_done: Made, outcome: OperationOutcome) -> None:
+        name = steps.id.name
+        del self._making[name]
+        if not outcome.ok:
+            steps.dispose()
+            failure = init_failed(steps.id, outcome.message or "")
+            on_done(None, OperationOutcome(False, failure.message, failure.reason))
+            return
+        steps.initialised = True
+        self._registry.add(steps, self._forget)
+        self._artifacts[name] = steps.id
+        self._changed(steps.id, True)
+        on_done(steps.id, SUCCEEDED)
+
+    def dispose_artifact(self, artifact_id: ArtifactId) -> None:
+        """End an artifact: observers are told that its properties are gone, its operations fail.
+
+        Its `Artifact.dispose` runs when the last operation has ended, which may be after this returns.
+
+        Raises:
+            UnknownArtifact: it is gone already.
+        """
+        steps = self._steps_of(artifact_id)
+        self._registry.remove(artifact_id)
+        steps.dispose()
+
+    def _forget(self, artifact_id: ArtifactId) -> None:
+        del self._artifacts[artifact_id.name]
+        self._changed(artifact_id, False)
+
+    async def close(self) -> None:
+        """Dispose all artifacts, the last one made first, and wait until they have given back everything."""
+        ending = list(self._making.values())
+        for steps in ending:
+            steps.dispose()
+        for artifact_id in reversed(self.artifacts()):
+            steps = self._registry.find(artifact_id)
+            if steps is not None:
+                ending.append(steps)
+                self.dispose_artifact(artifact_id)
+        for steps in ending:
+            await steps.closed()
+
+    # ---- artifacts are found
+
+    def artifacts(self) -> tuple[ArtifactId, ...]:
+        """All artifacts, the oldest first; those that every workspace has are the first."""
+        return tuple(self._artifacts.values())
+
+    def lookup(self, name: str) -> ArtifactId:
+        """Find an artifact by its name.
+
+        Raises:
+            UnknownArtifact: there is none, or its ``init`` has not ended.
+        """
+        found = self._artifacts.get(name)
+        if found is None:
+            hint = spelling_hint(name, self._artifacts)
+            message = f"workspace {self.path} has no artifact {name}{hint}"
+            raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
+        return found
+
+    async def available(self, name: str) -> ArtifactId:
+        """Wait until there is an artifact of that name."""
+        if name not in self._artifacts:
+            found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+            def look(artifact_id: ArtifactId, present: bool) -> None:
+                if present and artifact_id.name == name and not found.done():
+                    found.set_result(None)
+
+            stop = self.watch(look)
+            try:
+                await found
+            finally:
+                stop()
+        return self.lookup(name)
+
+    def watch(self, watcher: Callable[[ArtifactId, bool], None]) -> Callable[[], None]:
+        """Call *watcher* with every artifact that comes (True) or goes (False); gives what ends that."""
+        self._watchers.append(watcher)
+        return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None
+
+    def providers(self, operation: str, arity: int) -> tuple[ArtifactId, ...]:
+        """The artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
+        found = self._providers.get((operation, arity))
+        if found is None:
+            found = tuple(
+                artifact_id
+                for artifact_id in self._artifacts.values()
+                if self.interface(artifact_id).operations.find(operation, arity) is not None
+            )
+            self._providers[operation, arity] = found
+        return found
+
+    def operations_changed(self) -> None:
+        """Be told that an artifact has other operations now."""
+        self._providers.clear()
+
+    def interface(self, artifact_id: ArtifactId) -> Interface:
+        """The operations of an artifact.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        return self._steps_of(artifact_id).interface
+
+    def properties(self, artifact_id: ArtifactId) -> tuple[ObservableProperty, ...]:
+        """The observable properties of an artifact, as observers know them.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        return self._steps_of(artifact_id).publication.committed()
+
+    def observers(self, artifact_id: ArtifactId) -> tuple[Observer, ...]:
+        """Who focuses an artifact, in the order of focusing.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        return self._steps_of(artifact_id).publication.observers
+
+    # ---- artifacts are used
+
+    def execute(self, request: OperationRequest) -> OperationExecution:
+        """Run an operation for an agent.
+
+        A plain ``def`` of a free artifact has ended when this returns: its changes are committed, observers
+        have been told, then ``request.on_done``.
+        """
+        steps = self._registry.find(request.artifact)
+        if steps is None:
+            return self._gone(request)
+        return steps.execute(request, OPERATION)
+
+    def execute_linked(self, request: OperationRequest) -> OperationExecution:
+        """Run a linked operation for another artifact; see `Artifact.call_linked`."""
+        steps = self._registry.find(request.artifact)
+        if steps is None:
+            return self._gone(request)
+        return steps.execute(request, LINK)
+
+    def _gone(self, request: OperationRequest) -> OperationExecution:
+        refused_execution = OperationExecution(None, request)
+        request.on_done(outcomes.not_available(request.artifact))
+        return refused_execution
+
+    def focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
+        """Let *observer* receive what an artifact publishes, beginning with all its properties.
+
+        Focusing again has no effect.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        self._steps_of(artifact_id).publication.add(observer)
+
+    def stop_focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
+        """Let *observer* receive nothing more, after the removal of all properties.
+
+        Without effect when it does not focus the artifact, or the artifact is gone.
+        """
+        steps = self._registry.find(artifact_id)
+        if steps is not None:
+            steps.publication.remove(observer)
+
+    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
+        """Put an artifact behind an out port of another one, beside those that are there.
+
+        Raises:
+            UnknownArtifact: one of them is gone.
+            OperationFailed: *from_id* has no such port; reason ``unknown_port(Port)``.
+        """
+        ports = self._steps_of(from_id).ports
+        self._steps_of(to_id)
+        if port not in ports:
+            offer = f"; its ports are {', '.join(ports)}" if ports else "; it has none"
+            message = f"artifact {from_id.name} ({from_id.type_name}) has no out port {port}{offer}"
+            raise OperationFailed(message, Structure("unknown_port", (str.__str__(port),)))
+        self._registry.link(from_id, port, to_id)
+
+    def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
+        """The artifacts behind an out port, in the order of linking."""
+        return self._registry.linked(from_id, port)
+
+    def _steps_of(self, artifact_id: ArtifactId) -> Steps:
+        steps = self._registry.find(artifact_id)
+        if steps is None:
+            gone = outcomes.not_available(artifact_id)
+            raise UnknownArtifact(gone.message or "", gone.reason)
+        return steps
+
+    def _changed(self, artifact_id: ArtifactId, present: bool) -> None:
+        self._providers.clear()
+        for watcher in tuple(self._watchers):
+            try:
+                watcher(artifact_id, present)
+            except Exception as error:
+                self._setting.report(error)
