@@ -27,11 +27,11 @@ def divide(left: float, right: float) -> float:
     return left / right
 
 
-def _to_int(value: float) -> int:
+def to_int(value: float) -> int:
     """Truncate as Java casts a double to a 32-bit integer."""
     if value != value:
         return 0
-    return max(-(2**31), min(2**31 - 1, math.trunc(value) if math.isfinite(value) else int(math.copysign(2**31, value))))
+    return math.trunc(max(-(2.0**31), min(2.0**31 - 1, value)))
 
 
 def integer_divide(left: float, right: float) -> float:
@@ -40,7 +40,7 @@ def integer_divide(left: float, right: float) -> float:
     Raises:
         ArithmeticFault: when the divisor is zero.
     """
-    dividend, divisor = _to_int(left), _to_int(right)
+    dividend, divisor = to_int(left), to_int(right)
     if divisor == 0:
         raise ArithmeticFault("integer division by zero")
     quotient = abs(dividend) // abs(divisor)
@@ -124,7 +124,7 @@ def _is_open(operand: Term) -> bool:
 
 def _number(operand: Term, term: Term) -> float:
     if operand.__class__ is float:
-        return operand  # type: ignore[no-any-return]
+        return operand
     if operand.__class__ is Annotated:
         return _number(deref(operand.term), term)
     warn(f"an operand of '{term[0].name}' is no number: {operand!r}")

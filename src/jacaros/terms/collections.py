@@ -4,18 +4,23 @@ import heapq
 import itertools
 from collections import deque
 from collections.abc import Iterator
+from typing import Any
 
 from jacaros.terms.order import SortKey, sorted_terms
-from jacaros.terms.values import Term
+from jacaros.terms.values import Term, make_list
 
 
 class SetValue:
-    """``{a, b}``: each element once, read in the standard order."""
+    """``{a, b}``: each element once, read in the standard order.  Sets with the same elements are equal."""
 
     __slots__ = ("items",)
 
     def __init__(self, items: dict[Term, None] | None = None) -> None:
         self.items: dict[Term, None] = {} if items is None else items
+
+    def as_list(self) -> Term:
+        """The elements as a list term."""
+        return make_list(list(self))
 
     def __iter__(self) -> Iterator[Term]:
         return iter(sorted_terms(self.items))
@@ -23,14 +28,27 @@ class SetValue:
     def __len__(self) -> int:
         return len(self.items)
 
+    def __eq__(self, other: object) -> bool:
+        return other.__class__ is SetValue and self.items.keys() == other.items.keys()
+
+    def __hash__(self) -> int:
+        return hash(SetValue)  # the elements change while the set is an argument of a belief
+
 
 class MapValue:
-    """``{k->v}``: a value per key, in the order of first insertion."""
+    """``{k->v}``: a value per key, read in the standard order of the keys."""
 
     __slots__ = ("items",)
 
     def __init__(self, items: dict[Term, Term] | None = None) -> None:
         self.items: dict[Term, Term] = {} if items is None else items
+
+    def as_list(self) -> Term:
+        """Keys and values in turn as a list term."""
+        return make_list([part for key in self for part in (key, self.items[key])])
+
+    def __iter__(self) -> Iterator[Term]:
+        return iter(sorted_terms(self.items))
 
     def __len__(self) -> int:
         return len(self.items)
@@ -44,7 +62,7 @@ class QueueValue:
     def __init__(self, priority: bool = False) -> None:
         self.priority = priority
         self._items: deque[Term] = deque()
-        self._heap: list[tuple[SortKey, int, Term]] = []
+        self._heap: list[tuple[Any, int, Term]] = []  # ordered by SortKey
         self._numbers = itertools.count()
 
     def add(self, item: Term) -> None:
@@ -77,6 +95,10 @@ class QueueValue:
         for item in self:
             other.add(item)
         return other
+
+    def as_list(self) -> Term:
+        """The elements in their order as a list term."""
+        return make_list(list(self))
 
     def __iter__(self) -> Iterator[Term]:
         return iter([entry[2] for entry in sorted(self._heap)] if self.priority else list(self._items))

@@ -1,12 +1,11 @@
 """The arithmetic functions of the language (``math.abs``, ``math.sum`` …)."""
 
 import math
-import statistics
 from collections.abc import Callable
 
-from jacaros.terms.arithmetic import ArithmeticFault, functions, settle, warn
+from jacaros.terms import arithmetic
+from jacaros.terms.arithmetic import ArithmeticFault, functions, settle
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.order import compare
 from jacaros.terms.unifier import free_variables, resolve
 from jacaros.terms.values import Annotated, String, Term, is_list, list_items
 
@@ -17,7 +16,7 @@ def _on_number(compute: Callable[[float], float]) -> Callable[..., Term]:
         if value.__class__ is not float:
             if free_variables(value):
                 return None
-            warn(f"the argument of a function is no number: {value!r}")
+            arithmetic.warn(f"the argument of a function is no number: {value!r}")
             return math.nan
         try:
             return float(compute(value))
@@ -29,12 +28,27 @@ def _on_number(compute: Callable[[float], float]) -> Callable[..., Term]:
     return function
 
 
+def _toward(rounded: Callable[[float], int]) -> Callable[[float], float]:
+    """Floor or ceiling; infinite values stay as they are."""
+    return lambda value: float(rounded(value)) if math.isfinite(value) else value
+
+
 def _round(value: float) -> float:
-    return value if not math.isfinite(value) else float(math.floor(value + 0.5))
+    """The nearest 64-bit integer, halves up."""
+    if value != value:
+        return 0.0
+    if not math.isfinite(value):
+        return math.copysign(2.0**63, value)
+    whole = math.floor(value)
+    return float(max(-(2**63), min(2**63 - 1, whole + (value - whole >= 0.5))))
 
 
-def _on_values(compute: Callable[[list[Term]], Term]) -> Callable[..., Term]:
-    """A function that takes one list, or its elements as arguments."""
+def _log(value: float) -> float:
+    return -math.inf if value == 0.0 else math.log(value)
+
+
+def _on_list(compute: Callable[[list[float]], float]) -> Callable[..., Term]:
+    """A function of the numbers in a list (other elements are passed over), or of its arguments."""
 
     def function(*arguments: Term) -> Term:
         values = [resolve(a) for a in arguments]
@@ -45,27 +59,46 @@ def _on_values(compute: Callable[[list[Term]], Term]) -> Callable[..., Term]:
                 values = list(values[0])
             elif is_list(values[0]):
                 values = list(list_items(values[0]))
-        if not values:
-            raise ArithmeticFault("a function of an empty list")
-        return compute(values)
+        return compute([v for v in values if v.__class__ is float])
 
     return function
 
 
-def _greatest(values: list[Term]) -> Term:
-    best = values[0]
-    for value in values[1:]:
-        if compare(value, best) > 0:
-            best = value
-    return best
+def _of_some(compute: Callable[[list[float]], float]) -> Callable[[list[float]], float]:
+    """A function that has no value without numbers."""
+
+    def function(numbers: list[float]) -> float:
+        if not numbers:
+            raise ArithmeticFault("a function of a list without numbers")
+        return compute(numbers)
+
+    return function
 
 
-def _smallest(values: list[Term]) -> Term:
-    best = values[0]
-    for value in values[1:]:
-        if compare(value, best) < 0:
-            best = value
-    return best
+def _sum(numbers: list[float]) -> float:
+    """Added up from the left, so that every Python rounds as Java does."""
+    total = 0.0
+    for number in numbers:
+        total += number
+    return total
+
+
+def _average(numbers: list[float]) -> float:
+    return _sum(numbers) / len(numbers)
+
+
+def _median(numbers: list[float]) -> float:
+    ordered = sorted(numbers)
+    middle = len(ordered) // 2
+    return ordered[middle] if len(ordered) % 2 else (ordered[middle - 1] + ordered[middle]) / 2
+
+
+def _standard_deviation(numbers: list[float]) -> float:
+    """Of a sample: 0 for no numbers, not a number for a single one."""
+    if len(numbers) < 2:
+        return math.nan if numbers else 0.0
+    average = _average(numbers)
+    return math.sqrt(_sum([(n - average) * (n - average) for n in numbers]) / (len(numbers) - 1))
 
 
 def _length(argument: Term) -> Term:
@@ -81,34 +114,30 @@ def _length(argument: Term) -> Term:
     return None if free_variables(value) else math.nan
 
 
-def _numbers(values: list[Term]) -> list[float]:
-    return [v if v.__class__ is float else math.nan for v in values]
-
-
 functions.update(
     {
         "math.abs": _on_number(abs),
         "math.acos": _on_number(math.acos),
         "math.asin": _on_number(math.asin),
         "math.atan": _on_number(math.atan),
-        "math.ceil": _on_number(math.ceil),
+        "math.ceil": _on_number(_toward(math.ceil)),
         "math.cos": _on_number(math.cos),
         "math.exp": _on_number(math.exp),
-        "math.floor": _on_number(math.floor),
-        "math.log": _on_number(math.log),
+        "math.floor": _on_number(_toward(math.floor)),
+        "math.log": _on_number(_log),
         "math.round": _on_number(_round),
         "math.sin": _on_number(math.sin),
         "math.sqrt": _on_number(math.sqrt),
         "math.tan": _on_number(math.tan),
         "math.e": lambda: math.e,
         "math.pi": lambda: math.pi,
-        "math.max": _on_values(_greatest),
-        "math.min": _on_values(_smallest),
-        "math.sum": _on_values(lambda v: float(sum(_numbers(v)))),
-        "math.average": _on_values(lambda v: statistics.fmean(_numbers(v))),
-        "math.mean": _on_values(lambda v: statistics.fmean(_numbers(v))),
-        "math.median": _on_values(lambda v: float(statistics.median(_numbers(v)))),
-        "math.std_dev": _on_values(lambda v: statistics.stdev(_numbers(v)) if len(v) > 1 else 0.0),
+        "math.max": _on_list(_of_some(max)),
+        "math.min": _on_list(_of_some(min)),
+        "math.sum": _on_list(_sum),
+        "math.average": _on_list(_of_some(_average)),
+        "math.mean": _on_list(_of_some(_average)),
+        "math.median": _on_list(_of_some(_median)),
+        "math.std_dev": _on_list(_standard_deviation),
         ".length": _length,
     }
 )

@@ -1,12 +1,17 @@
-"""The total order of terms: numbers, strings, lists, literals, unbound variables."""
+"""The total order of terms: numbers, strings, lists, literals, other values, unbound variables.
 
+It never looks at addresses, so that a run repeated with the same seed sorts alike.
+"""
+
+import itertools
 from collections.abc import Iterable
 from functools import cmp_to_key
 
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.values import CONS, NIL, Annotated, Functor, String, Term, Var, annotations_of
+from jacaros.terms.values import CONS, NIL, Annotated, Functor, Reference, String, Term, Var, annotations_of
 
 _NUMBER, _STRING, _LIST, _LITERAL, _OTHER, _VARIABLE = range(6)
+_variable_numbers = itertools.count()
 
 
 def _rank(term: Term) -> int:
@@ -34,8 +39,10 @@ def compare(left: Term, right: Term) -> int:
         other = _rank(right)
         if rank != other:
             return rank - other
-        if rank in (_NUMBER, _STRING):
-            return (left > right) - (left < right)
+        if rank == _NUMBER:
+            return _compare_numbers(left, right)
+        if rank == _STRING:
+            return -1 if left < right else int(left > right)
         if rank == _LIST:
             if left is NIL or right is NIL:
                 return (left is not NIL) - (right is not NIL)
@@ -46,11 +53,40 @@ def compare(left: Term, right: Term) -> int:
             continue
         if rank == _LITERAL:
             return _compare_literals(left, right)
-        if rank == _VARIABLE:
-            return (left.name > right.name) - (left.name < right.name) or (id(left) > id(right)) - (
-                id(left) < id(right)
-            )
-        return (repr(left) > repr(right)) - (repr(left) < repr(right))
+        return _compare_variables(left, right) if rank == _VARIABLE else _compare_others(left, right)
+
+
+def _compare_numbers(left: float, right: float) -> int:
+    """By value; what is not a number comes after all numbers, so that sorting stays well defined."""
+    if left == right:
+        return 0
+    if left < right:
+        return -1
+    return 1 if left > right else (left != left) - (right != right)
+
+
+def _compare_variables(left: Var, right: Var) -> int:
+    if left.name != right.name:
+        return -1 if left.name < right.name else 1
+    return _number_of(left) - _number_of(right)
+
+
+def _number_of(variable: Var) -> int:
+    """The variable's place among those of its name, given out at the first comparison."""
+    try:
+        return variable.number
+    except AttributeError:
+        variable.number = next(_variable_numbers)
+        return variable.number
+
+
+def _compare_others(left: Term, right: Term) -> int:
+    """Sets, maps and queues by kind and contents, opaque objects by their numbers."""
+    if left.__class__ is not right.__class__:
+        return -1 if left.__class__.__name__ < right.__class__.__name__ else 1
+    if left.__class__ is Reference:
+        return 0 if left == right else left.number - right.number
+    return compare(left.as_list(), right.as_list())
 
 
 def _compare_literals(left: Term, right: Term) -> int:
@@ -101,7 +137,7 @@ def annotation_set(annotations: tuple[Term, ...]) -> tuple[Term, ...]:
         return annotations
     result: list[Term] = []
     for annotation in sorted_terms(annotations):
-        if not result or result[-1] != annotation:
+        if not result or compare(result[-1], annotation) != 0:
             result.append(annotation)
     return tuple(result)
 

@@ -55,8 +55,10 @@ def body_steps(body: Term) -> Iterator[Term]:
 
 def step_parts(step_term: Term) -> tuple[str, tuple[Term, ...]]:
     """Operator and operands of a step; any other term is an action."""
-    if step_term.__class__ is tuple and step_term[0].kind == KIND and step_term[0] not in (PLAN, TRIGGER, RULE):
-        return step_term[0].name, step_term[1:]
+    if step_term.__class__ is tuple:
+        symbol = step_term[0]
+        if symbol.kind == KIND and symbol not in (PLAN, TRIGGER, RULE):
+            return symbol.name, step_term[1:]
     return "", (step_term,)
 
 

@@ -27,14 +27,19 @@ _MAX_DEPTH = 300
 
 def number_text(value: float) -> str:
     """A number: integral values without a fraction, others in the shortest form of Java's doubles."""
+    if -(2.0**63) <= value <= 2.0**63 and value == math.trunc(value):
+        return str(min(int(value), 2**63 - 1))
+    return double_text(value)
+
+
+def double_text(value: float) -> str:
+    """A number as Java's ``Double.toString`` writes it: always with a fraction or an exponent."""
     if value != value:
         return "NaN"
     if math.isinf(value):
         return "Infinity" if value > 0 else "-Infinity"
-    if value == math.trunc(value) and abs(value) < 2**63:
-        return str(int(value))
     magnitude = abs(value)
-    if 1e-3 <= magnitude < 1e7:
+    if 1e-3 <= magnitude < 1e7 or magnitude == 0.0:
         return repr(value)
     mantissa, _, exponent = f"{value!r}e".partition("e")
     if not exponent.rstrip("e"):
@@ -72,7 +77,7 @@ def display(term: Term) -> str:
     if term.__class__ is String:
         return str(term)
     if term.__class__ is Var:
-        return term.name if term.name.startswith("_") else f"{term.name}<no-value>"
+        return f"{term.name}<no-value>"
     return _write(term, 0)
 
 
@@ -186,11 +191,10 @@ def _write_object(term: Term, depth: int) -> str:
     if isinstance(term, SetValue):
         return "{" + ",".join(_write(i, depth + 1) for i in term) + "}"
     if isinstance(term, MapValue):
-        return "{" + ",".join(f"{_write(k, depth + 1)}->{_write(v, depth + 1)}" for k, v in term.items.items()) + "}"
+        pairs = ((_write(key, depth + 1), _write(term.items[key], depth + 1)) for key in term)
+        return "{" + ",".join(f"{key}->{value}" for key, value in pairs) + "}"
     if isinstance(term, QueueValue):
         return "[" + ",".join(_write(i, depth + 1) for i in term) + "]"
     if isinstance(term, Reference):
         return f"cobj_{term.number}"
     return str(term)
-
-

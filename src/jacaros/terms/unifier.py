@@ -1,8 +1,8 @@
 """Unification, substitution and renaming of terms.
 
-Variables are bound in place; a `Trail` remembers which, so that a search can take bindings back.  What differs
-from textbook unification is the treatment of annotations (Jason): those of the left term must be a subset of
-those of the right one.
+Variables are bound in place; a `Trail` remembers which, so that a search can take bindings back.  What
+differs from textbook unification is the treatment of annotations (Jason): those of the left term must be a
+subset of those of the right one.
 """
 
 from collections.abc import Iterator
@@ -41,6 +41,8 @@ class Trail(list[Var]):
 
 ATOMIC = frozenset({float, String, Functor})
 """Classes of values that hold no variables and evaluate to themselves."""
+HOLDERS = frozenset({tuple, Annotated})
+"""Classes of values that may hold variables."""
 
 
 def bind(variable: Var, value: Term, trail: Trail) -> None:
@@ -85,7 +87,7 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:
 
 def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
     """Bind, unless the value plainly contains the variable (a cyclic term could never be printed)."""
-    if value.__class__ is tuple and _occurs(variable, value):
+    if value.__class__ in HOLDERS and _occurs(variable, value):
         return False
     bind(variable, value, trail)
     return True
@@ -93,11 +95,16 @@ def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
 
 def _occurs(variable: Var, value: Term) -> bool:
     for _ in range(64):
+        if value.__class__ is Annotated:
+            tail = () if value.tail is None else (value.tail,)
+            if any(_occurs(variable, deref(annotation)) for annotation in (*value.annotations, *tail)):
+                return True
+            value = deref(value.term)
         if value.__class__ is not tuple:
             return value is variable
         for argument in value[1:-1]:
             argument = deref(argument)
-            if argument is variable or (argument.__class__ is tuple and _occurs(variable, argument)):
+            if argument is variable or (argument.__class__ in HOLDERS and _occurs(variable, argument)):
                 return True
         value = deref(value[-1])
     return False
@@ -200,7 +207,7 @@ def _resolve_structure(term: Term) -> Term:
     if changed:
         term = tuple(parts)
     kind = term[0].kind
-    if kind == ARITHMETIC or kind == FUNCTION:
+    if kind in (ARITHMETIC, FUNCTION):
         return settle(term)
     return term
 
@@ -299,9 +306,7 @@ def _rename(term: Term, names: dict[Var, Var]) -> Term:
         return (term[0], *(_rename(a, names) for a in term[1:]))
     if kind is Annotated:
         tail = None if term.tail is None else _rename(term.tail, names)
-        return Annotated(
-            _rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail
-        )
+        return Annotated(_rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail)
     return term
 
 

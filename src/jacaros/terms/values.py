@@ -77,7 +77,7 @@ class String(str):
     def __add__(self, other: object) -> NoReturn:
         raise TypeError("strings are joined with .concat")
 
-    __radd__ = __mul__ = __rmul__ = __mod__ = __add__  # type: ignore[assignment]
+    __radd__ = __mul__ = __rmul__ = __mod__ = __add__
 
     def __repr__(self) -> str:
         return f"String({str.__repr__(self)})"
@@ -90,9 +90,12 @@ class Var:
         ref: its value, or None while it has none.
         at: number of the goal posting after which it was bound (see `Trail.serial`).
         name: for people; names of unnamed variables begin with ``_``.
+        number: place among the variables of that name in the standard order; unset until it is asked for.
     """
 
-    __slots__ = ("at", "name", "ref")
+    __slots__ = ("at", "name", "number", "ref")
+
+    number: int
 
     def __init__(self, name: str = "_") -> None:
         self.ref: Term = None
@@ -120,9 +123,9 @@ class Annotated:
     def __eq__(self, other: object) -> bool:
         return (
             other.__class__ is Annotated
-            and self.term == other.term  # type: ignore[attr-defined]
-            and self.annotations == other.annotations  # type: ignore[attr-defined]
-            and self.tail is other.tail  # type: ignore[attr-defined]
+            and self.term == other.term
+            and self.annotations == other.annotations
+            and self.tail is other.tail
         )
 
     def __hash__(self) -> int:
@@ -148,7 +151,7 @@ class Reference:
         self.value, self.number = value, Reference._count
 
     def __eq__(self, other: object) -> bool:
-        return other.__class__ is Reference and self.value == other.value  # type: ignore[attr-defined]
+        return other.__class__ is Reference and self.value == other.value
 
     def __hash__(self) -> int:
         try:
@@ -210,8 +213,8 @@ def functor_of(term: Term) -> Functor | None:
     """The functor of an atom, structure or annotated one; None for other terms and for lists."""
     term = bare(term)
     if term.__class__ is tuple:
-        return None if term[0] is CONS else term[0]  # type: ignore[no-any-return]
-    return term if term.__class__ is Functor and term is not NIL else None  # type: ignore[return-value]
+        return None if term[0] is CONS else term[0]
+    return term if term.__class__ is Functor and term is not NIL else None
 
 
 def arguments_of(term: Term) -> tuple[Term, ...]:
