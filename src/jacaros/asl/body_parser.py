@@ -1,6 +1,6 @@
 """Plan bodies: steps, control statements, forks and groups."""
 
-from typing import Final
+from typing import Final, NoReturn
 
 from jacaros.asl import nodes
 from jacaros.asl.lexer import Token
@@ -8,7 +8,8 @@ from jacaros.asl.term_parser import TermParser
 
 _CONTROL: Final = frozenset({"if", "while", "for"})
 _STEP_STARTS: Final = _CONTROL | frozenset(
-    """atom variable number string true false not ! !! ? + - ~ :: ( [ { ^ else elif error""".split()
+    {"atom", "variable", "number", "string", "true", "false", "not", "~", "::", "(", "[", "{"}
+    | {"!", "!!", "?", "+", "-", "^", "else", "elif", "error"}
 )
 _CHANGES: Final = frozenset({"+", "-", "-+", "++", "--", "+<", "+>", "-++"})
 _FORMULA_AFTER_GROUP: Final = frozenset(
@@ -52,9 +53,7 @@ class BodyParser(TermParser):
             message or "a ';' is missing before this step",
             hint=hint or "steps are separated by ';', the last one is followed by '.'",
         )
-        if message is not None:
-            return False
-        return True
+        return message is None
 
     def _after_statement(self) -> bool:
         """Whether a control statement has just ended: behind it the ``;`` may be left out."""
@@ -192,9 +191,9 @@ class BodyParser(TermParser):
         if self.token.kind not in ("atom", "variable", "~", "::"):
             self.unexpected("a goal")
         goal = self.operand(formula=True)
-        if isinstance(goal, nodes.Literal | nodes.Variable):
-            return goal
-        self.fail("an internal action cannot be a goal", goal.span, "write it without '!'")
+        if not isinstance(goal, nodes.Literal | nodes.Variable):
+            self.fail("an internal action cannot be a goal", goal.span, "write it without '!'")
+        return goal
 
     def _belief_change(self) -> nodes.BeliefChange:
         start = self.advance()
@@ -239,6 +238,9 @@ class BodyParser(TermParser):
             return nodes.Constraint(action, span=term.span)
         if isinstance(term, nodes.Not | nodes.And | nodes.Or):
             return self._condition_as_action(term)
+        return self._no_step(term)
+
+    def _no_step(self, term: nodes.Term) -> NoReturn:
         hint = "group steps with round brackets" if isinstance(term, nodes.BodyTerm) else None
         self.fail("this is a term and no step of a body", term.span, hint)
 

@@ -46,13 +46,13 @@ class Cursor:
         """Take the current token (the last one, of kind ``end``, is never passed)."""
         token = self.token
         if token.kind != "end":
-            self.index += 1
-            self.token = self.tokens[self.index]
+            self.index = index = self.index + 1
+            self.token = self.tokens[index]
         return token
 
-    def peek(self, distance: int = 1) -> Token:
-        """The token *distance* ahead."""
-        return self.tokens[min(self.index + distance, len(self.tokens) - 1)]
+    def peek(self) -> Token:
+        """The token behind the current one."""
+        return self.tokens[self.index + 1]
 
     def previous(self) -> Token:
         """The token before the current one."""
@@ -77,12 +77,12 @@ class Cursor:
     # nesting
 
     def enter(self) -> None:
-        """Go one level deeper into brackets or statements.  A clause that is given up leaves by `reset_nesting`."""
+        """Go one level deeper into brackets or statements; a clause that is given up does not come back."""
         self._nesting += 1
         if self._nesting > MAX_NESTING:
             self.fail(
                 "this is nested too deeply",
-                hint=f"at most {MAX_NESTING} levels of brackets are read; give the inner part a name of its own",
+                hint=f"at most {MAX_NESTING} levels of brackets are read",
             )
 
     def leave(self) -> None:
@@ -104,7 +104,7 @@ class Cursor:
         self.diagnostics.append(Diagnostic("warning", message, span, hint))
 
     def fail(self, message: str, span: Span | None = None, hint: str | None = None) -> NoReturn:
-        """Record an error and give up the clause.  Nothing is recorded at a token the lexer already reported."""
+        """Record an error, unless the lexer already reported this token, and give up the clause."""
         if self.token.kind != "error":
             self.report(message, span, hint)
         raise SyntaxPanic
@@ -204,10 +204,10 @@ class Cursor:
         return index
 
     def at_plan(self, index: int | None = None) -> bool:
-        """Whether a plan begins at *index*: a label, a goal trigger, or a belief trigger that goes on like a plan.
+        """Whether a plan begins at *index*: a label, a goal trigger, or a belief trigger with more behind it.
 
-        A belief trigger alone looks like a body step (``+b(X)``), so it needs a context, a goal condition or a
-        body behind it.
+        A belief trigger alone looks like a body step (``+b(X)``), so it needs a context, a goal condition or
+        a body behind it.
         """
         at = self.index if index is None else index
         token = self.tokens[at]

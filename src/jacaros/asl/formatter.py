@@ -7,10 +7,9 @@ from functools import singledispatch
 from typing import Final
 
 from jacaros.asl import nodes
+from jacaros.terms.text import number_text, quoted
 
 _SPACED: Final = frozenset({"div", "mod"})
-_MAX_LONG: Final = 2**63 - 1
-_MIN_LONG: Final = -(2**63)
 
 
 @singledispatch
@@ -21,18 +20,18 @@ def format_term(node: nodes.Node) -> str:
 
 @format_term.register
 def _(node: nodes.Number) -> str:
-    return format_number(node.value)
+    return number_text(node.value)
 
 
 @format_term.register
 def _(node: nodes.String) -> str:
-    escaped = node.value.replace('"', '\\"').replace("\n", "\\n")
-    return f'"{escaped}"'
+    return quoted(node.value)
 
 
 @format_term.register
 def _(node: nodes.Variable) -> str:
-    return f"{_namespace(node.namespace)}{'~' if node.negated else ''}{node.name}{_annotations(node.annotations)}"
+    name = f"{_namespace(node.namespace)}{'~' if node.negated else ''}{node.name}"
+    return name + _annotations(node.annotations)
 
 
 @format_term.register
@@ -55,7 +54,7 @@ def _(node: nodes.ListTerm) -> str:
 def _(node: nodes.Arithmetic) -> str:
     operator = f" {node.operator} " if node.operator in _SPACED else node.operator
     if len(node.operands) == 1:
-        return f"{operator}({format_term(node.operands[0])})"
+        return f"({operator}{format_term(node.operands[0])})"
     left, right = node.operands
     return f"({format_term(left)}{operator}{format_term(right)})"
 
@@ -194,28 +193,6 @@ def format_plan(plan: nodes.Plan) -> str:
     if plan.subplans:
         text += f" {{ {' '.join(format_plan(inner) for inner in plan.subplans)} }}"
     return text
-
-
-def format_number(value: float) -> str:
-    """A number as the language prints it: ``3``, ``2.5``, ``1.0E20``, ``NaN``, ``-Infinity``."""
-    if value != value:
-        return "NaN"
-    if value in (float("inf"), float("-inf")):
-        return "Infinity" if value > 0 else "-Infinity"
-    rounded = max(_MIN_LONG, min(_MAX_LONG, round(value)))
-    if float(rounded) == value:
-        return str(rounded)
-    if 1e-3 <= abs(value) < 1e7:
-        return repr(value)
-    digits, _, exponent = f"{value!r}".partition("e")
-    if not exponent:
-        sign, digits = ("-", digits[1:]) if digits[0] == "-" else ("", digits)
-        whole, _, fraction = digits.partition(".")
-        exponent = str(len(whole) - 1)
-        digits = f"{sign}{whole[0]}.{(whole[1:] + fraction).rstrip('0') or '0'}"
-    elif "." not in digits:
-        digits += ".0"
-    return f"{digits}E{int(exponent)}"
 
 
 def _bare(formula: nodes.Term) -> str:

@@ -7,9 +7,9 @@ from jacaros.asl.diagnostics import Diagnostic
 
 
 def check_labels(plans: list[nodes.Plan], diagnostics: list[Diagnostic]) -> None:
-    """Report labels that two different plans have; a repetition of one and the same plan is taken out of *plans*.
+    """Report labels that two different plans have; repetitions of one and the same plan are taken out.
 
-    Repetitions come about when a file is included twice.
+    Repetitions come about when a file is included twice.  *plans* is changed in place.
     """
     known: dict[tuple[object, str], nodes.Plan] = {}
     repeated: list[int] = []
@@ -33,7 +33,9 @@ def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
     assert isinstance(second.label, nodes.Literal)
     where = ""
     if first.span is not None:
-        where = f"; the first one is at {first.span.file.name}, line {first.span.line}"
+        file = first.span.file.name
+        elsewhere = second.span is None or second.span.file.name != file
+        where = f"; the first one is at {f'{file}, ' if elsewhere else ''}line {first.span.line}"
     return Diagnostic(
         "error",
         f"two different plans have one label, @{second.label.functor}{where}",

@@ -45,8 +45,8 @@ def load_program(name: str, text: str, read: Read | None = None) -> tuple[nodes.
 def parse_term(text: str, name: str = "<string>", functions: Mapping[str, int] | None = None) -> nodes.Term:
     """The term in *text*; a final '.' is allowed.
 
-    *functions* are the registered arithmetic functions with their numbers of arguments.  Unnamed variables get
-    numbers that no program has.
+    *functions* are the registered arithmetic functions with their numbers of arguments.  Unnamed variables
+    get numbers that no program has.
 
     Raises
     ------

@@ -4,10 +4,19 @@ from dataclasses import dataclass, field
 from typing import Final
 
 KEYWORDS: Final = frozenset(
-    """
-    true false default source self percept atomic breakpoint all_unifs
-    tell untell achieve unachieve askOne askAll askHow tellHow untellHow signal
-    """.split()
+    {"true", "false", "default", "source", "self", "percept", "atomic", "breakpoint", "all_unifs"}
+    | {
+        "tell",
+        "untell",
+        "achieve",
+        "unachieve",
+        "askOne",
+        "askAll",
+        "askHow",
+        "tellHow",
+        "untellHow",
+        "signal",
+    }
 )
 """Names that stay in the default namespace wherever they are written."""
 

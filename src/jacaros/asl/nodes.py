@@ -53,8 +53,8 @@ class Annotations(Node):
 class Literal(Node):
     """An atom, structure, or literal: ``ns::~f(a, b)[annots]``.
 
-    ``functor`` keeps the quotes of a quoted atom.  ``namespace`` is None for the default namespace, a name, or
-    a variable; namespace directives are already applied by the parser.
+    ``functor`` keeps the quotes of a quoted atom.  ``namespace`` is None for the default namespace, a name,
+    or a variable; namespace directives are already applied by the parser.
     """
 
     functor: str
@@ -292,8 +292,10 @@ class Rule(Node):
 
 @dataclass(frozen=True, slots=True)
 class RegisteredFunction(Node):
-    """``{ register_function("name.x", Arity, "rule") }``: the rule (or internal action) *implementation*, which has
-    one argument more for the result, may be called as the arithmetic function *name*."""
+    """``{ register_function("name.x", Arity, "rule") }``: an arithmetic function of the program's own.
+
+    The rule (or internal action) ``implementation`` has one argument more, for the result.
+    """
 
     name: str
     arity: int

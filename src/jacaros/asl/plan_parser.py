@@ -53,9 +53,8 @@ class PlanParser(BodyParser):
         label = self.operand(formula=True)
         if isinstance(label, nodes.Literal) or (as_term and isinstance(label, nodes.Variable)):
             return label
-        self.fail(
-            "a label is an atom, with annotations if need be", label.span, "as in @stop[atomic] +!stop <- ..."
-        )
+        what = "a label is an atom, with annotations if need be"
+        return self.fail(what, label.span, "as in @stop[atomic] +!stop <- ...")
 
     def _context(self) -> nodes.Term | None:
         if self.token.kind == ":-":

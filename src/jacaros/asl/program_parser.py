@@ -179,7 +179,7 @@ class ProgramParser(PlanParser):
         section.plans.append(self._plan_clause())
 
     def _finish(self, what: str) -> None:
-        """The final '.' of a clause.  If it is missing and the next line begins a clause, reading goes on there."""
+        """The final '.' of a clause; where the next line begins a clause reading goes on without it."""
         if self.accept("."):
             return
         token = self.token

@@ -37,15 +37,15 @@ _NUMERIC: Final = (nodes.Number, nodes.Variable, nodes.Arithmetic, nodes.Functio
 class TermParser(Cursor, ABC):
     """Reads terms; what stands in braces (plans, bodies, rules) is read by the parser of plans.
 
-    *formula* says that a literal is a condition, so that it belongs to the namespace of the block; literals that
-    are arguments or operands of relations stay in the default namespace.
+    *formula* says that a literal is a condition, so that it belongs to the namespace of the block; literals
+    that are arguments or operands of relations stay in the default namespace.
     """
 
     def __init__(self, file: SourceFile, names: Names, diagnostics: list[Diagnostic]) -> None:
         super().__init__(file, tokenize(file, diagnostics.append), diagnostics)
         self.names = names
         self.namespaces = Namespaces()
-        # The condition that got its namespace last: taken back if it turns out to be an operand of a relation.
+        # The condition that got its namespace last: taken back if it is an operand of a relation.
         self._placed: nodes.Term | None = None
 
     @abstractmethod
@@ -252,12 +252,12 @@ class TermParser(Cursor, ABC):
         return nodes.Variable(name, annotations, namespace, negated, unnamed, span=self.span_from(start))
 
     def _variable_name(self, text: str) -> tuple[str, bool]:
-        """The name and whether the variable is unnamed.  ``_12Any`` names the variable 12 explicitly."""
+        """The name, and whether the variable is unnamed; ``_12Any`` is the variable of the name ``_12``."""
         if text[0] != "_":
             return text, False
         digits = len(text) - 1 - len(text[1:].lstrip("0123456789"))
         if digits:
-            return f"_{text[1 : digits + 1]}_", True
+            return text[: digits + 1], False
         return f"_{next(self.names.unnamed)}", True
 
     def _namespace(self) -> "str | nodes.Variable | None":

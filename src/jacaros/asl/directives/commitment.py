@@ -11,8 +11,8 @@ from jacaros.asl.section import Section
 def blind(call: PatternCall, section: Section) -> Section:
     """``bc(g)`` or ``bc(g, pattern)``: the goal is pursued until it is believed, whatever fails.
 
-    The plans for g are treated by *pattern* (``bdg`` if none is named), and a last plan posts the goal again when
-    no other plan is applicable.
+    The plans for g are treated by *pattern* (``bdg`` if none is named), and a last plan posts the goal again
+    when no other plan is applicable.
     """
     call.at_most(2)
     if len(call.arguments) < 2:

@@ -10,9 +10,9 @@ from jacaros.asl.section import Section
 def declarative(call: PatternCall, section: Section) -> Section:
     """``dg(g)``: the goal is achieved when, and only when, *g* is believed.
 
-    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g, and ``+g <- .succeed_goal(g)``.  The reference
-    also takes a goal that is already intended for achieved, which makes the retry of ``bdg`` and ``bc`` end at
-    once; ours does not.
+    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g, and ``+g <- .succeed_goal(g)``.  The
+    reference also takes a goal that is already intended for achieved, which makes the retry of ``bdg`` and
+    ``bc`` end at once; ours does not.
     """
     call.at_most(1)
     goal = call.literal(0, "the goal")
@@ -23,7 +23,7 @@ def declarative(call: PatternCall, section: Section) -> Section:
 
 
 def backtracking(call: PatternCall, section: Section, possible: nodes.Term | None = None) -> Section:
-    """``bdg(g)``: a declarative goal that is tried again when a plan for it fails, as long as *possible* holds."""
+    """``bdg(g)``: a declarative goal that is tried again when a plan fails, as long as *possible* holds."""
     goal = call.literal(0, "the goal")
     inner = declarative(call, section)
     retry = call.plan(on("-!", goal), call.achieve(goal), context=possible)
@@ -33,8 +33,8 @@ def backtracking(call: PatternCall, section: Section, possible: nodes.Term | Non
 def exclusive(call: PatternCall, section: Section) -> Section:
     """``ebdg(g)``: a backtracking declarative goal for which each plan is tried at most once.
 
-    The plans that were tried are remembered in beliefs ``p__tried(Plan, g)``, which go when the goal ends.  When no
-    plan is left the goal fails (in the reference it is tried for ever).
+    The plans that were tried are remembered in beliefs ``p__tried(Plan, g)``, which go when the goal ends.
+    When no plan is left the goal fails (in the reference it is tried for ever).
     """
     goal = call.literal(0, "the goal")
     plans: list[nodes.Plan] = []

@@ -1,7 +1,7 @@
 """What the goal patterns have in common: their arguments, and the plans they are built of.
 
-A pattern is a function from the clauses of its block to the clauses that take their place.  Where the patterns of
-the reference interpreter are known to misbehave ours follow the idea of the pattern; each function says so.
+A pattern is a function from the clauses of its block to the clauses that take their place.  Where the patterns
+of the reference interpreter are known to misbehave ours follow the idea of the pattern; each function says so.
 """
 
 from collections.abc import Callable
@@ -26,8 +26,8 @@ class PatternError(Exception):
 class PatternCall:
     """One use of a pattern.
 
-    ``arguments`` belong to the namespace of the block, and their unnamed variables have got names, so that one
-    argument may be put into several places of one plan.  ``number`` differs for each use in a program;
+    ``arguments`` belong to the namespace of the block, and their unnamed variables have got names, so that
+    one argument may be put into several places of one plan.  ``number`` differs for each use in a program;
     ``parse_trigger`` and ``parse_formula`` read arguments given as text.
     """
 

@@ -6,11 +6,11 @@ from jacaros.asl.section import Section
 
 
 def sequenced(call: PatternCall, section: Section) -> Section:
-    """``sga("trigger", "context", g)``: each such event adopts *g*, but one goal waits for the end of the other.
+    """``sga("trigger", "context", g)``: each such event adopts *g*, one goal after the other.
 
     Goals that wait are kept in order in beliefs ``p__queue(N, g)``; one that is waiting already is not queued
-    twice.  Each goal is an intention of its own, and a goal that fails makes room for the next one, too.  (In the
-    reference a waiting goal is taken up only if its arguments equal those of the goal that ended.)
+    twice.  Each goal is an intention of its own, and a goal that fails makes room for the next one, too.  (In
+    the reference a waiting goal is taken up only if its arguments equal those of the goal that ended.)
     """
     call.at_most(3)
     trigger, context = _trigger(call), _context(call)
