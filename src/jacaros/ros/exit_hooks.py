@@ -1,7 +1,8 @@
 """The last messages of a process: zero velocity on the wire, for whatever reason the process stops.
 
-Hooks run when the backend is closed, at SIGINT, SIGTERM and SIGHUP, and at the interpreter's end (which an
-uncaught exception leads to).  They run once.  A process that is killed outright (SIGKILL, power) cannot run
+Hooks run when the backend is closed, at SIGINT, SIGTERM and SIGHUP, and when the loop's thread or the
+interpreter ends (which an uncaught exception leads to).  They run once.  A process that is killed outright
+(SIGKILL, power) cannot run
 them: a robot's base must stop by itself when commands cease.
 """
 
@@ -23,14 +24,16 @@ class ExitHooks:
 
     Args:
         log: takes one line about a hook that failed.
-        flush: blocks until the messages published so far are sent.
+        finish: blocks until the messages published so far are sent, and lets go of whatever else would keep
+            the
+            process from ending.
         threaded: run the hooks in a thread of their own when a signal comes.  The signal may have interrupted
             the main thread inside the client library, holding its locks, so the hooks cannot run there.
     """
 
-    def __init__(self, log: Callable[[str], None], flush: Callable[[], None], threaded: bool) -> None:
+    def __init__(self, log: Callable[[str], None], finish: Callable[[], None], threaded: bool) -> None:
         self._log = log
-        self._flush = flush
+        self._finish = finish
         self._threaded = threaded
         self._hooks: list[Callable[[], None]] = []
         self._running = threading.Lock()
@@ -45,10 +48,23 @@ class ExitHooks:
         def remove() -> None:
             if hook in self._hooks:
                 self._hooks.remove(hook)
-            if not self._hooks:
-                _process.unwatch(self)
 
         return remove
+
+    def watch_thread(self) -> None:
+        """Run the hooks also when the calling thread, which is the loop's, ends.
+
+        Client libraries start threads that the interpreter waits for before it calls what is registered with
+        `atexit`; so after an uncaught exception the process would never get there.
+        """
+        thread = threading.current_thread()
+
+        def wait() -> None:
+            thread.join()
+            self.run()
+
+        threading.Thread(target=wait, name="exit hooks watch", daemon=True).start()
+        _process.watch(self)
 
     def admits(self) -> bool:
         """Whether a message may still be published: after the first hook has begun, only by hooks.
@@ -78,15 +94,13 @@ class ExitHooks:
             self.run()
 
     def _run_all(self) -> None:
-        if not self._hooks:
-            return
         self._runner = threading.current_thread()
         for hook in list(self._hooks):
             try:
                 hook()
             except Exception as problem:  # the next hook may stop another robot
                 self._log(f"an exit hook failed: {type(problem).__name__}: {problem}")
-        self._flush()
+        self._finish()
 
 
 class _Process:

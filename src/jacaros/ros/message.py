@@ -88,7 +88,11 @@ class MessageFactory:
             where = f"{path}.{name}" if path else name
             if field is None:
                 raise _unknown_field(type_name, where, name, fields)
-            setattr(message, name, self._value(field, value, type_name, where))
+            converted = self._value(field, value, type_name, where)
+            try:
+                setattr(message, name, converted)
+            except AssertionError as problem:  # rclpy's own check: bounds of texts, ranges of float32
+                raise MessageMismatch(f"{type_name}: field {where}: {problem}", type_name, where) from None
         return message
 
     def _value(self, field: FieldType, value: Any, owner: str, where: str) -> Any:
@@ -133,7 +137,7 @@ class MessageFactory:
             _set_time(
                 made, value.get("sec", value.get("secs", 0)), value.get("nanosec", value.get("nsecs", 0))
             )
-        elif type(value) is type(made):
+        elif isinstance(value, type(made)):
             return value
         else:
             raise TypeError(f"{value!r} is given; give seconds or a time")

@@ -51,7 +51,7 @@ class Node:
     Args:
         settings: names, clock and reports.
         schema: the library's family of message classes.
-        flush: see `ExitHooks`.
+        finish: see `ExitHooks`.
         threaded_hooks: see `ExitHooks`.
     """
 
@@ -59,13 +59,13 @@ class Node:
     capabilities: frozenset[str] = frozenset()
 
     def __init__(
-        self, settings: NodeSettings, schema: Schema, flush: Callable[[], None], threaded_hooks: bool
+        self, settings: NodeSettings, schema: Schema, finish: Callable[[], None], threaded_hooks: bool
     ) -> None:
         self.clock = settings.clock
         self.log = settings.log
         self.names = NodeNames(settings.node_name, settings.namespace, settings.remap)
         self.factory = MessageFactory(schema)
-        self.exit_hooks = ExitHooks(settings.log, flush, threaded_hooks)
+        self.exit_hooks = ExitHooks(settings.log, finish, threaded_hooks)
         self.connected = False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._on_connection: list[Callable[[bool], None]] = []

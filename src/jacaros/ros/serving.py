@@ -2,13 +2,19 @@
 
 import asyncio
 import inspect
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
+from jacaros.clock import Clock
 from jacaros.ros.backend import Handler
-from jacaros.ros.errors import CallFailed, MessageMismatch
+from jacaros.ros.errors import CallFailed, CallTimedOut, MessageMismatch, ServiceUnavailable
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import response_type
+from jacaros.ros.waiting import Waiting
+
+RETRY = 0.1
+"""Seconds between two attempts to call a service that is not there."""
 
 
 def checked_message(factory: MessageFactory, type_name: str, given: Any) -> Any:
@@ -105,3 +111,44 @@ def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None
         future.set_exception(problem)
     else:
         future.set_result(response)
+
+
+async def call_when_offered(
+    clock: Clock,
+    log: Callable[[str], None],
+    what: str,
+    attempt: Callable[[float | None], Awaitable[Any]],
+    timeout: float | None,
+) -> Any:
+    """Call a service whose arrival cannot be awaited: try, and try again while nobody offers it.
+
+    Args:
+        clock: measures the time-out.
+        log: is told of waiting.
+        what: the service with its type.
+        attempt: calls the service once; takes the seconds that are left, raises `ServiceUnavailable` when
+            nobody
+            offers it and `TimeoutError` when there is no answer.
+        timeout: seconds for everything; None tries for ever.
+
+    Raises:
+        ServiceUnavailable: nobody offered the service in time.
+        CallTimedOut: it was called but did not answer in time.
+    """
+    deadline = None if timeout is None else clock.now() + timeout
+    waiting: Waiting | None = None
+    try:
+        while True:
+            try:
+                return await attempt(None if deadline is None else deadline - clock.now())
+            except TimeoutError:
+                raise CallTimedOut(f"{what} did not answer within {timeout:g} s") from None
+            except ServiceUnavailable:
+                if deadline is not None and clock.now() + RETRY > deadline:
+                    raise ServiceUnavailable(f"nobody offered {what} within {timeout:g} s") from None
+            if waiting is None:
+                waiting = Waiting(clock, log, what, "Is the node that offers it running?").__enter__()
+            await clock.sleep(RETRY)
+    finally:
+        if waiting is not None:
+            waiting.__exit__(*sys.exc_info())

@@ -274,7 +274,7 @@ class MemoryBackend(Node):
 
     def __init__(self, settings: NodeSettings, graph: MemoryGraph | None = None) -> None:
         self._schema = RosbagsSchema(settings.interface_paths)
-        super().__init__(settings, self._schema, flush=lambda: None, threaded_hooks=False)
+        super().__init__(settings, self._schema, finish=lambda: None, threaded_hooks=False)
         self.graph = graph if graph is not None else MemoryGraph()
         self._members: list[MemoryPublisher | MemorySubscription | MemoryService | MemoryClient] = []
 

