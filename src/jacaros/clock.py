@@ -11,6 +11,7 @@ import itertools
 import selectors
 import time
 from collections.abc import Callable, Coroutine
+from functools import partial
 from typing import Any, Protocol, TypeVar
 
 VIRTUAL_EPOCH = 1_577_836_800.0
@@ -71,13 +72,20 @@ class _VirtualTimer:
     __slots__ = ("callback", "cancelled", "number", "when")
 
     def __init__(self, when: float, number: int, callback: Callable[[], None]) -> None:
-        self.when, self.number, self.callback, self.cancelled = when, number, callback, False
+        self.when, self.number, self.cancelled = when, number, False
+        self.callback: Callable[[], None] | None = callback
 
     def __lt__(self, other: "_VirtualTimer") -> bool:
         return (self.when, self.number) < (other.when, other.number)
 
     def cancel(self) -> None:
         self.cancelled = True
+        self.callback = None  # what it holds may be large, and the moment far
+
+    def ring(self) -> None:
+        callback, self.callback = self.callback, None
+        if callback is not None:
+            callback()
 
 
 class VirtualClock:
@@ -106,22 +114,25 @@ class VirtualClock:
 
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds of virtual time."""
-        done = asyncio.get_running_loop().create_future()
-        timer = self.call_later(delay, lambda: done.done() or done.set_result(None))
+        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        timer = self.call_later(delay, partial(_wake, done))
         try:
             await done
         finally:
             timer.cancel()
 
     def busy(self, cycles: int) -> None:
-        """Move 1 ms on for every 10,000 cycles that agents made without getting idle."""
+        """Move 1 ms on for every 10,000 cycles that agents made without getting idle.
+
+        What is due then is called by the loop later, never in the middle of the caller's work.
+        """
         self._cycles += cycles
         while self._cycles >= self.CYCLES_PER_MILLISECOND:
             self._cycles -= self.CYCLES_PER_MILLISECOND
             self._move_to(self.elapsed + 0.001)
 
     def advance(self) -> bool:
-        """Jump to the next timer and call all that are due then; False when there is none."""
+        """Jump to the next timer, with it ring all of that moment; False when there is none."""
         while self._timers and self._timers[0].cancelled:
             heapq.heappop(self._timers)
         if not self._timers:
@@ -135,8 +146,23 @@ class VirtualClock:
             timer = heapq.heappop(self._timers)
             if not timer.cancelled:
                 self.elapsed = max(self.elapsed, timer.when)
-                timer.callback()
+                _call_soon(timer.ring)
         self.elapsed = max(self.elapsed, moment)
+
+
+def _wake(sleeper: asyncio.Future[None]) -> None:
+    if not sleeper.done():
+        sleeper.set_result(None)
+
+
+def _call_soon(callback: Callable[[], None]) -> None:
+    """Let the running loop call *callback*, so that errors reach its handler; without a loop call it now."""
+    try:
+        loop = asyncio.get_running_loop()
+    except RuntimeError:
+        callback()
+    else:
+        loop.call_soon(callback)
 
 
 class _VirtualSelector(selectors.DefaultSelector):
@@ -165,7 +191,9 @@ class VirtualEventLoop(asyncio.SelectorEventLoop):
         self.virtual_selector = _VirtualSelector(clock)
         super().__init__(self.virtual_selector)
 
-    def run_in_executor(self, executor: Any, func: Any, *args: Any) -> Any:
+    def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
+        self, executor: Any, func: Any, *args: Any
+    ) -> Any:
         """Run *func* in a thread; virtual time stands still until it is done."""
         self.virtual_selector.foreign_work += 1
         future = super().run_in_executor(executor, func, *args)

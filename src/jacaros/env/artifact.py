@@ -7,9 +7,10 @@ from jacaros.clock import Clock
 from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
-from jacaros.env.declaration import declare_function
-from jacaros.env.interface import Interface, interface_of
-from jacaros.env.linked_call import call_all
+from jacaros.env.kernel.declaration import declare_function
+from jacaros.env.kernel.interface import Interface, interface_of
+from jacaros.env.kernel.linked_call import call_all
+from jacaros.env.kernel.steps import Steps
 from jacaros.env.operation import (
     OPERATION,
     Mark,
@@ -18,7 +19,6 @@ from jacaros.env.operation import (
     link,
     operation,
 )
-from jacaros.env.steps import Steps
 from jacaros.env.values import Atom, Out, Structure, plain
 from jacaros.trace import Cause
 
@@ -93,8 +93,8 @@ class Artifact:
         for attribute in vars(cls):
             if attribute in _RESERVED:
                 raise InvalidArtifact(
-                    f"{cls.__qualname__}.{attribute} would replace a part of Artifact; give the method another "
-                    f'name, such as @operation(name="{attribute}") def {attribute}_it(self)'
+                    f"{cls.__qualname__}.{attribute} would replace a part of Artifact; call it otherwise, "
+                    f'such as @operation(name="{attribute}") def {attribute}_it(self)'
                 )
         cls.interface = interface_of(cls)
 
@@ -279,7 +279,7 @@ class Artifact:
         Args:
             operation: a method marked `internal_operation` (or `operation`), or its name.
             arguments: given as they are.
-            cause: what led to it, such as the sample of a sensor; otherwise that of the operation in progress.
+            cause: what led to it, such as the sample of a sensor; None for that of the operation in progress.
 
         Raises:
             InvalidArtifact: there is no such operation.

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 
 from jacaros.env.artifact import Artifact, Host
-from jacaros.env.declaration import DeclaredOperation, declare_method
 from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
+from jacaros.env.kernel.setting import Setting
+from jacaros.env.kernel.steps import Steps
 from jacaros.env.operation import INTERNAL, Mark, OperationRequest
-from jacaros.env.setting import Setting
-from jacaros.env.steps import Steps
 from jacaros.env.values import Structure
 from jacaros.errors import InternalError
 

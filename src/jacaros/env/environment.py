@@ -9,9 +9,9 @@ from jacaros.env.default.blackboard import Blackboard
 from jacaros.env.default.console import Console
 from jacaros.env.errors import OperationFailed, UnknownArtifactType, UnknownWorkspace, spelling_hint
 from jacaros.env.execution import OperationExecution
+from jacaros.env.kernel.registry import Registry
+from jacaros.env.kernel.setting import Setting, log_to_stderr
 from jacaros.env.operation import OperationRequest
-from jacaros.env.registry import Registry
-from jacaros.env.setting import Setting, log_to_stderr
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
 from jacaros.trace import Tracer

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from jacaros.clock import Clock
-from jacaros.env.declaration import DeclaredOperation
+from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.operation import OperationRequest
 from jacaros.trace import Cause
 

@@ -4,19 +4,19 @@ import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from jacaros.env import outcomes
 from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType, artifact_type_of, attach, init_failed, init_of, refused
 from jacaros.env.errors import OperationFailed, UnknownArtifact, spelling_hint
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
-from jacaros.env.interface import Interface
+from jacaros.env.kernel import outcomes
+from jacaros.env.kernel.interface import Interface
+from jacaros.env.kernel.registry import Registry
+from jacaros.env.kernel.setting import Setting
+from jacaros.env.kernel.steps import Steps
 from jacaros.env.observation import Observer
 from jacaros.env.operation import LINK, OPERATION, SUCCEEDED, OperationOutcome, OperationRequest
 from jacaros.env.property import ObservableProperty
-from jacaros.env.registry import Registry
-from jacaros.env.setting import Setting
-from jacaros.env.steps import Steps
 from jacaros.env.values import Structure
 
 Made = Callable[[ArtifactId | None, OperationOutcome], None]
@@ -93,9 +93,10 @@ class Workspace:
         creator: str | None = None,
         on_done: Made = _nobody_waits,
     ) -> OperationExecution:
-        """Make an artifact like `make_artifact`, and tell *on_done*: before this returns if ``init`` is a ``def``.
+        """Make an artifact like `make_artifact`, and tell *on_done*.
 
-        Cancelling what this gives ends the making, and nothing is left behind.
+        An ``init`` that is a plain ``def`` has ended when this returns.  Cancelling what this gives
+        ends the making, and nothing is left behind.
         """
         name = str.__str__(name)
         request = OperationRequest(self._new_id(name, type_name, creator), "init", tuple(args), creator)
@@ -161,10 +162,8 @@ class Workspace:
         for steps in ending:
             steps.dispose()
         for artifact_id in reversed(self.artifacts()):
-            steps = self._registry.find(artifact_id)
-            if steps is not None:
-                ending.append(steps)
-                self.dispose_artifact(artifact_id)
+            ending.append(self._steps_of(artifact_id))
+            self.dispose_artifact(artifact_id)
         for steps in ending:
             await steps.closed()
 

@@ -28,7 +28,8 @@ class Blackboard(Artifact):
     @operation(name="in", guard="is_there")
     def take(self, *pattern: object) -> None:
         """Take a fitting tuple away; waits until there is one."""
-        self._tuples.remove(self._bind(pattern))
+        taken = self._bind(pattern)
+        self._tuples = [entry for entry in self._tuples if entry is not taken]
 
     @operation(guard="is_there")
     def rd(self, *pattern: object) -> None:

@@ -11,19 +11,19 @@ from functools import partial
 from typing import TypeVar
 
 from jacaros.clock import Clock
-from jacaros.env import outcomes
 from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
-from jacaros.env.declaration import DeclaredOperation
-from jacaros.env.interface import Interface
+from jacaros.env.kernel import outcomes
+from jacaros.env.kernel.declaration import DeclaredOperation
+from jacaros.env.kernel.interface import Interface
+from jacaros.env.kernel.publication import Publication
+from jacaros.env.kernel.setting import Setting
+from jacaros.env.kernel.signature import WrongArguments
+from jacaros.env.kernel.turns import Guard, TurnQueue
 from jacaros.env.observation import Signal
 from jacaros.env.operation import LINK, SUCCEEDED, OperationOutcome, OperationRequest, ignore_outcome
 from jacaros.env.property import check_name
-from jacaros.env.publication import Publication
-from jacaros.env.setting import Setting
-from jacaros.env.signature import WrongArguments
-from jacaros.env.turns import Guard, TurnQueue
 from jacaros.env.values import plain
 from jacaros.errors import InternalError
 from jacaros.trace import Cause

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
-from jacaros.env.declaration import DeclaredOperation, declare_method
 from jacaros.env.errors import InvalidArtifact, spelling_hint
+from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
 from jacaros.env.operation import LINK, OPERATION, Mark, marks_of
 
 
@@ -67,7 +68,7 @@ class OperationTable:
         if same:
             return f"; there is {', '.join(same)}"
         offer = f" (it offers {', '.join(keys)})" if keys else " (it offers none)"
-        return offer + spelling_hint(f"{name}/{arity}", keys)
+        return offer + spelling_hint(name, [key.rpartition("/")[0] for key in keys])
 
 
 def _check_overlap(present: DeclaredOperation | None, new: DeclaredOperation, arity: str) -> None:
@@ -101,9 +102,10 @@ class Interface:
     def own(self, operation: str | Callable[..., object], arity: int) -> DeclaredOperation | None:
         """The operation that an artifact starts itself: by name, or by its method."""
         if isinstance(operation, str):
-            return self.internals.find(operation, arity) or self.operations.find(operation, arity)
+            found = self.internals.find(operation, arity)
+            return found if found is not None else self.operations.find(operation, arity)
         function = getattr(operation, "__func__", operation)
-        for declared in (*self.internals, *self.operations):
+        for declared in chain(self.internals, self.operations):
             if declared.function is function and declared.signature.takes(arity):
                 return declared
         return None

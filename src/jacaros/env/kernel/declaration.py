@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.env.errors import InvalidArtifact, spelling_hint
+from jacaros.env.kernel.signature import Signature, signature_of
 from jacaros.env.operation import Mark
-from jacaros.env.signature import Signature, signature_of
 
 FOR_ONE_ARTIFACT = 1_000_000
 """Depth of operations that one artifact defines for itself: they replace those of all its classes."""
@@ -122,8 +122,8 @@ def _suited(
         return lambda artifact, *_: guard(artifact)
     if not all(map(takes.takes, wanted.arities)) or (wanted.rest is not None and takes.rest is None):
         raise InvalidArtifact(
-            f"{_name(function)}: its guard takes ({takes}); it must take the same as the operation ({wanted}), "
-            "or nothing"
+            f"{_name(function)}: its guard takes ({takes}); it must take the same as the operation, "
+            f"({wanted}), or nothing"
         )
     return guard
 

@@ -2,9 +2,9 @@
 
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
-from jacaros.env.interface import Interface
+from jacaros.env.kernel.interface import Interface
+from jacaros.env.kernel.signature import WrongArguments
 from jacaros.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
-from jacaros.env.signature import WrongArguments
 from jacaros.env.values import Structure
 from jacaros.errors import InternalError
 

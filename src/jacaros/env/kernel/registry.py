@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from jacaros.env.ids import ArtifactId
-from jacaros.env.steps import Steps
+from jacaros.env.kernel.steps import Steps
 
 
 class Registry:

@@ -1,9 +1,9 @@
 """What observers see of one artifact: its committed properties and its signals."""
 
 from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.setting import Setting
 from jacaros.env.observation import Observation, Observer, Signal
 from jacaros.env.property import ObservableProperty, PropertyChanges, PropertyStore
-from jacaros.env.setting import Setting
 from jacaros.trace import Cause
 
 

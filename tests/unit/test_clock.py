@@ -1,0 +1,196 @@
+"""The clocks: jumps, order, busy agents, worker threads, errors in timers."""
+
+import asyncio
+import threading
+import time
+
+import pytest
+
+from jacaros.clock import VIRTUAL_EPOCH, VirtualClock, WallClock, new_event_loop, run
+
+
+def test_virtual_time_begins_at_its_epoch_and_jumps_over_a_sleep():
+    clock = VirtualClock()
+
+    async def main():
+        assert clock.now() == VIRTUAL_EPOCH
+        await clock.sleep(86_400.0)
+        return clock.now()
+
+    began = time.perf_counter()
+    assert run(main, clock) == VIRTUAL_EPOCH + 86_400.0
+    assert time.perf_counter() - began < 10.0
+
+
+def test_timers_ring_in_the_order_of_their_moments_and_equal_moments_in_the_order_of_setting():
+    clock = VirtualClock()
+    rung = []
+
+    async def main():
+        clock.call_later(2.0, lambda: rung.append(("c", clock.elapsed)))
+        clock.call_later(1.0, lambda: rung.append(("a", clock.elapsed)))
+        clock.call_later(1.0, lambda: rung.append(("b", clock.elapsed)))
+        await clock.sleep(3.0)
+
+    run(main, clock)
+    assert rung == [("a", 1.0), ("b", 1.0), ("c", 2.0)]
+
+
+def test_a_cancelled_timer_does_not_ring_even_if_cancelled_at_its_own_moment():
+    clock = VirtualClock()
+    rung, timers = [], []
+
+    async def main():
+        early = clock.call_later(0.5, lambda: rung.append("early"))
+        clock.call_later(1.0, lambda: [timer.cancel() for timer in timers])
+        last = clock.call_later(1.0, lambda: rung.append("last"))
+        early.cancel()
+        timers.append(last)
+        await clock.sleep(2.0)
+
+    run(main, clock)
+    assert rung == []
+
+
+def test_time_stands_still_while_somebody_is_at_work():
+    clock = VirtualClock()
+    seen = []
+
+    async def worker():
+        for _ in range(100):
+            await asyncio.sleep(0)
+            seen.append(clock.elapsed)
+
+    async def main():
+        clock.call_later(1.0, lambda: seen.append("timer"))
+        await asyncio.create_task(worker())
+        await clock.sleep(1.5)
+
+    run(main, clock)
+    assert seen == [0.0] * 100 + ["timer"]
+
+
+def test_time_stands_still_while_a_worker_thread_runs():
+    clock = VirtualClock()
+    gate = threading.Event()
+    order = []
+
+    async def main():
+        clock.call_later(1.0, lambda: order.append("timer"))
+        work = asyncio.get_running_loop().run_in_executor(None, gate.wait)
+        threading.Timer(0.05, gate.set).start()
+        await work
+        order.append(("thread", clock.elapsed))
+        await clock.sleep(2.0)
+
+    run(main, clock)
+    assert order == [("thread", 0.0), "timer"]
+
+
+def test_busy_agents_move_time_by_a_millisecond_per_ten_thousand_cycles():
+    clock = VirtualClock()
+    rung = []
+
+    async def main():
+        clock.call_later(0.0015, lambda: rung.append(round(clock.elapsed, 6)))
+        clock.busy(9_999)
+        assert clock.elapsed == 0.0
+        clock.busy(1)
+        assert clock.elapsed == pytest.approx(0.001)
+        clock.busy(10_000)
+        assert rung == [], "never in the middle of the caller's work"
+        await asyncio.sleep(0)
+        assert rung == [0.002]
+
+    run(main, clock)
+
+
+def test_idling_forgets_the_busy_cycles_before():
+    clock = VirtualClock()
+
+    async def main():
+        clock.busy(9_999)
+        await clock.sleep(1.0)
+        clock.busy(1)
+        return clock.elapsed
+
+    assert run(main, clock) == 1.0
+
+
+def test_an_error_in_a_timer_reaches_the_handler_of_the_loop_and_time_goes_on():
+    clock = VirtualClock()
+    errors = []
+
+    async def main():
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(lambda _, context: errors.append(context["exception"]))
+        clock.call_later(1.0, lambda: 1 / 0)
+        await clock.sleep(2.0)
+        return clock.elapsed
+
+    assert run(main, clock) == 2.0
+    assert [type(error) for error in errors] == [ZeroDivisionError]
+
+
+def test_without_a_loop_the_clock_can_be_advanced_by_hand():
+    clock = VirtualClock(start=100.0)
+    rung = []
+    clock.call_later(5.0, lambda: rung.append(clock.now()))
+    clock.call_later(7.0, lambda: rung.append("never")).cancel()
+    assert clock.advance()
+    assert rung == [105.0]
+    assert not clock.advance()
+    assert clock.now() == 105.0
+
+
+def test_a_cancelled_sleeper_leaves_no_timer_that_time_would_jump_to():
+    clock = VirtualClock()
+
+    async def main():
+        sleeper = asyncio.create_task(clock.sleep(1000.0))
+        await clock.sleep(1.0)
+        sleeper.cancel()
+        await clock.sleep(1.0)
+        return clock.elapsed
+
+    assert run(main, clock) == 2.0
+    assert not clock.advance()
+
+
+def test_real_input_is_served_before_time_jumps():
+    clock = VirtualClock()
+    order = []
+
+    async def main():
+        loop = asyncio.get_running_loop()
+        clock.call_later(1.0, lambda: order.append("timer"))
+        loop.call_soon_threadsafe(order.append, "input")
+        await clock.sleep(1.0)
+
+    run(main, clock)
+    assert order == ["input", "timer"]
+
+
+def test_the_wall_clock_measures_delays_on_the_running_loop():
+    clock = WallClock()
+    rung = []
+
+    async def main():
+        before = clock.now()
+        clock.call_later(0.0, lambda: rung.append("now"))
+        clock.call_later(0.0, lambda: rung.append("never")).cancel()
+        await clock.sleep(0.001)
+        await clock.sleep(-1.0)
+        clock.busy(1_000_000)
+        return clock.now() - before
+
+    assert run(main, clock) >= 0.0
+    assert rung == ["now"]
+    assert not clock.virtual
+    assert VirtualClock().virtual
+
+
+def test_the_wall_clock_gets_an_ordinary_loop():
+    loop = new_event_loop(WallClock())
+    loop.close()
+    assert not hasattr(loop, "virtual_selector")
