@@ -1,0 +1,25 @@
+"""The artifacts of this case, written from its spec.md."""
+
+from jacaros.env import Artifact, operation
+
+
+class Counter(Artifact):
+    """Counts."""
+
+    def init(self, start: int = 0) -> None:
+        self.define_property("count", start)
+
+    @operation
+    def inc(self) -> None:
+        self.update_property("count", self.value("count") + 1)
+
+
+class Fussy(Artifact):
+    """Cannot be made with every level."""
+
+    def init(self, level: int) -> None:
+        if level < 0:
+            self.fail("negative")
+        if level == 0:
+            raise RuntimeError("no level at all")
+        self.define_property("level", level)
