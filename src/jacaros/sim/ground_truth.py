@@ -24,7 +24,7 @@ class Event(NamedTuple):
 
     Kinds, with what their data hold: ``docked`` and ``undocked`` (dock), ``charging``, ``charged``,
     ``battery_empty`` and ``battery`` at each whole percent (level), ``bump`` against a wall (side),
-    ``collision`` (robot, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
+    ``collision`` (with, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
     text, room).
     """
 

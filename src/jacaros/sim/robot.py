@@ -168,7 +168,7 @@ class Robot:
                 if other == WALL:
                     self._tell(self, "bump", {"side": side})
                 else:
-                    self._tell(self, "collision", {"robot": other, "side": side})
+                    self._tell(self, "collision", {"with": other, "side": side})
         self.touching = frozenset(self._touched)
 
     def settle_dock(self, docks: tuple[Dock, ...]) -> None:

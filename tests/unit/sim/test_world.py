@@ -143,8 +143,8 @@ def test_two_robots_push_each_other_apart_and_both_are_told() -> None:
     assert gap >= 0.34 - 0.01
     collisions = world.ground_truth.events_of("collision")
     assert [(event.robot, event.data) for event in collisions] == [
-        ("a", {"robot": "b", "side": "front"}),
-        ("b", {"robot": "a", "side": "front"}),
+        ("a", {"with": "b", "side": "front"}),
+        ("b", {"with": "a", "side": "front"}),
     ]
 
 

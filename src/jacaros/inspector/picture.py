@@ -1,0 +1,186 @@
+"""A still picture of a run as SVG: the world, the path coloured by time, docks, rooms and robots at the end.
+
+It looks right on light and on dark pages, needs nothing else, and is the same for the same recording.
+"""
+
+import html
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from jacaros.inspector.colour_ramp import colour_at
+from jacaros.inspector.recording import Recording
+
+_STYLE = """
+  .floor{fill:#fdfcf9;stroke:#dedbd2} .grid{stroke:#eceae2} .wall{stroke:#3c434b;fill:none} .box{fill:#e6e2d8}
+  .room{fill:#77746a;font:500 13px system-ui,sans-serif}
+  .name{fill:#23282e;font:600 12px system-ui,sans-serif}
+  .dock{fill:#f2c14e} .bolt{fill:#7a5b0c} .robot{fill:#fff;stroke:#1f6f8b} .heading{fill:#1f6f8b}
+  @media (prefers-color-scheme: dark) {
+    .floor{fill:#1f242a;stroke:#313840} .grid{stroke:#272d34} .wall{stroke:#b9c0c8} .box{fill:#2d343c}
+    .room{fill:#8b95a0} .name{fill:#e7e9ec} .dock{fill:#d9a93a} .bolt{fill:#2b2108}
+    .robot{fill:#1c2026;stroke:#6cc0d8} .heading{fill:#6cc0d8}
+  }
+"""
+_MARGIN = 0.15
+_PIECES = 160
+_PATH_COLOURS = ("#1f6f8b", "#b4572e", "#6b5aa8", "#3f7d3a", "#a83e6b", "#7a6a1e")
+
+
+def write_picture(recording: Recording, path: str | Path, width: int = 640) -> None:
+    """Write the picture of a run as an SVG file, *width* pixels wide.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    Path(path).write_text(picture_svg(recording, width), encoding="utf-8")
+
+
+def picture_svg(recording: Recording, width: int = 640) -> str:
+    """The SVG text."""
+    sheet = _Sheet(recording, width)
+    parts = [
+        *_floor(sheet, recording.world),
+        *_docks(sheet, recording.world),
+        *_walls(sheet, recording.world),
+    ]
+    parts += [*_paths(sheet, recording), *_room_names(sheet, recording), *_robots(sheet, recording)]
+    title = html.escape(str(recording.world.get("name", "")))
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {sheet.height}" width="{width}" '
+        f'height="{sheet.height}" role="img" aria-label="{title}">\n<title>{title}</title>\n'
+        f"<style>{_STYLE}</style>\n" + "\n".join(parts) + "\n</svg>\n"
+    )
+
+
+class _Sheet:
+    """From metres to pixels: y grows downwards there."""
+
+    def __init__(self, recording: Recording, width: int) -> None:
+        left, bottom, right, top = recording.world["bounds"]
+        for frame in recording.frames:
+            for x, y, *_ in frame.robots:
+                left, right = min(left, x - 0.3), max(right, x + 0.3)
+                bottom, top = min(bottom, y - 0.3), max(top, y + 0.3)
+        self.left: float = left - _MARGIN
+        self.top: float = top + _MARGIN
+        self.scale: float = width / (right - left + 2 * _MARGIN)
+        self.height = round((top - bottom + 2 * _MARGIN) * self.scale)
+
+    def x(self, x: float) -> float:
+        return round((x - self.left) * self.scale, 1)
+
+    def y(self, y: float) -> float:
+        return round((self.top - y) * self.scale, 1)
+
+    def size(self, metres: float) -> float:
+        return round(metres * self.scale, 1)
+
+    def rectangle(self, box: Any, kind: str) -> str:
+        ax, ay, bx, by = box
+        return (
+            f'<rect class="{kind}" x="{self.x(ax)}" y="{self.y(by)}" '
+            f'width="{self.size(bx - ax)}" height="{self.size(by - ay)}"/>'
+        )
+
+
+def _floor(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
+    left, bottom, right, top = world["bounds"]
+    yield sheet.rectangle(world["bounds"], "floor")
+    lines = [
+        f"M{sheet.x(x)} {sheet.y(bottom)}V{sheet.y(top)}"
+        for x in range(math.ceil(left), math.floor(right) + 1)
+    ]
+    lines += [
+        f"M{sheet.x(left)} {sheet.y(y)}H{sheet.x(right)}"
+        for y in range(math.ceil(bottom), math.floor(top) + 1)
+    ]
+    yield f'<path class="grid" d="{"".join(lines)}"/>'
+
+
+def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
+    for dock in world["docks"]:
+        x, y, size = sheet.x(dock["pose"][0]), sheet.y(dock["pose"][1]), sheet.size(dock["radius"])
+        yield f'<circle class="dock" opacity=".35" cx="{x}" cy="{y}" r="{size}"/>'
+        yield f'<circle class="dock" cx="{x}" cy="{y}" r="{round(size * 0.62, 1)}"/>'
+        bolt = "M.1-.42L-.24 .08L-.02 .08L-.1 .42L.24-.08L.02-.08Z"
+        yield f'<path class="bolt" transform="translate({x} {y}) scale({size})" d="{bolt}"/>'
+
+
+def _walls(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
+    yield from (sheet.rectangle(box, "box") for box in world["boxes"])
+    lines = "".join(
+        f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}" for ax, ay, bx, by in world["walls"]
+    )
+    if lines:
+        yield f'<path class="wall" stroke-width="4" stroke-linecap="round" d="{lines}"/>'
+
+
+def _paths(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    frames = recording.frames
+    count = len(recording.robots)
+    step = max(1, math.ceil(len(frames) / _PIECES))
+    for first in range(0, len(frames) - 1, step):
+        piece = frames[first : first + step + 1]
+        red, green, blue = colour_at(first / len(frames))
+        for number in range(count):
+            points = [(sheet.x(frame.robots[number][0]), sheet.y(frame.robots[number][1])) for frame in piece]
+            if any(point != points[0] for point in points):
+                colour = (
+                    f"rgb({red},{green},{blue})" if count == 1 else _PATH_COLOURS[number % len(_PATH_COLOURS)]
+                )
+                yield (
+                    f'<polyline fill="none" stroke="{colour}" stroke-width="3" stroke-linecap="round" '
+                    f'stroke-linejoin="round" points="{" ".join(f"{x},{y}" for x, y in _thinned(points))}"/>'
+                )
+
+
+def _thinned(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Without points that repeat the one before."""
+    return [point for index, point in enumerate(points) if index == 0 or point != points[index - 1]]
+
+
+def _room_names(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    for room in recording.world["rooms"]:
+        text = str(room["name"]).replace("_", " ")
+        x, y = _place_for(sheet, recording, room["area"], 7.2 * len(text))
+        yield f'<text class="room" x="{x}" y="{y}">{html.escape(text)}</text>'
+
+
+def _place_for(sheet: _Sheet, recording: Recording, area: Any, width: float) -> tuple[float, float]:
+    """Where in a room a name of so many pixels covers the least of furniture, docks and paths."""
+    ax, ay, bx, by = area
+    left, right = sheet.x(ax) + 12, sheet.x(bx) - 12 - width
+    top, bottom = sheet.y(by) + 24, sheet.y(ay) - 12
+    boxes = [(sheet.x(a), sheet.y(d), sheet.x(c), sheet.y(b)) for a, b, c, d in recording.world["boxes"]]
+    boxes += [
+        (sheet.x(x - r), sheet.y(y + r), sheet.x(x + r), sheet.y(y - r))
+        for (x, y, _), r in ((dock["pose"], dock["radius"]) for dock in recording.world["docks"])
+    ]
+    points = [(sheet.x(row[0]), sheet.y(row[1])) for frame in recording.frames[::3] for row in frame.robots]
+
+    def covered(x: float, y: float) -> float:
+        x_max, y_min, y_max = x + width + 4, y - 14, y + 6
+        cost = sum(50.0 for a, b, c, d in boxes if a < x_max and c > x - 4 and b < y_max and d > y_min)
+        return cost + sum(0.1 for px, py in points if x - 4 < px < x_max and y_min < py < y_max)
+
+    places = [(x, y) for y in (top, bottom, (top + bottom) / 2) for x in (left, (left + right) / 2, right)]
+    x, y = min(places, key=lambda place: covered(*place))
+    return round(x, 1), round(y, 1)
+
+
+def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    described = recording.world["robots"]
+    rows = recording.frames[-1].robots if recording.frames else [(*robot["pose"],) for robot in described]
+    for robot, row in zip(described, rows, strict=False):
+        x, y, size = sheet.x(row[0]), sheet.y(row[1]), sheet.size(robot["radius"])
+        turn = round(-math.degrees(row[2]), 1)
+        yield (
+            f'<g transform="translate({x} {y}) rotate({turn}) scale({size})">'
+            '<circle class="robot" r="1" stroke-width=".12"/>'
+            '<path class="heading" d="M.72 0L-.38 .5L-.12 0L-.38-.5Z"/></g>'
+        )
+        if len(described) > 1:
+            name = html.escape(str(robot["name"]))
+            yield f'<text class="name" text-anchor="middle" x="{x}" y="{y - size - 8:.1f}">{name}</text>'

@@ -1,0 +1,111 @@
+"""Records a run as JSON lines: the world, frames of its robots, agents' prints, and events.
+
+One line, one record; ``t`` is in seconds since the run began::
+
+    {"kind": "world", "version": 1, "world": {...}}
+    {"kind": "frame", "t": 0.1, "robots": [[x, y, yaw, battery, charging, touching], ...]}
+    {"kind": "text", "t": 1.5, "agent": "patroller", "text": "low battery"}
+    {"kind": "event", "t": 1.5, "event": "goal", "data": {...}}
+
+Events that the replay knows how to show:
+
+========================  ==========================================================================
+``goal``                  ``agent``, ``goal``, ``state``: pursued, suspended, resumed, achieved,
+                          failed or dropped; ``id`` when goals of one name must be told apart
+``plan``                  ``agent``, ``goal``, ``plan``: the plan chosen for the goal
+events of the world       ``robot`` and what `jacaros.sim.ground_truth.Event` says: docked, undocked,
+                          charging, charged, bump, collision, task, battery, ...
+========================  ==========================================================================
+
+Others are kept, and shown by their kind.
+"""
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, TextIO
+
+from jacaros.inspector.recording import Frame, Recording
+from jacaros.inspector.robot_view import RobotView
+
+VERSION = 1
+
+
+class Recorder:
+    """Writes a recording while the run goes on.
+
+    Frames in which nothing has changed are left out, but for the one before the next change, so that a
+    reader that interpolates sees a robot rest and then move, not creep.
+
+    Args:
+        path: the file to write; None keeps the recording in memory only.
+        keep: keep it in memory as well, as `recording`.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+
+    def __init__(self, path: str | Path | None = None, keep: bool | None = None) -> None:
+        self.path = Path(path) if path is not None else None
+        self.recording = Recording()
+        self._keep = keep if keep is not None else path is None
+        self._file: TextIO | None = self.path.open("w", encoding="utf-8") if self.path else None
+        self._last: Frame | None = None
+        self._held: Frame | None = None
+
+    def world(self, drawing: Mapping[str, Any]) -> None:
+        """The world, as `jacaros.sim.WorldDescription.drawing` gives it; once, before everything else."""
+        self.recording.world = dict(drawing)
+        self._write({"kind": "world", "version": VERSION, "world": dict(drawing)})
+
+    def frame(self, t: float, robots: Iterable[RobotView]) -> None:
+        """The robots at a moment, in the order of the world."""
+        frame = Frame(_short(t), tuple(_row(robot) for robot in robots))
+        if self._last is not None and frame.robots == self._last.robots:
+            self._held = frame
+            return
+        if self._held is not None:
+            self._take(self._held)
+            self._held = None
+        self._take(frame)
+
+    def _take(self, frame: Frame) -> None:
+        self._last = frame
+        if self._keep:
+            self.recording.frames.append(frame)
+        self._write({"kind": "frame", "t": frame.t, "robots": frame.robots})
+
+    def text(self, t: float, agent: str, text: str) -> None:
+        """What an agent printed."""
+        if self._keep:
+            self.recording.texts.append((t, agent, text))
+        self._write({"kind": "text", "t": _short(t), "agent": agent, "text": text})
+
+    def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Something that happened; *data* is plain JSON data."""
+        if self._keep:
+            self.recording.events.append((t, kind, dict(data)))
+        self._write({"kind": "event", "t": _short(t), "event": kind, "data": dict(data)})
+
+    def close(self) -> None:
+        """Write the last frame and close the file; closing twice does no harm."""
+        if self._held is not None:
+            self._take(self._held)
+            self._held = None
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _write(self, record: dict[str, Any]) -> None:
+        if self._file is not None:
+            self._file.write(json.dumps(record, ensure_ascii=False, default=str) + "\n")
+
+
+def _short(value: float) -> float:
+    return round(value, 3)
+
+
+def _row(robot: RobotView) -> tuple[Any, ...]:
+    """A tenth of a millimetre is fine enough for a picture, and a third of the bytes."""
+    _, x, y, yaw, battery, charging, touching = robot
+    return round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching)

@@ -1,0 +1,99 @@
+"""A recorded run in memory: read from a recorder's file, or made from a ground truth."""
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from jacaros.errors import JacarosError
+from jacaros.sim import GroundTruth, Sample
+
+
+class Frame(NamedTuple):
+    """The robots at a moment: rows of x, y, yaw, battery, charging, touching."""
+
+    t: float
+    robots: tuple[tuple[Any, ...], ...]
+
+
+@dataclass
+class Recording:
+    """A run as it was recorded.
+
+    Attributes:
+        world: the drawing of the world.
+        frames: the robots over time.
+        texts: prints of agents as (t, agent, text).
+        events: events as (t, kind, data).
+    """
+
+    world: dict[str, Any] = field(default_factory=dict)
+    frames: list[Frame] = field(default_factory=list)
+    texts: list[tuple[float, str, str]] = field(default_factory=list)
+    events: list[tuple[float, str, dict[str, Any]]] = field(default_factory=list)
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the beginning to the last thing recorded."""
+        ends = [frame.t for frame in self.frames[-1:]]
+        ends += [t for t, *_ in self.texts[-1:]] + [t for t, *_ in self.events[-1:]]
+        return max(ends, default=0.0)
+
+    @property
+    def robots(self) -> list[str]:
+        """Names of the robots, in the order of the rows of a frame."""
+        return [robot["name"] for robot in self.world.get("robots", [])]
+
+    @classmethod
+    def read(cls, path: str | Path) -> "Recording":
+        """Read a recorder's file; a last line that was cut off by a crash is left out.
+
+        Raises:
+            OSError: the file cannot be read.
+            JacarosError: it is no recording.
+        """
+        recording = cls()
+        lines = Path(path).read_text(encoding="utf-8").splitlines()
+        for number, line in enumerate(lines, 1):
+            try:
+                record = json.loads(line)
+                recording._take(record)
+            except (ValueError, KeyError, TypeError) as error:
+                if number == len(lines) and isinstance(error, json.JSONDecodeError):
+                    break
+                raise JacarosError(f"{path}:{number}: this is no line of a recording ({error})") from None
+        if not recording.world:
+            raise JacarosError(f"{path} is no recording: no line of it describes a world")
+        return recording
+
+    def _take(self, record: dict[str, Any]) -> None:
+        kind = record["kind"]
+        if kind == "world":
+            self.world = record["world"]
+        elif kind == "frame":
+            self.frames.append(Frame(record["t"], tuple(tuple(row) for row in record["robots"])))
+        elif kind == "text":
+            self.texts.append((record["t"], record["agent"], record["text"]))
+        elif kind == "event":
+            self.events.append((record["t"], record["event"], record["data"]))
+
+    @classmethod
+    def of_ground_truth(cls, truth: GroundTruth) -> "Recording":
+        """Make a recording (without agents) of what truly happened, for example in a served world."""
+        recording = cls(world=dict(truth.world))
+        recording.events = [(e.time, e.kind, {"robot": e.robot, **e.data}) for e in truth.events]
+        paths = [[*truth.path(robot), truth.latest(robot)] for robot in truth.robots]
+        times = sorted({sample.time for path in paths for sample in path})
+        places = [0] * len(paths)
+        for t in times:
+            row = []
+            for index, path in enumerate(paths):
+                while places[index] + 1 < len(path) and path[places[index] + 1].time <= t:
+                    places[index] += 1
+                row.append(_row_of(path[places[index]]))
+            recording.frames.append(Frame(t, tuple(row)))
+        return recording
+
+
+def _row_of(sample: Sample) -> tuple[Any, ...]:
+    return sample.x, sample.y, sample.yaw, sample.battery, sample.charging, sample.touching

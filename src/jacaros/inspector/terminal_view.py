@@ -1,0 +1,202 @@
+"""A live view of a run in the terminal: a map of braille dots with the robots, batteries, goals and prints.
+
+It goes to standard error, ten pictures a second on the wall at most and never for more than a tenth of the
+time, so that it does not slow a virtual run, which may do hundreds of seconds between two pictures.  Where
+standard error is no terminal, it is a line now and then.
+"""
+
+import math
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
+from typing import Any
+
+from rich.console import Console, Group
+from rich.live import Live
+from rich.text import Text
+
+from jacaros.inspector.braille import BrailleMap, character, draw_world
+from jacaros.inspector.robot_view import RobotView
+
+FRAME_PERIOD = 0.1
+"""Seconds between two pictures, on the wall."""
+LINE_PERIOD = 5.0
+"""Seconds between two lines where there is no terminal."""
+_ARROWS = "→↗↑↖←↙↓↘"
+_COLOURS = ("cyan", "magenta", "green", "yellow", "blue", "red")
+_PRINTS = 5
+_OPEN = ("pursued", "resumed", "suspended")
+
+
+class TerminalView:
+    """Shows a run; told of it like a recorder, see `jacaros.inspector.watch.Watcher`.
+
+    Args:
+        world: the drawing of the world.
+        console: where to draw; standard error by default.
+        wall: seconds on the wall.
+    """
+
+    def __init__(
+        self,
+        world: Mapping[str, Any],
+        console: Console | None = None,
+        wall: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._drawing = world
+        self._console = console if console is not None else Console(stderr=True)
+        self._wall = wall
+        self._live: Live | None = None
+        self._walls: BrailleMap | None = None
+        self._trail: BrailleMap | None = None
+        self._size = (0, 0)
+        self._t = 0.0
+        self._robots: Sequence[RobotView] = ()
+        self._goals: dict[tuple[str, str], str] = {}
+        self._prints: deque[tuple[str, str]] = deque(maxlen=_PRINTS)
+        self._drawn_at = wall()
+        self._drawn_t = 0.0
+        self._factor = 0.0
+        self._cost = 0.0
+
+    @property
+    def takes_prints(self) -> bool:
+        """True when agents' prints must go through `text` alone, since stdout is the terminal drawn on."""
+        return self._console.is_terminal and sys.stdout.isatty()
+
+    def frame(self, t: float, robots: Sequence[RobotView]) -> None:
+        """The robots at a moment; most calls draw nothing."""
+        self._t, self._robots = t, robots
+        if self._trail is not None:
+            for robot in robots:
+                self._trail.point(robot.x, robot.y)
+        passed = self._wall() - self._drawn_at
+        if passed >= (max(FRAME_PERIOD, 10.0 * self._cost) if self._console.is_terminal else LINE_PERIOD):
+            self._measure_speed(passed)
+            self._draw()
+            self._cost = self._wall() - self._drawn_at
+
+    def text(self, t: float, agent: str, text: str) -> None:
+        """What an agent printed."""
+        self._prints.append((agent, text))
+        if self.takes_prints:
+            # Above the picture, where it scrolls like any output.
+            self._console.print(Text(f"[{agent}] {text}"), soft_wrap=True)
+
+    def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Something that happened; goals are shown."""
+        if kind != "goal":
+            return
+        key = (str(data.get("agent", "")), str(data.get("goal", "")))
+        state = str(data.get("state", ""))
+        self._goals.pop(key, None)
+        if state in _OPEN:
+            self._goals[key] = state
+
+    def close(self) -> None:
+        """Draw the end and leave the terminal; closing twice does no harm."""
+        if self._live is not None:
+            self._draw()
+            self._live.stop()
+            self._live = None
+
+    def _measure_speed(self, passed: float) -> None:
+        now = (self._t - self._drawn_t) / passed
+        self._factor = now if self._factor == 0.0 else 0.7 * self._factor + 0.3 * now
+        self._drawn_at, self._drawn_t = self._wall(), self._t
+
+    def _draw(self) -> None:
+        if not self._console.is_terminal:
+            self._console.print(self.line(), soft_wrap=True)
+            return
+        if self._live is None:
+            self._live = Live(
+                console=self._console, auto_refresh=False, redirect_stdout=False, redirect_stderr=False
+            )
+            self._live.start()
+        self._live.update(self.picture(), refresh=True)
+
+    def line(self) -> Text:
+        """The run in one line."""
+        robots = "  ".join(
+            f"{robot.name} ({robot.x:.2f}, {robot.y:.2f}) {robot.battery:.0f} %" for robot in self._robots
+        )
+        return Text(f"t {self._t:.1f} s  ×{self._factor:.0f}  {robots}{self._goal_text()}")
+
+    def picture(self) -> Group:
+        """The whole view."""
+        head = Text(f"{self._drawing.get('name', '')}  ", style="bold")
+        head.append(f"{_minutes(self._t)}  ×{self._factor:.0f}", style="not bold dim")
+        rows = [head, self._map(), *(self._gauge(robot, i) for i, robot in enumerate(self._robots))]
+        if self._goals:
+            rows.append(Text(self._goal_text().strip(), style="dim"))
+        for agent, text in self._prints:
+            rows.append(Text.assemble((f"[{agent}] ", "cyan"), text, no_wrap=True, overflow="ellipsis"))
+        return Group(*rows)
+
+    def _goal_text(self) -> str:
+        several = len({agent for agent, _ in self._goals}) > 1
+        shown = [
+            (f"{agent}: " if several else "") + goal + (" (suspended)" if state == "suspended" else "")
+            for (agent, goal), state in self._goals.items()
+        ]
+        return f"  pursuing {', '.join(shown)}" if shown else ""
+
+    def _map(self) -> Text:
+        self._fit()
+        assert self._walls is not None
+        assert self._trail is not None
+        marks = self._marks(self._walls)
+        cells: list[tuple[str, str]] = []
+        for row in range(self._walls.rows):
+            for column in range(self._walls.columns):
+                wall = self._walls.bits(column, row)
+                bits = wall | self._trail.bits(column, row)
+                plain = (character(bits), "white" if wall else "blue" if bits else "")
+                cells.append(marks.get((column, row), plain))
+            cells.append(("\n", ""))
+        runs = groupby(cells[:-1], key=lambda cell: cell[1])
+        return Text.assemble(
+            *(("".join(char for char, _ in run), style) for style, run in runs), no_wrap=True
+        )
+
+    def _fit(self) -> None:
+        """Make the maps anew when the terminal has another size; the path so far is lost then."""
+        size = (self._console.width, self._console.height)
+        if self._size == size:
+            return
+        self._size = size
+        robots = max(1, len(self._drawing["robots"]))
+        rows = max(6, min(32, size[1] - robots - _PRINTS - 4))
+        self._walls = draw_world(self._drawing, max(20, size[0] - 2), rows)
+        self._trail = BrailleMap(self._drawing["bounds"], max(20, size[0] - 2), rows)
+
+    def _marks(self, shown: BrailleMap) -> dict[tuple[int, int], tuple[str, str]]:
+        """Characters that stand in place of dots: docks, and robots over them."""
+        marks = {}
+        for dock in self._drawing["docks"]:
+            marks[shown.cell_of(dock["pose"][0], dock["pose"][1])] = ("◎", "bold yellow")
+        for index, robot in enumerate(self._robots):
+            arrow = _ARROWS[round(robot.yaw / (math.pi / 4)) % 8]
+            colour = "red" if robot.touching else _COLOURS[index % len(_COLOURS)]
+            marks[shown.cell_of(robot.x, robot.y)] = (arrow, f"bold {colour}")
+        return marks
+
+    def _gauge(self, robot: RobotView, index: int) -> Text:
+        full = round(robot.battery / 5)
+        colour = "green" if robot.battery > 50 else "yellow" if robot.battery > 20 else "red"
+        text = Text(no_wrap=True, overflow="ellipsis")
+        text.append(f"{robot.name} ", style=f"bold {_COLOURS[index % len(_COLOURS)]}")
+        text.append("█" * full, style=colour)
+        text.append("░" * (20 - full), style="dim")
+        text.append(f" {robot.battery:3.0f} %")
+        text.append(" charging" if robot.charging else "", style="green")
+        text.append(" touching" if robot.touching else "", style="red")
+        text.append(f"  ({robot.x:.2f}, {robot.y:.2f})", style="dim")
+        return text
+
+
+def _minutes(t: float) -> str:
+    return f"{int(t // 60)}:{t % 60:04.1f}"

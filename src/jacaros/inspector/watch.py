@@ -1,0 +1,84 @@
+"""Looks at a running world ten times a second of the run's clock, for a recorder and a view."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from jacaros.clock import Clock, Timer
+from jacaros.inspector.robot_view import RobotView, views_of
+from jacaros.sim import World
+from jacaros.sim.ground_truth import Record
+
+PERIOD = 0.1
+
+
+class Watcher(Protocol):
+    """What is told of a run: a `jacaros.inspector.recorder.Recorder` or a view."""
+
+    def frame(self, t: float, robots: list[RobotView]) -> None:
+        """The robots at a moment, *t* seconds after the run began."""
+
+    def text(self, t: float, agent: str, text: str) -> None:
+        """What an agent printed."""
+
+    def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Something that happened."""
+
+
+class Watch:
+    """Feeds watchers with frames and events of a world, and passes on prints and goals of agents.
+
+    It reads only: a run is the same with and without it.
+
+    Args:
+        clock: the run's clock; ``t`` counts from now.
+        watchers: who is told.
+        world: the embedded world, None when the robots are elsewhere.
+    """
+
+    def __init__(self, clock: Clock, watchers: list[Watcher], world: World | None = None) -> None:
+        self.clock, self.watchers, self.world = clock, watchers, world
+        self.beginning = clock.now()
+        self._timer: Timer | None = None
+        self._stop_listening = world.ground_truth.listen(self._listen) if world is not None else None
+
+    def start(self) -> None:
+        """Begin to look."""
+        self._look()
+
+    def _look(self) -> None:
+        self._timer = self.clock.call_later(PERIOD, self._look)
+        self._frame()
+
+    def _frame(self) -> None:
+        robots = views_of(self.world) if self.world is not None else []
+        t = self.t()
+        for watcher in self.watchers:
+            watcher.frame(t, robots)
+
+    def t(self) -> float:
+        """Seconds since the run began."""
+        return self.clock.now() - self.beginning
+
+    def text(self, agent: str, text: str) -> None:
+        """Pass on what an agent printed now."""
+        for watcher in self.watchers:
+            watcher.text(self.t(), agent, text)
+
+    def event(self, kind: str, data: Mapping[str, Any]) -> None:
+        """Pass on something that happened now, such as ``goal`` or ``plan``."""
+        for watcher in self.watchers:
+            watcher.event(self.t(), kind, data)
+
+    def _listen(self, record: Record) -> None:
+        if record["kind"] == "event":
+            self.event(record["event"], {"robot": record["robot"], **record["data"]})
+
+    def stop(self) -> None:
+        """Look once more and then no more; watchers are closed by who made them."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+            self._frame()
+        if self._stop_listening is not None:
+            self._stop_listening()
+            self._stop_listening = None
