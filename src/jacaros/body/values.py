@@ -12,7 +12,7 @@ list, set, queue           `list`
 map                        `dict`
 annotated term             its term, without the annotations
 opaque reference           the object
-unbound variable           `Out`; from the environment None comes as a fresh variable
+unbound variable           `Out`, one for each variable; from the environment None comes as a fresh variable
 formula, plan              its text
 =========================  ==========================================================================
 """
@@ -78,10 +78,13 @@ def _variable_to_value(variable: Var, outputs: Outputs | None) -> Any:
     bound = deref(variable)
     if bound.__class__ is not Var:
         return to_value(bound, outputs)
-    out = Out()
-    if outputs is not None:
-        outputs.append((bound, out))
-    return out
+    if outputs is None:
+        return Out()
+    for variable, out in outputs:
+        if variable is bound:
+            return out
+    outputs.append((bound, Out()))
+    return outputs[-1][1]
 
 
 def _atom_to_value(symbol: Functor) -> object:

@@ -1,0 +1,223 @@
+"""The body of one agent: carries out its actions, and perceives what it focuses."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.body.actions import ACTIONS, Handle, Situation, keys
+from jacaros.body.call import Call, read
+from jacaros.body.completion import of_operation, refused, succeeded
+from jacaros.body.focus import FocusedArtifacts
+from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
+from jacaros.body.selection import Selection
+from jacaros.body.values import Outputs, References, atom_of, to_value
+from jacaros.body.whereabouts import Whereabouts
+from jacaros.env.environment import Environment
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import ArtifactId
+from jacaros.env.operation import OperationOutcome, OperationRequest
+from jacaros.env.workspace import Workspace
+from jacaros.terms.text import display
+from jacaros.terms.values import String
+
+_CONSOLE = "console"
+
+
+class Mind(Protocol):
+    """What a body serves (`jacaros.bdi.agent.Agent`)."""
+
+    def perceive(self, percepts: list[Percept]) -> None:
+        """Take percepts in."""
+
+    def complete(self, act_id: int, completion: Completion) -> None:
+        """Be told the end of an act."""
+
+
+class Activity(Protocol):
+    """Counts actions under way."""
+
+    def begin(self) -> None:
+        """An action has begun."""
+
+    def end(self) -> None:
+        """An action has ended or was given up."""
+
+
+@dataclass(slots=True)
+class Pending:
+    """An act under way; without a handle while the call that begins it has not returned."""
+
+    handle: Handle | None = None
+
+
+class AgentBody:
+    """Carries out the actions of one agent and perceives for it.
+
+    Percepts of an operation reach the mind before the end of the action does: when the plan goes on, the
+    belief base shows the result.
+
+    Args:
+        agent: name of the agent.
+        mind: whom it serves.
+        environment: where it acts.
+        references: opaque references, shared by all agents of a run.
+        writer: writes percepts, shared likewise.
+        show: shows a line of the agent's output.
+        activity: told of actions under way.
+        home: full path of the workspace where the agent begins.
+    """
+
+    def __init__(
+        self,
+        agent: str,
+        mind: Mind,
+        environment: Environment,
+        references: References,
+        writer: PerceptWriter,
+        show: Callable[[str], None],
+        activity: Activity,
+        home: str = "/main",
+    ) -> None:
+        self._agent = agent
+        self._mind = mind
+        self._environment = environment
+        self._references = references
+        self._writer = writer
+        self._show = show
+        self._activity = activity
+        self._pending: dict[int, Pending] = {}
+        self._entered = self._closed = False
+        self._whereabouts = Whereabouts(environment, home)
+        focused = FocusedArtifacts(agent, writer, references, self._notice)
+        self._selection = Selection(agent, self._whereabouts, focused, keys())
+        self._situation = Situation(
+            agent, environment, self._whereabouts, focused, self._selection, references, self._joined
+        )
+
+    @property
+    def situation(self) -> Situation:
+        """Workspaces and focused artifacts of the agent."""
+        return self._situation
+
+    @property
+    def pending(self) -> tuple[int, ...]:
+        """The acts under way."""
+        return tuple(self._pending)
+
+    def enter(self) -> None:
+        """Believe in the workspace where the agent begins; done by its first action at the latest."""
+        if not self._entered:
+            self._entered = True
+            for workspace in self._whereabouts.joined():
+                self._joined(workspace, True)
+
+    def join(self, path: str) -> None:
+        """Join a workspace on behalf of the project, before the agent acts.
+
+        Raises:
+            OperationFailed: there is none at that full path.
+        """
+        self.enter()
+        workspace = self._environment.workspace(path)
+        if self._whereabouts.join(workspace):
+            self._joined(workspace, True)
+
+    def focus(self, artifact: ArtifactId, namespace: str | None = None) -> None:
+        """Focus an artifact on behalf of the project; its workspace is joined as well.
+
+        Raises:
+            OperationFailed: the artifact is gone.
+        """
+        self.enter()
+        workspace = self._environment.workspace(artifact.workspace)
+        if not self._whereabouts.has_joined(workspace.path):
+            self.join(workspace.path)
+        self._situation.focused.begin(workspace, artifact, namespace)
+
+    def act(self, act: Act) -> None:
+        """Begin an action; the mind is told its end, which may be before this returns."""
+        self.enter()
+        pending = self._pending[act.id] = Pending()
+        self._activity.begin()
+        try:
+            handle = self._begin(read(act))
+        except OperationFailed as failure:
+            self._finish(act.id, refused(failure, self._references))
+            return
+        pending.handle = handle
+
+    def cancel_act(self, act_id: int) -> None:
+        """Give an action up: its operation is cancelled, its end is not told."""
+        pending = self._pending.pop(act_id, None)
+        if pending is None:
+            return
+        self._activity.end()
+        if pending.handle is not None:
+            pending.handle.cancel()
+
+    def suspend_act(self, act_id: int) -> None:
+        """Pause the operation of an action, if it can be paused."""
+        pending = self._pending.get(act_id)
+        if pending is not None and pending.handle is not None:
+            pending.handle.pause()
+
+    def resume_act(self, act_id: int) -> None:
+        """Let the operation of an action go on."""
+        pending = self._pending.get(act_id)
+        if pending is not None and pending.handle is not None:
+            pending.handle.resume()
+
+    def close(self) -> None:
+        """Give all actions and focused artifacts up; the mind is told nothing more."""
+        self._closed = True
+        for act_id in self.pending:
+            self.cancel_act(act_id)
+        for workspace in self._whereabouts.joined():
+            self._situation.focused.end_all(workspace)
+
+    def _begin(self, call: Call) -> Handle | None:
+        if call.direction.artifact is None:
+            action = ACTIONS.get((call.name, len(call.arguments)))
+            if action is not None:
+                return action(self._situation, call, lambda completion: self._finish(call.act.id, completion))
+        artifact = self._selection.artifact_for(call)
+        if artifact.name == _CONSOLE and artifact.creator is None and _prints(call):
+            # Printed here and not by the console artifact: it would see values where people want terms.
+            self._show("".join(map(display, call.arguments)))
+            self._finish(call.act.id, succeeded())
+            return None
+        return self._execute(call, artifact)
+
+    def _execute(self, call: Call, artifact: ArtifactId) -> Handle:
+        outputs: Outputs = []
+        arguments = tuple([to_value(argument, outputs) for argument in call.arguments])
+
+        def done(outcome: OperationOutcome) -> None:
+            self._finish(call.act.id, of_operation(outcome, outputs, self._references))
+
+        request = OperationRequest(artifact, call.name, arguments, self._agent, call.act.cause, done)
+        return self._environment.execute(request)
+
+    def _finish(self, act_id: int, completion: Completion) -> None:
+        if self._pending.pop(act_id, None) is not None:
+            self._activity.end()
+            self._mind.complete(act_id, completion)
+
+    def _notice(self, percepts: list[Percept]) -> None:
+        if not self._closed:
+            self._mind.perceive(percepts)
+
+    def _joined(self, workspace: Workspace, is_in: bool) -> None:
+        percept = self._writer.own(
+            ADD if is_in else REMOVE,
+            "joinedWsp",
+            self._references.of(workspace),
+            atom_of(workspace.name),
+            String(workspace.path),
+        )
+        self._notice([percept])
+
+
+def _prints(call: Call) -> bool:
+    return call.name in ("print", "println", "printWithAgName", "printlnWithAgName")

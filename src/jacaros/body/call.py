@@ -1,0 +1,147 @@
+"""An external action as the body reads it: what to do, with what, and where."""
+
+from dataclasses import dataclass
+
+from jacaros.bdi.act import Act
+from jacaros.body.values import symbol_name
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import ArtifactId
+from jacaros.env.values import Atom, Structure
+from jacaros.env.workspace import Workspace
+from jacaros.terms.text import text
+from jacaros.terms.values import Functor, Reference, String, Term, bare, deref
+
+_BY_ARTIFACT = {"artifact_id": "artifact", "aid": "artifact", "artifact_name": "artifact", "art": "artifact"}
+_BY_WORKSPACE = {"wid": "workspace", "wsp": "workspace"}
+_DIRECTING = ", ".join([*_BY_ARTIFACT, *_BY_WORKSPACE])
+
+
+@dataclass(slots=True)
+class Direction:
+    """Where an action is directed by its annotations.
+
+    Attributes:
+        artifact: an artifact, or the name of one; None when the action does not say.
+        workspace: a workspace, or its name or path; None when the action does not say.
+    """
+
+    artifact: ArtifactId | str | None = None
+    workspace: Workspace | str | None = None
+
+
+@dataclass(slots=True)
+class Call:
+    """One external action.
+
+    Attributes:
+        act: what the mind asked for.
+        name: of the action, without quotes.
+        namespace: in front of the name, None without.
+        arguments: dereferenced terms.
+        direction: what the annotations say.
+    """
+
+    act: Act
+    name: str
+    namespace: str | None
+    arguments: tuple[Term, ...]
+    direction: Direction
+
+    @property
+    def key(self) -> str:
+        """Name and number of arguments, such as ``inc/1``."""
+        return f"{self.name}/{len(self.arguments)}"
+
+
+def read(act: Act) -> Call:
+    """Read an act.
+
+    Raises:
+        OperationFailed: an annotation cannot be obeyed.
+    """
+    symbol = act.functor
+    name = symbol.name[1:-1] if symbol.name[:1] == "'" else symbol.name
+    direction = _direction(act) if act.annotations else Direction()
+    return Call(act, name, symbol.namespace, tuple(map(deref, act.arguments)), direction)
+
+
+def _direction(act: Act) -> Direction:
+    direction = Direction()
+    # An id says more than a name, whatever the order in which they are written.
+    for annotation in sorted(act.annotations, key=lambda a: _name(a) in ("artifact_id", "aid", "wid")):
+        name = _name(annotation)
+        if annotation.__class__ is not tuple or name == "source":
+            continue
+        if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
+            raise OperationFailed(
+                f"the annotation {text(annotation)} of {act.functor!r} says nothing to the environment; "
+                f"an action can be directed by {_DIRECTING}",
+                Structure("action_failed", (symbol_name(act.functor), Atom("unknown_annotation"))),
+            )
+        if name in _BY_ARTIFACT:
+            direction.artifact = artifact_argument(annotation[1], name)
+        else:
+            direction.workspace = workspace_argument(annotation[1], name)
+    return direction
+
+
+def _name(annotation: Term) -> str:
+    return annotation[0].name if annotation.__class__ is tuple else ""
+
+
+def artifact_argument(term: Term, where: str) -> ArtifactId | str:
+    """The artifact, or the name of one, that a term stands for.
+
+    Raises:
+        OperationFailed: it stands for neither.
+    """
+    term = bare(term)
+    if term.__class__ is Reference and isinstance(term.value, ArtifactId):
+        return term.value
+    name = name_of(term)
+    if name is None:
+        raise _not_a("n artifact (as makeArtifact and lookupArtifact give it)", term, where)
+    return name
+
+
+def workspace_argument(term: Term, where: str) -> Workspace | str:
+    """The workspace, or the name or path of one, that a term stands for.
+
+    Raises:
+        OperationFailed: it stands for neither.
+    """
+    term = bare(term)
+    if term.__class__ is Reference and isinstance(term.value, Workspace):
+        return term.value
+    name = name_of(term)
+    if name is None:
+        raise _not_a(" workspace (as joinWorkspace gives it)", term, where)
+    return name
+
+
+def name_argument(term: Term, where: str) -> str:
+    """The name that a string or atom stands for.
+
+    Raises:
+        OperationFailed: it is neither.
+    """
+    name = name_of(bare(term))
+    if name is None:
+        raise OperationFailed(
+            f"{where} wants a name (a string or an atom), not {text(term)}",
+            Structure("wrong_op_arguments", (where,)),
+        )
+    return name
+
+
+def name_of(term: Term) -> str | None:
+    """The text of a string or atom, without quotes; None for other terms."""
+    if term.__class__ is String:
+        return str(term)
+    return symbol_name(term) if term.__class__ is Functor else None
+
+
+def _not_a(what: str, term: Term, where: str) -> OperationFailed:
+    return OperationFailed(
+        f"{where} wants a{what} or its name, not {text(term)}", Structure("wrong_op_arguments", (where,))
+    )

@@ -1,0 +1,132 @@
+"""What an agent focuses: the artifacts whose properties and signals it perceives."""
+
+from collections.abc import Callable
+
+from jacaros.bdi.act import Percept
+from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
+from jacaros.body.values import References, atom_of
+from jacaros.env.ids import ArtifactId
+from jacaros.env.observation import Observation
+from jacaros.env.workspace import Workspace
+from jacaros.terms.values import String, Term
+
+Notice = Callable[[list[Percept]], None]
+"""Where percepts go."""
+
+
+class FocusObserver:
+    """Perceives for an agent, in one namespace of its program."""
+
+    def __init__(self, agent: str, namespace: str | None, writer: PerceptWriter, notice: Notice) -> None:
+        self._agent = agent
+        self._namespace = namespace
+        self._writer = writer
+        self._notice = notice
+
+    @property
+    def agent(self) -> str:
+        """Name of the agent."""
+        return self._agent
+
+    def observe(self, observation: Observation) -> None:
+        """Bring an observation to the mind."""
+        self._notice(self._writer.percepts(observation, self._namespace))
+
+
+class FocusedArtifacts:
+    """The artifacts that one agent focuses, in the order of focusing.
+
+    For each there is a belief ``focusing(Id,Name,Type,WspId,WspName,WspPath)``.  An artifact may be focused
+    in several namespaces, with beliefs in each.
+    """
+
+    def __init__(self, agent: str, writer: PerceptWriter, references: References, notice: Notice) -> None:
+        self._agent = agent
+        self._writer = writer
+        self._references = references
+        self._notice = notice
+        self._observers: dict[str | None, FocusObserver] = {}
+        self._focused: dict[ArtifactId, dict[str | None, Workspace]] = {}
+        self._watched: dict[Workspace, Callable[[], None]] = {}
+
+    def __contains__(self, artifact: ArtifactId) -> bool:
+        return artifact in self._focused
+
+    def rank(self, artifact: ArtifactId) -> int:
+        """How many artifacts were focused before this one, which must be focused."""
+        return list(self._focused).index(artifact)
+
+    def in_namespace(self, namespace: str) -> tuple[ArtifactId, ...]:
+        """The artifacts focused in a namespace, in the order of focusing."""
+        return tuple(a for a, namespaces in self._focused.items() if namespace in namespaces)
+
+    def in_workspace(self, workspace: Workspace) -> tuple[ArtifactId, ...]:
+        """The focused artifacts of a workspace."""
+        return tuple(a for a in self._focused if a.workspace == workspace.path)
+
+    def begin(self, workspace: Workspace, artifact: ArtifactId, namespace: str | None) -> None:
+        """Focus an artifact; without effect when it is focused in that namespace already.
+
+        Raises:
+            OperationFailed: the artifact is gone.
+        """
+        if namespace in self._focused.get(artifact, ()):
+            return
+        workspace.focus(artifact, self._observer(namespace))
+        is_first = artifact not in self._focused
+        self._focused.setdefault(artifact, {})[namespace] = workspace
+        self._watch(workspace)
+        if is_first:
+            self._notice([self._focusing(ADD, workspace, artifact)])
+
+    def end(self, artifact: ArtifactId, namespace: str | None) -> None:
+        """Stop to focus an artifact in a namespace; without effect when it is not focused there."""
+        namespaces = self._focused.get(artifact, {})
+        workspace = namespaces.pop(namespace, None)
+        if workspace is None:
+            return
+        if not namespaces:
+            self._lose(workspace, artifact)
+        workspace.stop_focus(artifact, self._observer(namespace))
+
+    def end_all(self, workspace: Workspace) -> None:
+        """Stop to focus everything in a workspace."""
+        for artifact in self.in_workspace(workspace):
+            for namespace in tuple(self._focused[artifact]):
+                self.end(artifact, namespace)
+        stop_watching = self._watched.pop(workspace, None)
+        if stop_watching is not None:
+            stop_watching()
+
+    def _observer(self, namespace: str | None) -> FocusObserver:
+        observer = self._observers.get(namespace)
+        if observer is None:
+            observer = FocusObserver(self._agent, namespace, self._writer, self._notice)
+            self._observers[namespace] = observer
+        return observer
+
+    def _watch(self, workspace: Workspace) -> None:
+        """Hear of disposed artifacts: their properties go by themselves, ``focusing`` must be seen to."""
+        if workspace in self._watched:
+            return
+
+        def look(artifact: ArtifactId, present: bool) -> None:
+            if not present and artifact in self._focused:
+                self._lose(workspace, artifact)
+
+        self._watched[workspace] = workspace.watch(look)
+
+    def _lose(self, workspace: Workspace, artifact: ArtifactId) -> None:
+        del self._focused[artifact]
+        self._notice([self._focusing(REMOVE, workspace, artifact)])
+
+    def _focusing(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> Percept:
+        arguments: tuple[Term, ...] = (
+            self._references.of(artifact),
+            atom_of(artifact.name),
+            String(artifact.type_name),
+            self._references.of(workspace),
+            atom_of(workspace.name),
+            String(workspace.path),
+        )
+        return self._writer.own(kind, "focusing", *arguments)

@@ -1,0 +1,104 @@
+"""Where an agent is: the workspaces that it has joined, and the current one of each intention."""
+
+from collections import OrderedDict
+from collections.abc import Iterator
+
+from jacaros.env.environment import Environment
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import resolve_path
+from jacaros.env.values import Structure
+from jacaros.env.workspace import Workspace
+
+
+class Whereabouts:
+    """The workspaces of one agent.
+
+    An intention that has joined a workspace stays there; others use the workspace that the agent joined last.
+
+    Args:
+        environment: holds the workspaces.
+        home: full path of the workspace that the agent begins in.
+    """
+
+    REMEMBERED_INTENTIONS = 1000
+    """Intentions are not heard to end, so only the last ones that joined a workspace are remembered."""
+
+    def __init__(self, environment: Environment, home: str = "/main") -> None:
+        self._environment = environment
+        self.home = environment.workspace(home)
+        self._joined: dict[str, Workspace] = {home: self.home}
+        self._last = self.home
+        self._of_intention: OrderedDict[int, Workspace] = OrderedDict()
+
+    def joined(self) -> tuple[Workspace, ...]:
+        """The joined workspaces, in the order of joining."""
+        return tuple(self._joined.values())
+
+    def has_joined(self, path: str) -> bool:
+        """Whether the agent is in the workspace with that full path."""
+        return path in self._joined
+
+    def current(self, intention: int) -> Workspace:
+        """The workspace where an intention acts."""
+        found = self._of_intention.get(intention, self._last) if self._of_intention else self._last
+        return found if found.path in self._joined else self._last
+
+    def in_order(self, intention: int) -> Iterator[Workspace]:
+        """The workspaces where an intention looks for things: the current one, home, then the others."""
+        current = self.current(intention)
+        yield current
+        if self.home is not current and self.home.path in self._joined:
+            yield self.home
+        if len(self._joined) > 1:
+            yield from (w for w in self._joined.values() if w is not current and w is not self.home)
+
+    def find(self, path: str, intention: int) -> Workspace:
+        """The workspace at *path*, which starts from the intention's current workspace.
+
+        Raises:
+            OperationFailed: there is none.
+        """
+        return self._environment.workspace(resolve_path(self.current(intention).path, path))
+
+    def named(self, name: str, intention: int) -> Workspace:
+        """The joined workspace with that path or plain name.
+
+        Raises:
+            OperationFailed: no such workspace was joined.
+        """
+        full = resolve_path(self.current(intention).path, name)
+        for workspace in self.in_order(intention):
+            if workspace.path == full or workspace.name == name:
+                return workspace
+        raise not_joined(name)
+
+    def join(self, workspace: Workspace, intention: int | None = None) -> bool:
+        """Make a workspace the current one; True when it was not joined before."""
+        is_new = workspace.path not in self._joined
+        self._joined[workspace.path] = workspace
+        self._last = workspace
+        if intention is not None:
+            self._of_intention[intention] = workspace
+            self._of_intention.move_to_end(intention)
+            if len(self._of_intention) > self.REMEMBERED_INTENTIONS:
+                self._of_intention.popitem(last=False)
+        return is_new
+
+    def quit(self, workspace: Workspace) -> bool:
+        """Leave a workspace; False when it was not joined.
+
+        When none is left, the agent's actions still start from its home.
+        """
+        if self._joined.pop(workspace.path, None) is None:
+            return False
+        if self._last is workspace:
+            self._last = next(reversed(self._joined.values()), self.home)
+        return True
+
+
+def not_joined(path: str) -> OperationFailed:
+    """The failure of an action in a workspace where the agent is not."""
+    return OperationFailed(
+        f'workspace {path} has not been joined; joinWorkspace("{path}") comes first',
+        Structure("workspace_not_joined", (path,)),
+    )

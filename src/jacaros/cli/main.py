@@ -1,0 +1,86 @@
+"""``jacaros COMMAND``: finds the command, and turns the user's mistakes into messages.
+
+Exit codes: 0 after a clean end, 1 after an error in a program or project, 2 for wrong usage, the program's
+own code after ``.stopMAS``; 130 and 143 when a signal (Ctrl-C, SIGTERM) ended the run.
+"""
+
+import sys
+from importlib import import_module
+
+import click
+
+from jacaros.errors import JacarosError, UsageError
+
+COMMANDS = {
+    "run": ("jacaros.cli.run", "Run an agent program or a project."),
+    "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
+    "describe": ("jacaros.cli.describe", "Tell what an artifact type or a project offers."),
+    "version": ("jacaros.cli.version", "Tell the versions of jacaros and of what it uses."),
+}
+"""Module and summary of each command."""
+
+
+class Commands(click.Group):
+    """The commands by name; the module of one is imported when it is called, not before."""
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        """The names, in the order of importance."""
+        return list(COMMANDS)
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """The command of that name."""
+        if name not in COMMANDS:
+            return None
+        command: click.Command = import_module(COMMANDS[name][0]).command
+        return command
+
+    def resolve_command(
+        self, context: click.Context, arguments: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """A file in the place of the command is run: ``jacaros hello.asl``."""
+        if arguments and arguments[0].endswith((".asl", ".mas2j", ".jcm")):
+            arguments = ["run", *arguments]
+        return super().resolve_command(context, arguments)
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands without importing them."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
+
+
+@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+def jacaros() -> None:
+    """Program robots as rational agents: AgentSpeak minds, artifacts and ROS."""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """The entry point of the ``jacaros`` command; ends the process."""
+    sys.exit(call(arguments))
+
+
+def call(arguments: list[str] | None = None) -> int:
+    """Carry a command out; the exit code."""
+    try:
+        result = jacaros.main(args=arguments, prog_name="jacaros", standalone_mode=False)
+    except click.exceptions.Exit as end:
+        return end.exit_code
+    except click.exceptions.Abort:
+        return 130
+    except click.ClickException as wrong:
+        wrong.show()
+        return 2
+    except UsageError as wrong:
+        return _tell(wrong, 2)
+    except JacarosError as wrong:
+        return _tell(wrong, 1)
+    except BrokenPipeError:
+        # Whoever read the output has gone (as in `| head`): there is nobody left to be told.
+        sys.stdout = None  # type: ignore[assignment]
+        return 1
+    return result if isinstance(result, int) else 0
+
+
+def _tell(error: JacarosError, code: int) -> int:
+    text = str(error)
+    print(text if text.startswith("jacaros:") else f"jacaros: {text}", file=sys.stderr)
+    return code
