@@ -1,0 +1,121 @@
+"""The graphs that the one contract suite runs on."""
+
+import importlib.util
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs, not a package
+
+from graphs import InMemory, InProcesses
+from masters import Master
+
+KINDS = ("memory", "ros1", "ros2")
+LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Run every test that wants a graph on each kind of it, or on those that it names with `only`."""
+    if "graph" in metafunc.fixturenames:
+        only = metafunc.definition.get_closest_marker("only")
+        kinds = [kind for kind in (only.args if only else KINDS) if is_wanted(kind, metafunc.config)]
+        marks = {"ros1": [pytest.mark.ros1], "ros2": [pytest.mark.ros2]}
+        metafunc.parametrize(
+            "graph", [pytest.param(k, marks=marks.get(k, [])) for k in kinds], indirect=True, scope="session"
+        )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the marker `only` known."""
+    config.addinivalue_line("markers", "only(kinds): run a contract test on these kinds of graph alone")
+
+
+def missing(kind: str) -> str | None:
+    """Tell what a kind of graph lacks here."""
+    if kind == "memory":
+        return None
+    if importlib.util.find_spec(LIBRARIES[kind]) is None:
+        return f"no {LIBRARIES[kind]} in {sys.executable}; run tools/install_{kind}.sh and use its venv"
+    if kind == "ros1" and Master.program() is None:
+        return "no rosmaster; run tools/install_ros1.sh"
+    return None
+
+
+def is_wanted(kind: str, config: pytest.Config) -> bool:
+    """Whether to run tests on *kind*: `test_presence` tells once of one that is missing, not every test."""
+    return missing(kind) is None or config.getoption(f"--require-{kind}")
+
+
+def need(kind: str, config: pytest.Config) -> None:
+    """Skip the test where *kind* is missing, or fail where it is required."""
+    problem = missing(kind)
+    if problem is None:
+        return
+    if config.getoption(f"--require-{kind}"):
+        pytest.fail(f"{kind} is required, but there is {problem}")
+    pytest.skip(f"{kind.upper()} IS NOT TESTED: {problem}")
+
+
+@pytest.fixture(scope="session")
+def graph(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """A graph that tests share; they use names of their own in it."""
+    kind = request.param
+    need(kind, request.config)
+    if kind == "memory":
+        made: Any = InMemory()
+        yield made
+        made.close()
+        return
+    folder = tmp_path_factory.mktemp(kind)
+    if kind == "ros2":
+        made = InProcesses(kind, ros2_environment(folder))
+        yield made
+        made.close()
+        return
+    master = Master(folder)
+    master.start()
+    made = InProcesses(kind, master.environment)
+    yield made
+    made.close()
+    master.close()
+
+
+def ros2_environment(folder: Path) -> dict[str, str]:
+    """A domain that no other run uses at the same time, on this machine alone."""
+    return {
+        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_LOG_DIR": str(folder / "log"),
+    }
+
+
+@pytest.fixture(scope="session")
+def _pairs() -> dict[int, tuple[Any, Any]]:
+    return {}
+
+
+@pytest.fixture
+def pair(graph: Any, _pairs: dict[int, tuple[Any, Any]]) -> tuple[Any, Any]:
+    """Two nodes of the graph that tests share."""
+    if id(graph) not in _pairs:
+        _pairs[id(graph)] = (graph.peer("left"), graph.peer("right"))
+    return _pairs[id(graph)]
+
+
+@pytest.fixture
+def topic(request: pytest.FixtureRequest) -> str:
+    """A name that belongs to this test."""
+    return "/" + request.node.originalname
+
+
+@pytest.fixture
+def master(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Master]:
+    """A ROS master of this test, not started yet."""
+    need("ros1", request.config)
+    made = Master(tmp_path)
+    yield made
+    made.close()

@@ -1,0 +1,226 @@
+"""Graphs in which contract tests run their peers: in this process, or real ones with a process for each node."""
+
+import asyncio
+import json
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import peer as peer_module
+
+import jacaros.ros.errors
+from jacaros.clock import VirtualClock, new_event_loop
+from jacaros.ros.backends.memory import MemoryGraph
+
+PATIENCE = 30.0
+"""Seconds after which a test gives up; far more than any step takes on a busy machine."""
+
+
+class MemoryPeer:
+    """A peer in this process: commands run the graph's loop until they are done."""
+
+    def __init__(self, graph: "InMemory", name: str, namespace: str, options: dict[str, Any]) -> None:
+        self._graph = graph
+        self._peer = peer_module.Peer("memory", graph.clock, name, namespace, graph=graph.shared, **options)
+
+    def __getattr__(self, command: str) -> Callable[..., Any]:
+        async def run(*args: Any, **kwargs: Any) -> Any:
+            result = getattr(self._peer, command)(*args, **kwargs)
+            return await result if asyncio.iscoroutine(result) else result
+
+        return lambda *args, **kwargs: self._graph.loop.run_until_complete(run(*args, **kwargs))
+
+
+class InMemory:
+    """The graph inside this process, on a virtual clock."""
+
+    kind = "memory"
+    separate_processes = False
+
+    def __init__(self) -> None:
+        self.clock = VirtualClock()
+        self.loop = new_event_loop(self.clock)
+        self.shared = MemoryGraph()
+        self._peers: list[MemoryPeer] = []
+
+    def peer(self, name: str, namespace: str = "", start: bool = True, **options: Any) -> Any:
+        made = MemoryPeer(self, name, namespace, options)
+        self._peers.append(made)
+        if start:
+            made.start()
+        return made
+
+    def wait_until(self, condition: Callable[[], object], what: str) -> None:
+        for _ in range(1000):
+            if condition():
+                return
+            self.loop.run_until_complete(self.clock.sleep(0.01))
+        raise AssertionError(f"not within 10 s of the virtual clock: {what}")
+
+    def pass_time(self, seconds: float) -> None:
+        self.loop.run_until_complete(self.clock.sleep(seconds))
+
+    def close(self) -> None:
+        for made in self._peers:
+            made.close()
+        self.loop.run_until_complete(self.loop.shutdown_asyncgens())
+        self.loop.close()
+
+
+class ProcessPeer:
+    """A peer in a process of its own."""
+
+    def __init__(
+        self, kind: str, name: str, namespace: str, options: dict[str, Any], environment: dict[str, str]
+    ) -> None:
+        program = [sys.executable, *environment.pop("PYTHON_FLAGS", "").split(), peer_module.__file__]
+        self._process = subprocess.Popen(
+            [*program, kind, name, *([namespace] if namespace else [])],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=os.environ | environment | {"PEER_OPTIONS": json.dumps(options)},
+        )
+        self._replies: queue.Queue[dict[str, Any] | None] = queue.Queue()
+        self.stray_output: list[str] = []
+        self.errors: list[str] = []
+        self._readers = [threading.Thread(target=t, daemon=True) for t in (self._read, self._read_errors)]
+        for reader in self._readers:
+            reader.start()
+        self._number = 0
+        self.shared_memory: set[str] = set()
+
+    def __getattr__(self, command: str) -> Callable[..., Any]:
+        if command.startswith("_"):
+            raise AttributeError(command)
+        return lambda *args, **kwargs: self._do(command, args, kwargs)
+
+    def signal(self, number: signal.Signals) -> None:
+        self._note_shared_memory()
+        self._process.send_signal(number)
+
+    def wait(self) -> int:
+        """Wait for the process's end and give its exit code."""
+        code = self._process.wait(PATIENCE)
+        for reader in self._readers:
+            reader.join(PATIENCE)
+        return code
+
+    def is_over(self) -> bool:
+        return self._process.poll() is not None
+
+    def dispose(self) -> None:
+        if not self.is_over():
+            self._note_shared_memory()
+            try:
+                self._do("close", (), {})
+            except (AssertionError, BrokenPipeError):
+                self._process.kill()
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.close()
+        except BrokenPipeError:
+            pass
+        try:
+            self.wait()
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self.wait()
+            raise AssertionError("the peer does not end after it was closed:\n" + "".join(self.errors)) from None
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        self._process.stdout.close()
+        self._process.stderr.close()
+
+    def _do(self, command: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+        self._number += 1
+        assert self._process.stdin is not None
+        line = json.dumps({"id": self._number, "do": command, "args": args, "kwargs": kwargs})
+        self._process.stdin.write(line + "\n")
+        self._process.stdin.flush()
+        deadline = time.monotonic() + PATIENCE
+        while True:
+            try:
+                answer = self._replies.get(timeout=max(0.0, deadline - time.monotonic()))
+            except queue.Empty:
+                answer = None
+            assert answer is not None, f"no answer to {command}; the peer said:\n" + "".join(self.errors)
+            if answer["id"] == self._number:
+                break
+        if "error" in answer:
+            raise getattr(jacaros.ros.errors, answer["error"], ValueError)(answer["text"])
+        return answer["result"]
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            if line.startswith("@"):
+                self._replies.put(json.loads(line[1:]))
+            else:
+                self.stray_output.append(line)
+        self._replies.put(None)
+
+    def _read_errors(self) -> None:
+        assert self._process.stderr is not None
+        for line in self._process.stderr:
+            self.errors.append(line)
+
+    def _note_shared_memory(self) -> None:
+        """Remember the files that Fast DDS made for this process; it leaves them behind when killed."""
+        try:
+            maps = Path(f"/proc/{self._process.pid}/maps").read_text()
+        except OSError:
+            return
+        self.shared_memory |= {word for word in maps.split() if word.startswith("/dev/shm/fastdds_")}
+
+
+class InProcesses:
+    """A real ROS graph with a process for each node."""
+
+    separate_processes = True
+
+    def __init__(self, kind: str, environment: dict[str, str]) -> None:
+        self.kind = kind
+        self.environment = environment
+        self._peers: list[ProcessPeer] = []
+        self._leftovers: set[str] = set()
+
+    def peer(self, name: str, namespace: str = "", start: bool = True, flags: str = "", **options: Any) -> Any:
+        environment = self.environment | ({"PYTHON_FLAGS": flags} if flags else {})
+        made = ProcessPeer(self.kind, name, namespace, options, dict(environment))
+        self._peers.append(made)
+        if start:
+            made.start()
+        return made
+
+    def wait_until(self, condition: Callable[[], object], what: str) -> None:
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f"not within {PATIENCE} s: {what}"
+            time.sleep(0.01)
+
+    def pass_time(self, seconds: float) -> None:
+        """Give a thing that must not happen the time to happen."""
+        time.sleep(seconds)
+
+    def dispose(self, made: ProcessPeer) -> None:
+        self._peers.remove(made)
+        try:
+            made.dispose()
+        finally:
+            self._leftovers |= made.shared_memory
+        assert made.stray_output == [], "standard output belongs to the agents"
+
+    def close(self) -> None:
+        for made in list(self._peers):
+            self.dispose(made)
+        for path in self._leftovers:
+            Path(path).unlink(missing_ok=True)

@@ -1,0 +1,122 @@
+"""Contract: names, namespaces, capabilities, messages and transforms."""
+
+from typing import Any
+
+import pytest
+
+from jacaros.ros.errors import CapabilityMissing
+
+Pair = tuple[Any, Any]
+
+
+def test_names_are_resolved_in_the_namespace(graph: Any) -> None:
+    robot = graph.peer("brain", namespace="robot1", remap={"scan": "/front/scan", "~x": "y"})
+    assert robot.node_name() == "/robot1/brain"
+    assert robot.resolve("odom") == "/robot1/odom"
+    assert robot.resolve("/odom") == "/odom"
+    assert robot.resolve("~goal") == "/robot1/brain/goal"
+    assert robot.resolve("scan") == "/front/scan"
+    assert robot.resolve("~x") == "/robot1/y"
+
+
+def test_namespaces_reach_the_graph(graph: Any, pair: Pair) -> None:
+    _, right = pair
+    robot = graph.peer("brain2", namespace="/robot2", remap={"scan": "/other/scan"})
+    assert robot.advertise("odom", "std_msgs/msg/Int32") == "/robot2/odom"
+    assert robot.advertise("scan", "std_msgs/msg/Int32") == "/other/scan"
+    assert robot.serve("~add") == "/robot2/brain2/add"
+    right.subscribe("/robot2/odom", "std_msgs/msg/Int32")
+    right.subscribe("/other/scan", "std_msgs/msg/Int32")
+    for written, absolute in (("odom", "/robot2/odom"), ("scan", "/other/scan")):
+        graph.wait_until(lambda w=written: robot.subscription_count(w) == 1, "they know each other")
+        robot.publish(written, {"data": 5})
+        graph.wait_until(lambda a=absolute: right.received(a), "the message arrives")
+    assert right.call("/robot2/brain2/add", {"a": 1, "b": 2}, timeout=20) == {"sum": 3}
+
+
+def test_two_robots_do_not_hear_each_other(graph: Any) -> None:
+    one = graph.peer("one", namespace="r1")
+    two = graph.peer("two", namespace="r2")
+    for robot in (one, two):
+        robot.advertise("cmd", "std_msgs/msg/String")
+        robot.subscribe("cmd", "std_msgs/msg/String")
+        graph.wait_until(lambda r=robot: r.subscription_count("cmd") == 1, "each hears itself")
+    one.publish("cmd", {"data": "one"})
+    two.publish("cmd", {"data": "two"})
+    graph.wait_until(lambda: one.received("cmd") and two.received("cmd"), "both arrive")
+    assert one.received("cmd") == [{"data": "one"}]
+    assert two.received("cmd") == [{"data": "two"}]
+
+
+def test_a_started_node_is_connected(pair: Pair) -> None:
+    left, _ = pair
+    assert left.connected() is True
+    assert left.connection() == [True]
+
+
+def test_fields_are_told_in_the_same_words_everywhere(pair: Pair) -> None:
+    left, _ = pair
+    assert left.fields("geometry_msgs/Twist") == {
+        "linear": "geometry_msgs/msg/Vector3",
+        "angular": "geometry_msgs/msg/Vector3",
+    }
+    pose = left.fields("geometry_msgs/msg/PoseWithCovariance")
+    assert pose == {"pose": "geometry_msgs/msg/Pose", "covariance": "float64[36]"}
+    scan = left.fields("sensor_msgs/msg/LaserScan")
+    assert (scan["header"], scan["ranges"], scan["range_max"]) == (
+        "std_msgs/msg/Header",
+        "float32[]",
+        "float32",
+    )
+    assert left.fields("std_msgs/msg/Header")["stamp"] == "builtin_interfaces/msg/Time"
+    assert left.fields("std_msgs/msg/Empty") == {}
+
+
+def test_messages_are_made_without_a_topic(pair: Pair) -> None:
+    left, _ = pair
+    message = left.message("geometry_msgs/PoseStamped", header={"stamp": 1.5}, pose={"position": {"x": 1}})
+    assert message["header"]["stamp"] == {"sec": 1, "nanosec": 500_000_000}
+    assert message["pose"]["position"] == {"x": 1.0, "y": 0.0, "z": 0.0}
+    assert message["pose"]["orientation"]["w"] == 1.0
+
+
+@pytest.mark.parametrize("place", ["action_client", "action_server", "parameters"])
+def test_what_is_not_there_yet_says_so(pair: Pair, place: str) -> None:
+    left, _ = pair
+    with pytest.raises(CapabilityMissing, match="not yet supported"):
+        left.ask_for(place)
+    with pytest.raises(CapabilityMissing, match="looking up transforms"):
+        left.look_up_transform()
+
+
+def test_transforms_are_broadcast(graph: Any, pair: Pair) -> None:
+    left, right = pair
+    if "transforms" not in left.capabilities():
+        with pytest.raises(CapabilityMissing, match="tf2_msgs"):
+            left.broadcast("base_link")
+        return
+    right.subscribe("/tf", "tf2_msgs/msg/TFMessage")
+
+    def arrives() -> bool:
+        left.broadcast("base_link")
+        return bool(right.received("/tf"))
+
+    graph.wait_until(arrives, "the transform arrives")
+    transform = right.received("/tf")[0]["transforms"][0]
+    assert transform["child_frame_id"] == "base_link"
+    assert transform["transform"]["rotation"]["w"] == 1.0
+
+
+def test_static_transforms_wait_for_late_receivers(graph: Any, pair: Pair) -> None:
+    left, right = pair
+    if "transforms" not in left.capabilities():
+        pytest.skip("tf2_msgs is not among the wheels")
+    left.broadcast("laser", static=True)
+    left.broadcast("camera", static=True)
+    right.subscribe("/tf_static", "tf2_msgs/msg/TFMessage", durability="transient_local", depth=1)
+    graph.wait_until(
+        lambda: right.received("/tf_static") and len(right.received("/tf_static")[-1]["transforms"]) == 2,
+        "both arrive in one message",
+    )
+    children = [t["child_frame_id"] for t in right.received("/tf_static")[-1]["transforms"]]
+    assert children == ["laser", "camera"]

@@ -1,0 +1,155 @@
+"""Contract: services."""
+
+from typing import Any
+
+import pytest
+
+from jacaros.ros.errors import (
+    CallFailed,
+    CallTimedOut,
+    MessageMismatch,
+    ServiceUnavailable,
+    UnknownInterface,
+)
+
+Pair = tuple[Any, Any]
+TRIGGER = "std_srvs/srv/Trigger"
+
+
+def test_a_service_answers(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    assert right.serve(topic) == topic
+    assert left.call(topic, {"a": 2, "b": 40}, timeout=20) == {"sum": 42}
+
+
+def test_each_node_serves_the_other(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    left.serve(topic + "/left")
+    right.serve(topic + "/right")
+    assert left.call(topic + "/right", {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+    assert right.call(topic + "/left", {"a": 1, "b": -3}, timeout=20) == {"sum": -2}
+
+
+def test_a_node_can_call_its_own_service(graph: Any, pair: Pair, topic: str) -> None:
+    left, _ = pair
+    left.serve(topic)
+    assert left.call(topic, {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+
+
+def test_a_standard_service_needs_no_fields(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "nothing", TRIGGER)
+    assert left.call(topic, {}, timeout=20, type_name=TRIGGER) == {"success": False, "message": ""}
+
+
+def test_calls_of_a_slow_service_go_on_side_by_side(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "add_slowly")
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
+    for number in range(5):
+        left.begin_call(f"{topic}{number}", topic, {"a": number, "b": 100}, timeout=20)
+    assert [left.end_call(f"{topic}{n}")["sum"] for n in range(5)] == [100, 101, 102, 103, 104]
+    assert right.most_calls_at_once() >= 2
+
+
+def test_a_missing_service_is_unavailable_after_the_time_out(graph: Any, pair: Pair, topic: str) -> None:
+    left, _ = pair
+    assert left.ready(topic) is False
+    with pytest.raises(ServiceUnavailable, match=f"{topic}.*within 0.3 s"):
+        left.call(topic, {"a": 1, "b": 1}, timeout=0.3)
+    assert f"waiting for the service {topic} (example_interfaces/srv/AddTwoInts)" in left.log()
+
+
+def test_a_service_that_comes_late_is_used(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    left.begin_call(topic, topic, {"a": 1, "b": 2}, timeout=20)
+    graph.pass_time(0.2)
+    right.serve(topic)
+    assert left.end_call(topic) == {"sum": 3}
+
+
+def test_a_service_that_does_not_answer_times_out(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "never")
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
+    with pytest.raises(CallTimedOut, match=f"{topic}.*did not answer within 0.5 s"):
+        left.call(topic, {"a": 1, "b": 1}, timeout=0.5)
+
+
+def test_a_failing_service_fails_the_call(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "fail")
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
+    if "service errors" in left.capabilities():
+        with pytest.raises(CallFailed, match="no sums today"):
+            left.call(topic, {"a": 1, "b": 1}, timeout=10)
+    else:
+        with pytest.raises(CallTimedOut):
+            left.call(topic, {"a": 1, "b": 1}, timeout=0.5)
+    assert any("no sums today" in line for line in right.log())
+
+
+def test_a_wrong_response_fails_the_call(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "answer_wrongly")
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
+    expected = CallFailed if "service errors" in left.capabilities() else CallTimedOut
+    with pytest.raises(expected):
+        left.call(topic, {"a": 1, "b": 1}, timeout=0.5)
+    assert any("no field 'total'" in line for line in right.log())
+
+
+def test_the_server_survives_a_failing_call(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic + "/bad", "fail")
+    right.serve(topic + "/good")
+    graph.wait_until(lambda: left.ready(topic + "/bad"), "the service is found")
+    with pytest.raises((CallFailed, CallTimedOut)):
+        left.call(topic + "/bad", {"a": 1, "b": 1}, timeout=0.3)
+    assert left.call(topic + "/good", {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+
+
+def test_a_wrong_request_is_refused_before_it_is_sent(graph: Any, pair: Pair, topic: str) -> None:
+    left, _ = pair
+    with pytest.raises(MessageMismatch, match="no field 'c'"):
+        left.call(topic, {"a": 1, "c": 1}, timeout=1)
+    with pytest.raises(MessageMismatch, match="a is int64"):
+        left.call(topic, {"a": 1.5}, timeout=1)
+
+
+def test_a_closed_service_becomes_unavailable(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic)
+    assert left.call(topic, {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+    right.unserve(topic)
+    graph.wait_until(lambda: not left.ready(topic), "the client notices")
+    with pytest.raises(ServiceUnavailable):
+        left.call(topic, {"a": 1, "b": 1}, timeout=0.3)
+
+
+def test_a_call_can_be_given_up(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "never")
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
+    left.begin_call(topic, topic, {"a": 1, "b": 1})
+    graph.pass_time(0.05)
+    assert left.give_up_call(topic) is True
+
+
+def test_closing_a_client_ends_its_calls(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "never")
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
+    left.begin_call(topic, topic, {"a": 1, "b": 1})
+    graph.pass_time(0.05)
+    left.close_client(topic)
+    with pytest.raises(CallFailed, match="closed"):
+        left.end_call(topic)
+
+
+def test_an_unknown_service_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    with pytest.raises(UnknownInterface, match="no_srvs/srv/Nothing"):
+        right.serve(topic, "add", "no_srvs/srv/Nothing")
+    with pytest.raises(UnknownInterface, match="no_srvs/srv/Nothing"):
+        left.ready(topic, "no_srvs/srv/Nothing")
