@@ -2,7 +2,8 @@
 
 One compiled expression finds all tokens.  Wrong characters are reported here and never stop the lexer: an
 identifier with letters outside ASCII is handed on as if it were right, and what cannot be used at all (a
-string without an end) becomes a token of kind ``error``, at which the parser gives up the clause and reports no more.
+string without an end) becomes a token of kind ``error``, at which the parser gives up the clause and reports
+no more.
 """
 
 import re
@@ -45,8 +46,8 @@ class Token:
     """One token.
 
     ``kind`` is ``atom``, ``variable``, ``number``, ``string``, ``error`` or ``end``, and otherwise
-    (punctuation and reserved words) the text itself.  ``end`` is the column behind the token; tokens never span lines.
-    ``first`` tells whether the token is the first one of its line.
+    (punctuation and reserved words) the text itself.  ``end`` is the column behind the token; tokens never
+    span lines.  ``first`` tells whether the token is the first one of its line.
     """
 
     __slots__ = ("column", "end", "first", "kind", "line", "text")

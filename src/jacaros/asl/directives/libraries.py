@@ -1,6 +1,6 @@
 """The libraries of other systems that programs include and that need not be included here.
 
-What they give there (joining workspaces, focusing, plans for organisations) is built in here or not supported.
+What they give there (joining, focusing, plans for organisations) is built in here or not supported.
 """
 
 from typing import Final

@@ -1,7 +1,8 @@
 """What the goal patterns have in common: their arguments, and the plans they are built of.
 
-A pattern is a function from the clauses of its block to the clauses that take their place.  Where the patterns
-of the reference interpreter are known to misbehave ours follow the idea of the pattern; each function says so.
+A pattern is a function from the clauses of its block to the clauses that take their place.  Where the
+patterns of the reference interpreter are known to misbehave, ours follow the idea of the pattern; each
+function says so.
 """
 
 from collections.abc import Callable
