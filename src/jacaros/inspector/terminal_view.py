@@ -73,7 +73,9 @@ class TerminalView:
             for robot in robots:
                 self._trail.point(robot.x, robot.y)
         passed = self._wall() - self._drawn_at
-        if passed >= (max(FRAME_PERIOD, 10.0 * self._cost) if self._console.is_terminal else LINE_PERIOD):
+        if passed >= (
+            max(FRAME_PERIOD, min(0.5, 10.0 * self._cost)) if self._console.is_terminal else LINE_PERIOD
+        ):
             self._measure_speed(passed)
             self._draw()
             self._cost = self._wall() - self._drawn_at

@@ -1,0 +1,143 @@
+"""Recording a run and reading it back."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.errors import JacarosError
+from jacaros.inspector.recorder import Recorder
+from jacaros.inspector.recording import Recording
+from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.watch import Watch
+from jacaros.ros.open import open_backend
+from jacaros.sim import SimNode, World
+
+
+def at(x: float, battery: float = 100.0) -> list[RobotView]:
+    return [RobotView("turtlebot", x, 0.0, 0.0, battery)]
+
+
+def record(path: Path | None) -> Recorder:
+    recorder = Recorder(path, keep=True)
+    recorder.world(World.load("house").description.drawing())
+    for step in range(5):
+        recorder.frame(step * 0.1, at(step * 0.02))
+    recorder.text(0.25, "cleaner", "Größe «7»\nzweite Zeile")
+    recorder.event(0.3, "goal", {"agent": "cleaner", "goal": "clean(kitchen)", "state": "pursued"})
+    recorder.close()
+    return recorder
+
+
+def test_what_was_recorded_reads_back_the_same(tmp_path: Path) -> None:
+    recorder = record(tmp_path / "run.jsonl")
+    assert Recording.read(tmp_path / "run.jsonl") == recorder.recording
+    assert recorder.recording.robots == ["turtlebot"]
+    assert recorder.recording.duration == pytest.approx(0.4)
+
+
+def test_a_recorder_without_a_path_keeps_the_run_in_memory() -> None:
+    recorder = Recorder()
+    recorder.frame(0.0, at(0.0))
+    recorder.close()
+    assert len(recorder.recording.frames) == 1
+
+
+def test_a_recorder_with_a_path_does_not_fill_the_memory(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path / "run.jsonl")
+    recorder.frame(0.0, at(0.0))
+    recorder.text(0.0, "a", "text")
+    recorder.close()
+    assert recorder.recording == Recording()
+
+
+def test_a_resting_robot_costs_two_frames_and_then_starts_sharply() -> None:
+    recorder = Recorder()
+    for step in range(100):
+        recorder.frame(step * 0.1, at(1.0))
+    recorder.frame(10.0, at(1.5))
+    recorder.close()
+    assert [(frame.t, frame.robots[0][0]) for frame in recorder.recording.frames] == [
+        (0.0, 1.0),
+        (9.9, 1.0),
+        (10.0, 1.5),
+    ]
+
+
+def test_the_last_rest_is_recorded_when_the_run_ends() -> None:
+    recorder = Recorder()
+    recorder.frame(0.0, at(1.0))
+    recorder.frame(50.0, at(1.0))
+    recorder.close()
+    recorder.close()
+    assert recorder.recording.duration == 50.0
+
+
+def test_a_line_cut_off_by_a_crash_is_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    record(path)
+    path.write_text(path.read_text(encoding="utf-8") + '{"kind": "fra', encoding="utf-8")
+    assert len(Recording.read(path).frames) == 5
+
+
+@pytest.mark.parametrize("content", ["", '{"kind": "frame", "t": 0}\n{}\n', "hello\nworld\n", "[1]\n[2]\n"])
+def test_a_file_that_is_no_recording_is_refused(tmp_path: Path, content: str) -> None:
+    path = tmp_path / "other.jsonl"
+    path.write_text(content)
+    with pytest.raises(JacarosError, match=r"other\.jsonl"):
+        Recording.read(path)
+
+
+def watched_run() -> tuple[Recorder, World]:
+    clock, world, recorder = VirtualClock(), World.load("house"), Recorder()
+
+    async def main() -> None:
+        backend = open_backend("memory", clock, "test")
+        await backend.start()
+        node = SimNode(world, backend, clock)
+        node.start()
+        recorder.world(world.description.drawing())
+        watch = Watch(clock, [recorder], world)
+        watch.start()
+        publisher = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
+        for _ in range(20):
+            publisher.publish(publisher.message(linear={"x": 0.3}))
+            await clock.sleep(0.1)
+        watch.text("cleaner", "here I am")
+        await clock.sleep(2.0)
+        watch.stop()
+        node.close()
+        await backend.close()
+
+    run(main, clock)
+    recorder.close()
+    return recorder, world
+
+
+def test_a_watch_records_frames_prints_and_events_of_the_world() -> None:
+    recorder, world = watched_run()
+    recording = recorder.recording
+    assert recording.frames[0].t == 0.0
+    assert recording.frames[-1].robots[0][0] == pytest.approx(world.robot().x, abs=1e-4)
+    assert recording.texts == [(pytest.approx(2.0), "cleaner", "here I am")]
+    kinds = {kind for _, kind, _ in recording.events}
+    assert "command_timeout" in kinds
+    assert all(data["robot"] == "turtlebot" for _, _, data in recording.events)
+
+
+def test_a_watched_run_is_the_same_as_an_unwatched_one() -> None:
+    _, watched = watched_run()
+    unwatched = World.load("house")
+    for _ in range(20):
+        unwatched.command("turtlebot", 0.3, 0.0)
+        unwatched.run(0.1)
+    unwatched.run(watched.time - unwatched.time)
+    assert watched.ground_truth.digest() == unwatched.ground_truth.digest()
+
+
+def test_a_ground_truth_becomes_a_recording() -> None:
+    _, world = watched_run()
+    recording = Recording.of_ground_truth(world.ground_truth)
+    assert recording.frames[-1].robots[0][:3] == world.ground_truth.pose()
+    assert recording.robots == ["turtlebot"]
+    assert [kind for _, kind, _ in recording.events] == [event.kind for event in world.log]

@@ -1,0 +1,129 @@
+"""The terminal view: what it draws, how seldom, and what it does without a terminal."""
+
+import io
+from typing import Any
+
+import pytest
+from rich.console import Console
+
+from jacaros.inspector.braille import BrailleMap
+from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.terminal_view import TerminalView
+from jacaros.sim import World
+
+
+class Wall:
+    """A wall clock that stands still unless it is moved."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def view_of(world: str = "house", terminal: bool = True) -> tuple[TerminalView, Wall, Any, Console]:
+    out = io.StringIO()
+    console = Console(file=out, force_terminal=terminal, width=80, height=36)
+    wall = Wall()
+    return TerminalView(World.load(world).description.drawing(), console, wall), wall, out, console
+
+
+def robot(x: float = 0.0, y: float = 0.0, yaw: float = 0.0, **more: Any) -> RobotView:
+    return RobotView("turtlebot", x, y, yaw, 61.0, **more)
+
+
+def rendered(view: TerminalView) -> str:
+    console = Console(record=True, width=80, height=36, file=io.StringIO())
+    console.print(view.picture())
+    return console.export_text()
+
+
+def test_a_braille_map_sets_the_dots_of_a_line() -> None:
+    shown = BrailleMap((0.0, 0.0, 3.0, 3.0), 2, 1)
+    shown.line(0.0, 3.0, 3.0, 3.0)
+    assert shown.text().startswith("⠉")
+
+
+def test_dots_outside_of_the_map_are_left_out() -> None:
+    shown = BrailleMap((0.0, 0.0, 1.0, 1.0), 4, 2)
+    shown.line(-9.0, -9.0, 9.0, 9.0)
+    shown.point(50.0, 50.0)
+    assert len(shown.text().splitlines()) == shown.rows
+
+
+def test_the_view_shows_walls_robot_battery_goals_and_prints() -> None:
+    view, _, _, _ = view_of()
+    view.event(0.0, "goal", {"agent": "cleaner", "goal": "patrol", "state": "suspended"})
+    view.event(0.0, "goal", {"agent": "cleaner", "goal": "recharge", "state": "pursued"})
+    view.event(0.0, "goal", {"agent": "cleaner", "goal": "recharge", "state": "achieved"})
+    view.text(0.0, "cleaner", "mop the [floor]")
+    view.frame(83.4, [robot(yaw=1.57, charging=True)])
+    text = rendered(view)
+    assert "house  1:23.4" in text
+    assert "⡇" in text
+    assert "↑" in text
+    assert "◎" in text
+    assert "████████████░░░░░░░░  61 % charging" in text
+    assert "pursuing patrol (suspended)" in text
+    assert "recharge" not in text
+    assert "[cleaner] mop the [floor]" in text
+
+
+@pytest.mark.parametrize(("yaw", "arrow"), [(0.0, "→"), (0.8, "↗"), (3.14, "←"), (-3.14, "←"), (-1.6, "↓")])
+def test_the_arrow_looks_where_the_robot_looks(yaw: float, arrow: str) -> None:
+    view, _, _, _ = view_of()
+    view.frame(0.0, [robot(yaw=yaw)])
+    assert arrow in rendered(view)
+
+
+def test_a_fast_run_is_drawn_ten_times_a_second_on_the_wall_at_most() -> None:
+    view, wall, out, _ = view_of()
+    pictures = 0
+    for step in range(1000):
+        before = len(out.getvalue())
+        wall.now += 0.001
+        view.frame(step * 0.1, [robot(x=step * 0.002)])
+        pictures += len(out.getvalue()) > before
+    assert 9 <= pictures <= 10
+    view.close()
+
+
+def test_the_speed_of_the_run_is_shown() -> None:
+    view, wall, _, _ = view_of()
+    wall.now += 1.0
+    view.frame(200.0, [robot()])
+    assert "×200" in rendered(view)
+    view.close()
+
+
+def test_without_a_terminal_there_is_a_plain_line_now_and_then() -> None:
+    view, wall, out, _ = view_of(terminal=False)
+    for step in range(100):
+        wall.now += 0.125
+        view.frame(step * 10.0, [robot(x=1.0)])
+    lines = out.getvalue().splitlines()
+    assert len(lines) == 2
+    assert lines[0] == "t 390.0 s  ×78  turtlebot (1.00, 0.00) 61 %"
+    assert "\x1b" not in out.getvalue()
+    assert not view.takes_prints
+    view.close()
+
+
+def test_two_robots_have_a_gauge_each() -> None:
+    view, _, _, _ = view_of("two_robots")
+    view.frame(
+        0.0, [RobotView("robot_0", -1, -1, 0, 20), RobotView("robot_1", 1, 1, 3.14, 80, touching=True)]
+    )
+    text = rendered(view)
+    assert "robot_0 ████░" in text
+    assert "80 % touching" in text
+
+
+def test_closing_leaves_the_last_picture_and_twice_is_harmless() -> None:
+    view, wall, out, _ = view_of()
+    wall.now += 1.0
+    view.frame(1.0, [robot()])
+    view.close()
+    view.close()
+    assert out.getvalue().count("turtlebot") >= 2
