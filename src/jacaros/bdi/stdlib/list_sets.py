@@ -1,0 +1,67 @@
+"""Internal actions that take lists as sets: ``.union .intersection .difference``."""
+
+from jacaros.bdi.internal_action import internal_action
+from jacaros.bdi.stdlib.arguments import elements
+from jacaros.bdi.stdlib.context import Context
+from jacaros.terms.order import compare, sorted_terms
+from jacaros.terms.values import Term, Var, make_list
+
+
+@internal_action(".union", arity=3)
+def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
+    """``.union(A, B, R)``: *R* is the sorted list of what is in the list *A* or in *B*, each once.
+
+    Raises:
+        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
+    """
+    first, second = _checked(left, right, result, ".union")
+    return ctx.unify(result, make_list(_sorted_set([*second, *first])))
+
+
+@internal_action(".intersection", arity=3)
+def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
+    """``.intersection(A, B, R)``: *R* is the sorted list of what is in both lists, each once.
+
+    Raises:
+        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
+    """
+    first, second = _checked(left, right, result, ".intersection")
+    return ctx.unify(result, make_list(_parted(second, first)[0]))
+
+
+@internal_action(".difference", arity=3)
+def difference(ctx: Context, left: Term, right: Term, result: Term) -> bool:
+    """``.difference(A, B, R)``: *R* is the sorted list of what is in the list *A* but not in *B*, each once.
+
+    Raises:
+        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
+    """
+    first, second = _checked(left, right, result, ".difference")
+    return ctx.unify(result, make_list(_parted(first, second)[1]))
+
+
+def _checked(left: Term, right: Term, result: Term, name: str) -> tuple[list[Term], list[Term]]:
+    if result.__class__ is not Var:
+        elements(result, f"the third argument of {name}")
+    return elements(left, f"the first argument of {name}"), elements(right, f"the second argument of {name}")
+
+
+def _sorted_set(items: list[Term]) -> list[Term]:
+    result: list[Term] = []
+    for item in sorted_terms(items):
+        if not result or compare(result[-1], item) != 0:
+            result.append(item)
+    return result
+
+
+def _parted(items: list[Term], others: list[Term]) -> tuple[list[Term], list[Term]]:
+    """The items that are also among *others*, and those that are not, both sorted, each once."""
+    shared: list[Term] = []
+    own: list[Term] = []
+    remaining = iter(_sorted_set(others))
+    other = next(remaining, None)
+    for item in _sorted_set(items):
+        while other is not None and compare(other, item) < 0:
+            other = next(remaining, None)
+        (own if other is None or compare(other, item) else shared).append(item)
+    return shared, own

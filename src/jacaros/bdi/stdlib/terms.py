@@ -1,0 +1,99 @@
+"""Internal actions that make terms of terms: copies and annotations."""
+
+from collections.abc import Callable
+
+from jacaros.bdi.internal_action import internal_action
+from jacaros.bdi.stdlib.context import Context
+from jacaros.terms.order import annotation_set
+from jacaros.terms.plans import PLAN
+from jacaros.terms.unifier import rename
+from jacaros.terms.values import (
+    SOURCE,
+    Annotated,
+    Term,
+    annotations_of,
+    functor_of,
+    is_list,
+    list_items,
+    make_list,
+)
+
+
+@internal_action(".copy_term", arity=2)
+def copy_term(ctx: Context, term: Term, copy: Term) -> bool:
+    """``.copy_term(T, C)``: *C* is the term *T* with other variables in place of the unbound ones."""
+    return ctx.unify(copy, rename(term))
+
+
+@internal_action(".rename_apart", arity=2)
+def rename_apart(ctx: Context, term: Term, copy: Term) -> bool:
+    """``.rename_apart(T, C)``: *C* is the term *T* with variables that occur nowhere else."""
+    return ctx.unify(copy, rename(term))
+
+
+@internal_action(".add_annot", arity=3)
+def add_annot(ctx: Context, term: Term, annotation: Term, result: Term) -> bool:
+    """``.add_annot(L, A, R)``: *R* is the literal *L* with the annotation *A*.
+
+    In a list (and lists in it) each literal gets it; what is no literal stays as it is.
+    """
+    return ctx.unify(_in_lists(term, lambda literal: annotated(literal, (annotation,))), result)
+
+
+@internal_action(".add_nested_source", arity=3)
+def add_nested_source(ctx: Context, term: Term, source: Term, result: Term) -> bool:
+    """``.add_nested_source(L, Ag, R)``: *R* is the literal *L* as told by *Ag*, its sources so far inside.
+
+    ``p[source(bob)]`` from carl gives ``p[source(carl)[source(bob)]]``.  Lists are treated as by
+    ``.add_annot``.
+    """
+    return ctx.unify(_in_lists(term, lambda literal: told_by(literal, source)), result)
+
+
+@internal_action(".remove_source_annot", arity=2)
+def remove_source_annot(ctx: Context, term: Term, result: Term) -> bool:
+    """``.remove_source_annot(L, R)``: *R* is *L* without its sources.
+
+    *L* is a literal, a plan (whose label loses the sources), or a list of such terms.
+    """
+    if is_list(term):
+        return ctx.unify(make_list([_without_source(item) for item in list_items(term)]), result)
+    return ctx.unify(_without_source(term), result)
+
+
+def _in_lists(term: Term, change: Callable[[Term], Term]) -> Term:
+    """Apply *change* to a literal, or to each literal in a list."""
+    if is_list(term):
+        return make_list([_in_lists(item, change) for item in list_items(term)])
+    return term if functor_of(term) is None else change(term)
+
+
+def annotated(term: Term, annotations: tuple[Term, ...]) -> Term:
+    """The literal with *annotations* besides those that it has."""
+    if isinstance(term, Annotated):
+        return Annotated(term.term, annotation_set((*term.annotations, *annotations)), term.tail)
+    return Annotated(term, annotation_set(annotations)) if annotations else term
+
+
+def told_by(term: Term, source: Term) -> Term:
+    """The literal as heard from *source*: its own sources become annotations of the new one."""
+    sources = tuple(a for a in annotations_of(term) if _is_source(a))
+    return annotated(_without_sources(term), (annotated((SOURCE, source), sources),))
+
+
+def _is_source(annotation: Term) -> bool:
+    symbol = functor_of(annotation)
+    return symbol is not None and symbol.name == SOURCE.name
+
+
+def _without_sources(term: Term) -> Term:
+    if not isinstance(term, Annotated):
+        return term
+    kept = tuple(a for a in term.annotations if not _is_source(a))
+    return Annotated(term.term, kept, term.tail) if kept or term.tail is not None else term.term
+
+
+def _without_source(term: Term) -> Term:
+    if term.__class__ is tuple and term[0] is PLAN:
+        return (PLAN, _without_sources(term[1]), *term[2:])
+    return _without_sources(term)
