@@ -17,6 +17,7 @@ from jacaros.env.errors import (
 )
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId, resolve_path
+from jacaros.env.manual import Manual, describe
 from jacaros.env.observation import Observation, Observer, Signal
 from jacaros.env.operation import (
     OperationOutcome,
@@ -36,6 +37,7 @@ __all__ = [
     "Atom",
     "Environment",
     "InvalidArtifact",
+    "Manual",
     "ObservableProperty",
     "Observation",
     "Observer",
@@ -52,6 +54,7 @@ __all__ = [
     "UnknownWorkspace",
     "Workspace",
     "WorkspaceError",
+    "describe",
     "internal_operation",
     "link",
     "operation",

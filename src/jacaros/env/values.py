@@ -93,8 +93,10 @@ def plain(value: Any) -> object:
         return value
     if kind is Structure:
         return Structure(value.functor, tuple(map(plain, value.arguments)))
-    if isinstance(value, (str, int)):
-        return str.__str__(value) if isinstance(value, str) else int(value)
+    if isinstance(value, str):
+        return str.__str__(value)
+    if isinstance(value, (int, float)):
+        return int(value) if isinstance(value, int) else float(value)
     if isinstance(value, tuple) and hasattr(value, "_fields"):
         return _structure(kind, value)
     if isinstance(value, (list, tuple)):

@@ -185,7 +185,7 @@ def _acceptor(annotation: Any) -> Accept:
         return _one_of(typing.get_args(annotation))
     if origin in (list, dict):
         return _container(origin, typing.get_args(annotation))
-    if isinstance(annotation, type):
+    if isinstance(annotation, type) and not _is_mere_protocol(annotation):
         return _instance_of(annotation)
     return _input
 
@@ -217,6 +217,10 @@ def _real(argument: object) -> object:
         except OverflowError:
             raise Unsuitable from None
     raise Unsuitable
+
+
+def _is_mere_protocol(kind: type) -> bool:
+    return bool(getattr(kind, "_is_protocol", False) and not getattr(kind, "_is_runtime_protocol", False))
 
 
 def _instance_of(kind: type) -> Accept:
@@ -275,6 +279,7 @@ def _container(kind: type, members: tuple[Any, ...]) -> Accept:
 
 _ACCEPTORS: dict[Any, Accept] = {
     object: _input,
+    Any: _input,
     int: _integer,
     float: _real,
     type(None): _instance_of(type(None)),
