@@ -109,8 +109,8 @@ class Deployment:
     base_path: the folder of the project file.
     agents, workspaces: in the order of the file, but a workspace comes after its parent.
     environment: the class of ``environment:`` in a `.mas2j` file as written; None if there is none.
-    artifact_environment: whether the agents live among artifacts: a `.jcm` file, a lone `.asl` file, or one of
-        the known environment classes.
+    artifact_environment: whether the agents live among artifacts: in a `.jcm` file, a lone `.asl` file, or
+        with one of the known environment classes.
     infrastructure: of a `.mas2j` file, or the platforms of a `.jcm` file, as written.
     world: the world file (a path that exists, or the name as written).
     source_paths: folders in which agent programs and included files are looked for, in order.

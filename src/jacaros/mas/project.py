@@ -279,7 +279,7 @@ class _Resolver:
             return FocusSpec(wanted.artifact, wanted.workspace, wanted.namespace)
         if len(candidates) > 1:
             self._warn(
-                f"the artifact '{wanted.artifact}' is in {len(candidates)} workspaces; the first one is taken",
+                f"the artifact '{wanted.artifact}' is in {len(candidates)} workspaces; the first is taken",
                 wanted.span,
                 f"write {candidates[0]}.{wanted.artifact}",
             )

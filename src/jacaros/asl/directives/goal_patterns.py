@@ -41,7 +41,7 @@ def exclusive(call: PatternCall, section: Section) -> Section:
     for plan in section.plans:
         plans.append(_tried_once(plan, len(plans), call) if achieves(plan, goal) else plan)
     inner = declarative(call, replace(section, plans=plans))
-    forget = call.internal(".abolish", _tried(nodes.Variable("P__any", span=call.span), goal))
+    forget = call.internal(".abolish", _tried(nodes.Variable("_", unnamed=True, span=call.span), goal))
     no_plan = nodes.Literal("error", (nodes.Literal("no_applicable"),), span=call.span)
     exhausted = replace(goal, annotations=nodes.Annotations((no_plan,)))
     message = nodes.Literal(

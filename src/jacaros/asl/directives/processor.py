@@ -245,9 +245,9 @@ def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _
 
 
 def _with_named_variables(term: nodes.Term) -> nodes.Term:
-    """*term* with names for its unnamed variables, so that it means the same in several places of a plan."""
+    """*term* with its unnamed variables made ordinary, so that it is the same in several places of a plan."""
     if isinstance(term, nodes.Variable) and term.unnamed:
-        return nodes.Variable(f"P_{term.name}", span=term.span)
+        return replace(term, unnamed=False)
     if isinstance(term, nodes.Literal):
         return replace(term, arguments=tuple(map(_with_named_variables, term.arguments)))
     if isinstance(term, nodes.ListTerm):
