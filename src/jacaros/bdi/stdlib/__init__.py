@@ -2,28 +2,38 @@
 
 from jacaros.bdi.stdlib import (
     agents,
+    beliefs,
     collections,
+    goals,
     list_sets,
     lists,
+    messages,
     output,
+    plans,
     random,
     strings,
     sublists,
     terms,
     time,
     types,
+    waiting,
 )
 
 __all__ = [
     "agents",
+    "beliefs",
     "collections",
+    "goals",
     "list_sets",
     "lists",
+    "messages",
     "output",
+    "plans",
     "random",
     "strings",
     "sublists",
     "terms",
     "time",
     "types",
+    "waiting",
 ]

@@ -1,0 +1,59 @@
+"""External actions: what a mind wants done in its environment, and how it ended."""
+
+from dataclasses import dataclass
+
+from jacaros.terms.values import Functor, Term
+from jacaros.trace import Cause
+
+
+@dataclass(frozen=True, slots=True)
+class Act:
+    """A request to the environment; the intention waits for its `Completion`.
+
+    Attributes:
+        id: number of the act, unique in its agent.
+        functor: name and arity of the action.
+        arguments: with all bindings applied; an unbound `Var` is an output.
+        annotations: of the action, such as ``artifact_id(Id)``.
+        intention: id of the intention, so that the environment can keep a current workspace for each.
+        cause: why it is done.
+    """
+
+    id: int
+    functor: Functor
+    arguments: tuple[Term, ...]
+    annotations: tuple[Term, ...]
+    intention: int
+    cause: Cause | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Completion:
+    """How an act ended.
+
+    Attributes:
+        success: False fails the step with ``error(action_failed)``.
+        outputs: pairs of an output variable of the act and its value.
+        annotations: on failure, terms for the failure event: ``error_msg("…")``, ``env_failure_reason(R)``.
+    """
+
+    success: bool
+    outputs: tuple[tuple[Term, Term], ...] = ()
+    annotations: tuple[Term, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Percept:
+    """One thing noticed in the environment.
+
+    Attributes:
+        kind: ``add`` and ``remove`` change a percept belief, ``signal`` is an event only.
+        literal: an atom or structure, ground, without annotations.
+        annotations: sorted; ``source(percept)`` among them.
+        cause: the sensor message or property change behind it.
+    """
+
+    kind: str
+    literal: Term
+    annotations: tuple[Term, ...]
+    cause: Cause | None = None

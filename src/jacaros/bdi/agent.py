@@ -1,0 +1,498 @@
+"""The agent: a mind with a program.  It is given things, makes cycles, and reaches out through its architecture."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.asl.loader import parse_plans
+from jacaros.bdi import belief_update, cycle, formulas, goals
+from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.bdi.architecture import Architecture
+from jacaros.bdi.belief_base import OpenFact, Rule, parts
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.context import Context
+from jacaros.bdi.event import Event, Posted
+from jacaros.bdi.failure import error_terms, step_failure
+from jacaros.bdi.intention import Frame
+from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
+from jacaros.bdi.options import Options
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.speech_acts import answer
+from jacaros.bdi.waiting import Waiting
+from jacaros.compiler.lowering import fresh_names, lower, lower_value
+from jacaros.compiler.plan import Plan, label_of
+from jacaros.compiler.reflection import Reflection
+from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations, undo
+from jacaros.compiler.triggers import trigger
+from jacaros.compiler.unit import CodeUnit
+from jacaros.compiler.bodies import BodyCompiler
+from jacaros.compiler.function import Frame as Slots
+from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
+from jacaros.terms.arithmetic import settle
+from jacaros.terms.plans import PLAN, RULE, TRIGGER, is_body
+from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, unify
+from jacaros.terms.values import (
+    BY_SELF,
+    SELF,
+    SOURCE,
+    Functor,
+    String,
+    Term,
+    annotations_of,
+    arguments_of,
+    atom,
+    bare,
+    deref,
+    functor,
+    functor_of,
+    is_list,
+    list_items,
+    structure,
+)
+from jacaros.trace import cause
+
+ERROR = functor("error", 1)
+
+
+class Agent(Circumstance):
+    """A mind.
+
+    Args:
+        name: of the agent, unique in its system.
+        program: what it begins with.
+        architecture: the port to its host.
+        options: how it handles events.
+        actions: internal actions; the standard ones unless given.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        program: nodes.Program,
+        architecture: Architecture,
+        options: Options | None = None,
+        actions: Mapping[str, InternalAction] | None = None,
+    ) -> None:
+        super().__init__(name, architecture, STANDARD if actions is None else actions, options or Options())
+        self.program = program
+        self.context = Context(self)
+        self._labels = 0
+        self._acts = 0
+        self._messages = 0
+        self._bodies: dict[int, tuple[Term, Plan]] = {}
+        self.add_plans(program.plans)
+
+    # --- life ----------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Take up the initial beliefs and goals."""
+        for belief in reversed(self.program.beliefs):
+            self._initial_belief(belief)
+        for goal in self.program.goals:
+            self.post_goal(lower_value(goal))
+        self.architecture.ready()
+
+    def _initial_belief(self, node: nodes.Literal | nodes.Rule) -> None:
+        if isinstance(node, nodes.Rule):
+            rule = Rule(node, self.actions)
+            head = functor_of(rule.head())
+            assert head is not None
+            belief_update.add_rule(self, rule, head, last=False)
+            return
+        term = lower_value(node)
+        symbol, row, annotations = parts(term)
+        assert symbol is not None
+        if free_variables(term):
+            self.beliefs[symbol].add(OpenFact(bare(term), own_annotations(annotations)), own_annotations(annotations))
+        else:
+            belief_update.tell(self, term)
+
+    def post_goal(self, goal: Term, goal_cause: Any = None) -> None:
+        """Adopt a new goal, as an intention of its own."""
+        symbol, arguments, annotations = parts(rename(goal))
+        if symbol is None:
+            raise ActionError("a goal must be a literal")
+        self.post(Event((trigger("+", "!", symbol), *arguments), None, own_annotations(annotations), goal_cause))
+        self.architecture.ready()
+
+    run = cycle.run
+
+    # --- from outside --------------------------------------------------------------------------------------
+
+    def receive(self, message: SpeechAct) -> None:
+        """Take a message; it is looked at in a later cycle."""
+        self.inbox.append(message)
+        self.architecture.ready()
+
+    def perceive(self, percepts: list[Percept]) -> None:
+        """Take note of changes in the environment; they are worked in before the next cycle."""
+        if percepts:
+            self.percepts.append(percepts)
+            self.architecture.ready()
+
+    def complete(self, act_id: int, completion: Completion) -> None:
+        """An external action ended; an id that is not pending (any more) is ignored."""
+        waiting = self.pending_acts.pop(act_id, None)
+        if waiting is None:
+            return
+        if not completion.success:
+            waiting.fail("", (ERROR, atom("action_failed")), *completion.annotations)
+            return
+        mark = len(self.trail)
+        for variable, value in completion.outputs:
+            if not unify(variable, value, self.trail):
+                undo(self.trail, mark)
+                waiting.fail("", *error_terms("action_failed", "an output of the action does not fit"))
+                return
+        del self.trail[mark:]
+        waiting.resume()
+
+    # --- ends of waits -------------------------------------------------------------------------------------
+
+    def waiting_ended(self, waiting: Waiting) -> None:
+        """A suspended step succeeded or failed: its intention goes on in the next cycle."""
+        if waiting.frame is None:
+            return
+        self.tasks.append(lambda: self._go_on(waiting))
+        self.architecture.ready()
+
+    def _go_on(self, waiting: Waiting) -> None:
+        intention = waiting.intention
+        if intention.dropped or intention.waiting is not waiting:
+            return
+        if intention.suspended is not None:
+            intention.waiting = None
+            intention.parked = False
+            self._hold_until_resumed(waiting)
+            return
+        intention.waiting = None
+        self._end_wait(waiting)
+
+    def _hold_until_resumed(self, ended: Waiting) -> None:
+        """The wait ended while the intention is suspended: success and failure alike come after ``.resume``."""
+        intention = ended.intention
+        held = Waiting(self, intention, ended.reason)
+        intention.waiting = held
+
+        def resumed() -> None:
+            if intention.waiting is held:
+                intention.waiting = None
+                self._end_wait(ended)
+
+        def on_resume() -> None:
+            self.tasks.append(resumed)
+            self.architecture.ready()
+
+        held.on_resume = on_resume
+
+    def _end_wait(self, waiting: Waiting) -> None:
+        intention, frame = waiting.intention, waiting.frame
+        assert frame is not None
+        if waiting.failure is None:
+            frame[0] = waiting.next_step
+            if cycle.pop_finished(self, intention):
+                self.make_ready(intention)
+            return
+        message, annotations = waiting.failure
+        if not any(t.__class__ is tuple and t[0] is ERROR for t in annotations):
+            annotations = (*error_terms("internal_action", message), *annotations)
+        reason = step_failure(frame, Failure(*annotations))
+        posted = cycle.fail_intention(self, intention, reason)
+        if posted is not None:
+            self.post(Event(posted.goal, intention, posted.annotations))
+
+    # --- called by generated code --------------------------------------------------------------------------
+
+    add_belief = belief_update.add_belief
+    add_belief_last = belief_update.add_belief_last
+    add_belief_apart = belief_update.add_belief_apart
+    delete_belief = belief_update.delete_belief
+    delete_any = belief_update.delete_any
+    change_mind = belief_update.change_mind
+    solve_formula = formulas.solve_formula
+    collect_formula = formulas.collect_formula
+    drop_desire = goals.drop_desire
+
+    def call_function(self, term: Term) -> Term:
+        """Evaluate an arithmetic function; those that need the agent are looked at first."""
+        name = term[0].name
+        if name == ".count":
+            return float(sum(1 for _ in self.context.answers(term[1])))
+        if name == "system.time":
+            return float(round(self.architecture.now() * 1000))
+        if name == "math.random":
+            limit = settle(term[1]) if len(term) > 1 else 1.0
+            return self.architecture.random.random() * limit
+        return settle(term)
+
+    def annotated_goal(self, goal: tuple[Any, ...], items: tuple[Term, ...], tail: Term) -> Posted:
+        """A goal that is posted with annotations."""
+        return Posted(goal, own_annotations(items, tail))
+
+    def goal_from(self, operator: str, kind: str, term: Term) -> Any:
+        """The goal that a term denotes.
+
+        Raises:
+            Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
+        """
+        term = settle(term)
+        symbol = functor_of(term)
+        if symbol is None or symbol.kind:
+            raise Failure((ERROR, atom("body_var_without_value" if term.__class__ not in ATOMIC and _is_free(term) else "body_var_not_literal")))
+        goal = (trigger(operator, kind, symbol), *arguments_of(term))
+        annotations = annotations_of(resolve(term))
+        return Posted(goal, own_annotations(annotations)) if annotations else goal
+
+    def test_goal_from(self, term: Term) -> Any:
+        """The test goal for a query known only at run time; fails without plans for it."""
+        goal = self.goal_from("+", "?", term)
+        plain = goal.goal if goal.__class__ is Posted else goal
+        if self.selects[plain[0]] is None:
+            raise Fail
+        return goal
+
+    def post_separate(self, goal: Any) -> None:
+        """``!!g``: a new intention that shares no variables with this one."""
+        annotations: Any = BY_SELF
+        if goal.__class__ is Posted:
+            goal, annotations = goal
+        names: dict[Any, Any] = {}
+        arguments = tuple(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:])
+        current = self.current
+        self.post(Event((goal[0], *arguments), None, annotations, current.cause if current else None))
+
+    def begin_act(self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: Any) -> Any:
+        """Begin an external action; the intention waits for its completion."""
+        intention = self.current
+        assert intention is not None
+        self._acts += 1
+        number = self._acts
+        why = cause("act", symbol.name, intention.cause) if intention.cause is not None else None
+        waiting = Waiting(self, intention, structure("action", (symbol, *arguments) if arguments else symbol))
+        waiting.attach(intention.frames[-1], next_step)
+        waiting.on_drop = lambda: self._cancel_act(number)
+        waiting.on_suspend = lambda: self.architecture.suspend_act(number)
+        waiting.on_resume = lambda: self.architecture.resume_act(number)
+        self.pending_acts[number] = waiting
+        self.architecture.act(Act(number, symbol, arguments, annotations, intention.id, why))
+        return SUSPENDED
+
+    def _cancel_act(self, number: int) -> None:
+        if self.pending_acts.pop(number, None) is not None:
+            self.architecture.cancel_act(number)
+
+    def finish_call(self, result: Any, frame: Frame, next_step: Any) -> Any:
+        """What an internal action that may suspend gave: go on, fail, or wait."""
+        if result is False:
+            raise Fail
+        if isinstance(result, Waiting) and not (result.ended and result.failure is None):
+            result.attach(frame, next_step)
+            if result.ended:
+                self.waiting_ended(result)
+            return SUSPENDED
+        if frame in self.current.frames if self.current is not None else False:
+            frame[0] = next_step
+        return None
+
+    def unknown_internal_action(self, name: str) -> None:
+        """A condition calls an internal action that does not exist: it does not hold."""
+        raise ActionError(f"there is no internal action {name}")
+
+    def run_value(self, value: Term, frame: Frame, next_step: Any) -> Any:
+        """A variable as a body formula: a plan body, or an action."""
+        term = resolve(value)
+        if is_body(term):
+            return self._run_body(term, frame, next_step)
+        symbol = functor_of(term)
+        if symbol is None:
+            raise Failure((ERROR, atom("body_var_without_value")))
+        if symbol.kind:
+            return self._run_body(term, frame, next_step)
+        return self.begin_act(symbol, arguments_of(term), annotations_of(term), next_step)
+
+    def _run_body(self, term: Term, frame: Frame, next_step: Any) -> Any:
+        """Run a body held by a variable, on a frame of its own above the plan's."""
+        frame[0] = next_step
+        plan = self._body_plan(term)
+        assert self.current is not None
+        if plan.first is not None:
+            inner: Frame = [plan.first, (_BODY,), BY_SELF, self.trail.serial, plan, *([None] * plan.size)]
+            self.current.frames.append(inner)
+        return None
+
+    def _body_plan(self, term: Term) -> Plan:
+        """The compiled form of a body; one that is run often is compiled once."""
+        known = self._bodies.get(id(term))
+        if known is not None and known[0] is term:
+            return known[1]
+        body = Reflection(shared=True).body(term)
+        node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("body")), None, body)
+        plan = Plan(node, atom("body"))
+        unit = CodeUnit("<body>", self.actions)
+        compiler = BodyCompiler(unit, Slots(_Always()), "step")
+        first = compiler.body(body.steps, "None")
+        unit.execute()
+        plan.first = unit.globals[first] if first != "None" else None
+        plan.steps = {unit.globals[name]: info for name, info in compiler.infos.items()}
+        plan.slots, plan.size = compiler.frame.slots, compiler.frame.size
+        if len(self._bodies) > 256:
+            self._bodies.clear()
+        self._bodies[id(term)] = (term, plan)
+        return plan
+
+    def fork(self, operator: str, frame: Frame, branches: tuple[Any, ...], next_step: Any) -> Any:
+        """``|&|`` and ``|||``."""
+        raise Failure(*error_terms("not_supported", f"the operator |{'&' if operator == 'and' else '|'}| comes in a later version"))
+
+    # --- plans ---------------------------------------------------------------------------------------------
+
+    def add_plans(self, plan_nodes: tuple[nodes.Plan, ...]) -> None:
+        """Take in plans of a program, behind those held."""
+        plans = []
+        for node in plan_nodes:
+            self._labels += 1
+            plans.append(Plan(node, label_of(node, self._labels)))
+        self.library.extend(plans)
+        self.meta = self.library.has_meta_plans()
+
+    def add_plan(self, term: Term, source: Term = SELF, first: bool = False) -> None:
+        """Add a plan given as a term or as text; one that is held already only gains a source.
+
+        Raises:
+            NotAPlan: when the term is no plan.
+            AslError: when the text is none.
+        """
+        term = resolve(term)
+        if term.__class__ is String:
+            text = str(term).strip()
+            for node in parse_plans(text if text.endswith(".") else text + "."):
+                self._add_node(node, source, first)
+            return
+        if is_list(term):
+            for item in list_items(term):
+                self.add_plan(item, source, first)
+            return
+        self._add_node(Reflection(shared=False).plan(term), source, first)
+
+    def _add_node(self, node: nodes.Plan, source: Term, first: bool) -> None:
+        for held in self.library.plans:
+            if (held.node.trigger, held.node.context, held.node.body) == (node.trigger, node.context, node.body):
+                return
+        self._labels += 1
+        plan = Plan(node, label_of(node, self._labels))
+        plan.source = (SOURCE, source)
+        self.library.add(plan, first)
+        self.meta = self.library.has_meta_plans()
+
+    def remove_plan(self, wanted: Term) -> bool:
+        """Take out the plan of that label, or equal to that plan term; False when there is none."""
+        term = resolve(wanted)
+        if term.__class__ is tuple and term[0] is PLAN:
+            node = Reflection(shared=False).plan(term)
+            found = next(
+                (
+                    p
+                    for p in self.library.plans
+                    if (p.node.trigger, p.node.context, p.node.body) == (node.trigger, node.context, node.body)
+                ),
+                None,
+            )
+        else:
+            found = self.library.by_label(term)
+        if found is None:
+            return False
+        self.library.remove(found)
+        return True
+
+    def change_plans(self, operator: str, term: Term) -> bool:
+        """``+{plan}``, ``-{plan}``, ``+{rule}`` …; False when the operand is neither a plan nor a rule."""
+        term = resolve(term)
+        if term.__class__ is not tuple:
+            return False
+        if term[0] is PLAN:
+            if operator in ("-", "--"):
+                self.remove_plan(term)
+            else:
+                self.add_plan(term, SELF, first=operator != "+>")
+            return True
+        if term[0] is RULE:
+            self.change_rule(operator, term)
+            return True
+        if term[0] is TRIGGER or is_body(term):
+            raise Failure((ERROR, atom("body_var_with_op")))
+        return False
+
+    def change_rule(self, operator: str, term: Term) -> None:
+        """Add or remove a rule given as a term."""
+        node = Reflection(shared=False).rule(term)
+        head = functor_of(lower(node.head, fresh_names()))
+        assert head is not None
+        table = self.beliefs[head]
+        if operator in ("-", "--"):
+            for entry, _ in table.entries():
+                if isinstance(entry, Rule) and entry.node == node:
+                    table.remove(entry)
+                    return
+            return
+        belief_update.add_rule(self, Rule(node, self.actions), head, last=operator == "+>")
+
+    # --- messages ------------------------------------------------------------------------------------------
+
+    def next_message_id(self) -> str:
+        """An id for a message; unique with the name of the agent."""
+        self._messages += 1
+        return f"mid{self._messages}_{self.name}"
+
+    def test_for(self, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]) -> None:
+        """Answer a question by a plan for its test goal; whatever fails is answered with false."""
+        AnswerByPlan(self, message, symbol, arguments).begin()
+
+
+class AnswerByPlan:
+    """A question from another agent that a plan ``+?q`` of this one answers."""
+
+    def __init__(self, agent: Agent, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]) -> None:
+        self.agent, self.message = agent, message
+        self.goal = (trigger("+", "?", symbol), *arguments)
+
+    def begin(self) -> None:
+        """Begin an intention whose bottom frame sends the answer."""
+        agent = self.agent
+        intention = agent.new_intention()
+        intention.on_failed = self.failed
+        frame: Frame = [self._answered, (_ANSWER,), BY_SELF, agent.trail.serial, _answer_plan()]
+        intention.frames.append(frame)
+        agent.post(Event(self.goal, intention, BY_SELF))
+
+    def _answered(self, agent: Agent, frame: Frame) -> None:
+        symbol = self.goal[0].functor
+        term = (symbol, *self.goal[1:]) if len(self.goal) > 1 else symbol
+        answer(agent, self.message, resolve(term))
+        frame[0] = None
+
+    def failed(self) -> None:
+        """No plan, or it failed."""
+        answer(self.agent, self.message, None)
+
+
+def _answer_plan() -> Plan:
+    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("answer")), None, nodes.Body())
+    return Plan(node, atom("answer"))
+
+
+class _Always(dict[str, int]):
+    """Every variable of a body that was made at run time is kept."""
+
+    def get(self, key: str, default: Any = None) -> Any:
+        del key, default
+        return 2
+
+
+_BODY = trigger("+", "", functor("body", 0, namespace="jacaros"))
+_ANSWER = trigger("+", "", functor("answer", 0, namespace="jacaros"))
+
+
+def _is_free(term: Term) -> bool:
+    return bool(free_variables(deref(term)))
+
+

@@ -1,0 +1,76 @@
+"""The port of a mind to whatever runs it (Jason's agent architecture).
+
+A mind does no input or output of its own: it is given things by `Agent.receive`, `Agent.perceive` and
+`Agent.complete`, and reaches out through this port alone.
+"""
+
+from collections.abc import Callable, Sequence
+from random import Random
+from typing import Protocol
+
+from jacaros.bdi.act import Act
+from jacaros.bdi.speech_act import SpeechAct
+
+
+class Timer(Protocol):
+    """A call that is to come."""
+
+    def cancel(self) -> None:
+        """Take it back."""
+
+
+class Architecture(Protocol):
+    """What a mind asks of its host.  No call may enter the agent again before it returns."""
+
+    random: Random
+    """The agent's own generator, seeded by the run."""
+
+    def now(self) -> float:
+        """Seconds since the Unix epoch on the run's clock."""
+
+    def ready(self) -> None:
+        """The agent has something to do: `Agent.run` is to be called soon."""
+
+    def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* after *delay* seconds of the run's clock."""
+
+    def act(self, act: Act) -> None:
+        """Begin an external action; `Agent.complete` tells its end (later, or from within this call)."""
+
+    def cancel_act(self, act_id: int) -> None:
+        """The intention behind a pending act was dropped."""
+
+    def suspend_act(self, act_id: int) -> None:
+        """The intention behind a pending act was suspended."""
+
+    def resume_act(self, act_id: int) -> None:
+        """The intention behind a pending act was resumed."""
+
+    def send(self, message: SpeechAct) -> bool:
+        """Deliver a message; False when there is no such agent."""
+
+    def agent_names(self) -> Sequence[str]:
+        """Names of all agents of the system, in the order of their making."""
+
+    def print(self, text: str) -> None:
+        """Show a line of the program's output."""
+
+    def log(self, level: str, text: str) -> None:
+        """Tell people about trouble; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        """End the run after *delay* seconds."""
+
+    def create_agent(self, name: str, source: str | None) -> str | None:
+        """Make an agent (from the program file *source*, default NAME.asl); its final name, or None with the
+        reason logged."""
+
+    def kill_agent(self, name: str) -> bool:
+        """End another agent; False when there is none of that name."""
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        """Name and text of a program file (for ``.include``).
+
+        Raises:
+            FileNotFoundError: when there is none.
+        """

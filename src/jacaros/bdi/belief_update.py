@@ -1,0 +1,300 @@
+"""Changes of beliefs and the events they raise (Jason's brf and buf).
+
+The functions for body formulae return the event to be handled by the same intention, or None when it has no plan.
+"""
+
+from typing import Any
+
+from jacaros.bdi.act import Percept
+from jacaros.bdi.belief_base import OpenFact, Row, Rule, Table, literal, parts, with_source
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import Event, Posted
+from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
+from jacaros.compiler.triggers import trigger
+from jacaros.errors import InternalError
+from jacaros.terms.order import annotation_set
+from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, undo, unify_annotations
+from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, atom, bare, functor
+
+Annotations = tuple[Term, ...]
+
+
+def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``+b``: the event belongs to the intention that made it."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), False)
+
+
+def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``+>b``: the belief answers after all others."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True), False)
+
+
+def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``++b``: the event is an external one."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), True)
+
+
+def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool) -> Any:
+    if new is None:
+        return None
+    kind = trigger("+", "", symbol)
+    if agent.condition_waits:
+        agent.tasks.append(_nothing)
+    return _raise(agent, (kind, *row), new, apart)
+
+
+def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
+    """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
+    if agent.selects[goal[0]] is None:
+        if agent.event_waits:
+            agent.notify_event_waits(Event(goal, None, annotations))
+        return None
+    if apart or agent.options.new_focus:
+        agent.post(Event(goal, None, annotations))
+        return None
+    return goal if annotations is BY_SELF else Posted(goal, annotations)
+
+
+def _nothing() -> None:
+    """A task that only makes the agent look at awaited conditions again."""
+
+
+def insert(
+    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, last: bool = False
+) -> Annotations | None:
+    """Add a belief; gives the annotations that are new, None when there are none (then there is no event)."""
+    table = agent.beliefs[symbol]
+    for argument in row:
+        if argument.__class__ not in ATOMIC and free_variables(argument):
+            renamed = rename(literal(symbol, row))
+            table.add(OpenFact(renamed, annotations), annotations, last)
+            return annotations
+    try:
+        held = table.get(row)
+    except (RecursionError, TypeError):
+        return _insert_unhashable(table, symbol, row, annotations, last)
+    if held is None:
+        table.add(row, annotations, last)
+        return annotations
+    if held is annotations:
+        return None
+    new = tuple(a for a in annotations if a not in held)
+    if not new:
+        return None
+    table.set(row, annotation_set(held + new))
+    return new
+
+
+def _insert_unhashable(
+    table: Table, symbol: Functor, row: Row, annotations: Annotations, last: bool
+) -> Annotations | None:
+    """A row that cannot be a key (very deep, or holding a mutable object): kept aside, found by unification."""
+    table.add(OpenFact(literal(symbol, row), annotations), annotations, last)
+    return annotations
+
+
+def delete_belief(
+    agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
+) -> Any:
+    """``-b`` and ``--b``: the named annotations (at least the own source) of the first match are taken away."""
+    removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
+    if removed is None:
+        return None
+    kind = trigger("-", "", symbol)
+    if agent.condition_waits:
+        agent.tasks.append(_nothing)
+    return _raise(agent, (kind, *removed), annotations, apart)
+
+
+def _remove_first(
+    agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, bind: bool
+) -> Row | None:
+    """Remove the first match; the row as asked for, with variables bound, or None when nothing matches."""
+    table = agent.beliefs[symbol]
+    trail = agent.trail
+    for entry, held in list(table.candidates(arguments)):
+        mark = len(trail)
+        row = entry if entry.__class__ is tuple else _open_row(entry)
+        if (
+            row is not None
+            and unify_rows(arguments, row, trail)
+            and unify_annotations(annotations, None, held, None, trail)
+        ):
+            found = tuple(resolve(a) for a in arguments)
+            take_away(table, entry, held, tuple(resolve(a) for a in annotations))
+            if not bind:
+                undo(trail, mark)
+            return found
+        undo(trail, mark)
+    return None
+
+
+def _open_row(entry: Any) -> Row | None:
+    if isinstance(entry, OpenFact):
+        head = bare(entry.head())
+        return head[1:] if head.__class__ is tuple else ()
+    return None
+
+
+def take_away(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> None:
+    """Take annotations off a belief; it goes when no source is left."""
+    rest = tuple(a for a in held if a not in annotations)
+    if _has_source(rest):
+        table.set(entry, rest)
+    else:
+        table.remove(entry)
+
+
+def _has_source(annotations: Annotations) -> bool:
+    for annotation in annotations:
+        inner = bare(annotation)
+        if inner.__class__ is tuple and inner[0] is SOURCE_PERCEPT[0]:
+            return True
+    return False
+
+
+def delete_any(agent: Circumstance, symbol: Functor) -> None:
+    """The first half of ``-+b``: one own belief of that functor goes, whatever its arguments; an external event."""
+    table = agent.beliefs[symbol]
+    for entry, held in table.entries():
+        if entry.__class__ is tuple and BY_SELF[0] in held:
+            take_away(table, entry, held, BY_SELF)
+            goal = (trigger("-", "", symbol), *entry)
+            if agent.selects[goal[0]] is not None or agent.event_waits:
+                agent.post(Event(goal, None, BY_SELF))
+            if agent.condition_waits:
+                agent.tasks.append(_nothing)
+            return
+
+
+def change_mind(agent: Circumstance, operator: str, term: Term) -> Any:
+    """A belief operator whose operand is known only at run time: a literal, a plan or a rule.
+
+    Raises:
+        Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
+    """
+    change = agent.change_plans(operator, term)  # type: ignore[attr-defined]
+    if change:
+        return None
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        raise Failure((functor("error", 1), atom(_operand_error(term))))
+    own = own_annotations(annotations)
+    if operator in ("-", "--"):
+        return delete_belief(agent, symbol, row, own, operator == "--")
+    if operator.startswith("-+"):
+        delete_any(agent, symbol)
+    if operator in ("++", "-++"):
+        return add_belief_apart(agent, symbol, row, own)
+    return (add_belief_last if operator == "+>" else add_belief)(agent, symbol, row, own)
+
+
+def _operand_error(term: Term) -> str:
+    return "body_var_without_value" if free_variables(term) and bare(term) is not None else "body_var_not_literal"
+
+
+# --- from outside ------------------------------------------------------------------------------------------
+
+
+def tell(agent: Circumstance, term: Term, cause: Any = None) -> bool:
+    """Add a belief from outside (a message, the project file); the event is external.  False for no literal."""
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        return False
+    annotations = with_source(annotations)
+    new = insert(agent, symbol, row, annotations)
+    if new is not None:
+        external_change(agent, "+", symbol, row, new, cause)
+    return True
+
+
+def untell(agent: Circumstance, term: Term) -> bool:
+    """Take a source off a belief; the event is external."""
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        return False
+    annotations = with_source(annotations)
+    removed = _remove_first(agent, symbol, row, annotations, bind=False)
+    if removed is not None:
+        external_change(agent, "-", symbol, removed, annotations)
+    return removed is not None
+
+
+def external_change(
+    agent: Circumstance, operator: str, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
+) -> None:
+    """Raise the external event of a belief change, if anybody cares."""
+    kind = trigger(operator, "", symbol)
+    if agent.selects[kind] is not None or agent.event_waits:
+        agent.post(Event((kind, *row), None, annotations, cause))
+    if agent.condition_waits:
+        agent.tasks.append(_nothing)
+
+
+def abolish(agent: Circumstance, pattern: Term) -> None:
+    """``.abolish``: delete all matches, each with its own sources unless the pattern names one."""
+    symbol, arguments, annotations = parts(pattern)
+    tables = list(agent.beliefs.items()) if symbol is None else [(symbol, agent.beliefs[symbol])]
+    for functor_, table in tables:
+        for entry, held in table.entries():
+            _abolish_entry(agent, functor_, table, entry, held, arguments if symbol else None, annotations)
+
+
+def _abolish_entry(
+    agent: Circumstance,
+    symbol: Functor,
+    table: Table,
+    entry: Any,
+    held: Annotations,
+    arguments: Row | None,
+    annotations: Annotations,
+) -> None:
+    row = entry if entry.__class__ is tuple else _open_row(entry)
+    if row is None:
+        return
+    trail = agent.trail
+    mark = len(trail)
+    matches = (arguments is None or unify_rows(arguments, row, trail)) and unify_annotations(
+        annotations, None, held, None, trail
+    )
+    taken = tuple(resolve(a) for a in annotations) if annotations else held
+    undo(trail, mark)
+    if matches:
+        take_away(table, entry, held, taken)
+        external_change(agent, "-", symbol, row, taken)
+
+
+def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
+    """Bring the belief base in line with what was noticed, then raise the events, in order."""
+    for percept in percepts:
+        symbol, row, _ = parts(percept.literal)
+        if symbol is None:
+            raise InternalError(f"a percept is no literal: {percept.literal!r}")
+        if percept.kind == "signal":
+            external_change(agent, "+", symbol, row, percept.annotations, percept.cause)
+        elif percept.kind == "add":
+            agent.held_percepts.setdefault((symbol, row), []).append(percept.annotations)
+            insert(agent, symbol, row, percept.annotations)
+            external_change(agent, "+", symbol, row, percept.annotations, percept.cause)
+        else:
+            _forget_percept(agent, symbol, row, percept)
+
+
+def _forget_percept(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> None:
+    """Take away what this percept alone accounts for; another property may hold the same literal."""
+    held_by = agent.held_percepts.get((symbol, row), [])
+    if percept.annotations in held_by:
+        held_by.remove(percept.annotations)
+    if not held_by:
+        agent.held_percepts.pop((symbol, row), None)
+    table = agent.beliefs[symbol]
+    held = table.get(row)
+    if held is not None:
+        others = {a for annotations in held_by for a in annotations}
+        take_away(table, row, held, tuple(a for a in percept.annotations if a not in others))
+        external_change(agent, "-", symbol, row, percept.annotations, percept.cause)
+
+
+def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
+    """Add a rule at run time; rules raise no events."""
+    agent.beliefs[head].add(rule, rule.head_annotations(), last)

@@ -1,0 +1,120 @@
+"""The state of a mind: beliefs, plans, events, intentions, and what waits.  No behaviour beyond keeping it in order."""
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jacaros.bdi.act import Percept
+from jacaros.bdi.architecture import Architecture
+from jacaros.bdi.belief_base import BeliefBase
+from jacaros.bdi.event import Event
+from jacaros.bdi.intention import Intention
+from jacaros.bdi.internal_action import InternalAction
+from jacaros.bdi.options import Options
+from jacaros.bdi.plan_library import PlanLibrary, Selects
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.waiting import Waiting
+from jacaros.compiler.runtime import literal_of
+from jacaros.compiler.triggers import Trigger
+from jacaros.terms.unifier import Trail, unify
+from jacaros.terms.values import Term
+
+
+class Circumstance:
+    """All that an agent holds.
+
+    Attributes:
+        name: of the agent.
+        architecture: the port to its host.
+        trail: bindings of the search under way; empty between two steps.
+        beliefs, library, selects: what it believes, its plans, and their select functions.
+        events: the queue of events, oldest first.
+        intentions: those that can run, in turn; others are waiting, suspended, or in an event.
+        alive: every intention that is not over, by id.
+        current: the intention whose step is being made.
+        atomic: the intention that has an atomic plan on its stack, or None.
+        inbox, percepts: what was received and noticed, and not yet looked at.
+        tasks: housekeeping for the beginning of the next cycle.
+        suspended_events: goal events whose goal was suspended before it became an intention.
+        event_waits: waits for an event, with the pattern.
+        condition_waits: waits for a condition.
+        pending_acts: external actions under way, by number.
+        pending_asks: questions whose answer is awaited, by message id.
+        meta: whether there are plans for changes of goal states.
+        cycles: number of steps made.
+        stopped: the agent is over.
+    """
+
+    def __init__(
+        self, name: str, architecture: Architecture, actions: Mapping[str, InternalAction], options: Options
+    ) -> None:
+        self.name = name
+        self.architecture = architecture
+        self.actions = actions
+        self.options = options
+        self.trail = Trail()
+        self.beliefs = BeliefBase()
+        self.library = PlanLibrary(actions)
+        self.selects: Selects = self.library.selects
+        self.events: deque[Event] = deque()
+        self.intentions: deque[Intention] = deque()
+        self.alive: dict[int, Intention] = {}
+        self.current: Intention | None = None
+        self.atomic: Intention | None = None
+        self.inbox: deque[SpeechAct] = deque()
+        self.percepts: deque[list[Percept]] = deque()
+        self.tasks: deque[Callable[[], None]] = deque()
+        self.suspended_events: list[Event] = []
+        self.event_waits: list[tuple[Trigger | None, Term, Waiting]] = []
+        self.condition_waits: list[tuple[Any, Waiting]] = []
+        self.pending_acts: dict[int, Waiting] = {}
+        self.pending_asks: dict[str, Any] = {}
+        self.meta = False
+        self.cycles = 0
+        self.stopped = False
+        self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}
+        self._intention_numbers = 0
+
+    def new_intention(self, cause: Any = None) -> Intention:
+        """An intention with a number of its own; it is not in any queue yet."""
+        self._intention_numbers += 1
+        intention = Intention(self._intention_numbers, cause)
+        self.alive[intention.id] = intention
+        return intention
+
+    def make_ready(self, intention: Intention) -> None:
+        """Let an intention take part in the next cycles; a suspended one is parked."""
+        if intention.suspended is not None:
+            intention.parked = True
+        else:
+            self.intentions.append(intention)
+        self.architecture.ready()
+
+    def post(self, event: Event) -> None:
+        """Put an event at the end of the queue, and tell those who wait for it."""
+        self.events.append(event)
+        if self.event_waits:
+            self.notify_event_waits(event)
+
+    def notify_event_waits(self, event: Event) -> None:
+        """Resume the intentions that wait for this event."""
+        for entry in list(self.event_waits):
+            trigger, pattern, waiting = entry
+            if trigger is not None and trigger is not event.goal[0]:
+                continue
+            mark = len(self.trail)
+            found = unify(pattern, _event_literal(event), self.trail)
+            if found:
+                self.event_waits.remove(entry)
+                waiting.resume()
+            else:
+                while len(self.trail) > mark:
+                    self.trail.pop().ref = None
+
+    def is_idle(self) -> bool:
+        """Whether there is nothing to do until something comes from outside or a timer ends."""
+        return not (self.events or self.intentions or self.inbox or self.percepts or self.tasks)
+
+
+def _event_literal(event: Event) -> Term:
+    return literal_of(event.goal, event.annotations)

@@ -1,0 +1,80 @@
+"""What an internal action is given: a narrow view of the agent that calls it."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from jacaros.asl.loader import parse_term
+from jacaros.bdi.architecture import Architecture
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.formulas import solve_formula
+from jacaros.bdi.intention import Intention
+from jacaros.bdi.waiting import Waiting
+from jacaros.compiler.lowering import Names, lower_value
+from jacaros.compiler.runtime import run
+from jacaros.terms.unifier import Trail, undo, unify
+from jacaros.terms.values import Term, atom
+
+
+class Context:
+    """First argument of every internal action.
+
+    Attributes:
+        agent: the agent, for actions about its beliefs, goals and plans.
+        trail: where bindings are noted.
+    """
+
+    __slots__ = ("agent", "trail")
+
+    def __init__(self, agent: Circumstance) -> None:
+        self.agent: Any = agent
+        self.trail: Trail = agent.trail
+
+    @property
+    def architecture(self) -> Architecture:
+        """The agent's port to its host."""
+        architecture: Architecture = self.agent.architecture
+        return architecture
+
+    @property
+    def intention(self) -> Intention | None:
+        """The intention whose step this is; None in contexts of plans."""
+        current: Intention | None = self.agent.current
+        return current
+
+    def unify(self, left: Term, right: Term) -> bool:
+        """Unify two terms; nothing stays bound when they do not."""
+        mark = len(self.trail)
+        if unify(left, right, self.trail):
+            return True
+        undo(self.trail, mark)
+        return False
+
+    def answers(self, formula: Term) -> Iterator[None]:
+        """The answers of a formula; its bindings hold until the next one is asked for."""
+        for _ in run(solve_formula(self.agent, formula, self.trail)):
+            yield
+
+    def succeeds(self, formula: Term) -> bool:
+        """Whether a formula holds; the bindings of its first answer stay."""
+        return any(True for _ in self.answers(formula))
+
+    def parse_term(self, text: str) -> Term:
+        """The term that a text denotes; its variables are those of the plan where the names agree.
+
+        Raises:
+            AslError: when the text is no term.
+        """
+        names = Names()
+        current = self.intention
+        if current is not None and current.frames:
+            frame = current.frames[-1]
+            slots = frame[4].slots
+            names.update({n: frame[s] for n, s in slots.items() if frame[s] is not None})
+        return lower_value(parse_term(text), names.__getitem__)
+
+    def suspend(self, reason: str) -> Waiting:
+        """Suspend the calling intention; to be returned by the action.  See `Waiting`."""
+        current = self.intention
+        if current is None:
+            raise RuntimeError("only the step of an intention can be suspended")
+        return Waiting(self.agent, current, atom(reason))

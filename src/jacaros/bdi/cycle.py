@@ -1,0 +1,360 @@
+"""The reasoning cycle: message, event, plan, one step of one intention.
+
+`run` makes cycles while there is something to do.  With empty queues the next cycle would pick the very event and intention
+of this one, so it stays with an intention as long as nothing else wants a cycle: that changes nothing a program can see.
+"""
+
+from typing import Any
+
+from jacaros.bdi import failure, meta_events, speech_acts
+from jacaros.bdi.belief_update import apply_percepts
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import Event, Posted
+from jacaros.bdi.failure import FailureReason
+from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
+from jacaros.errors import InternalError
+from jacaros.terms.text import text
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import BY_SELF
+
+
+def run(agent: Circumstance, fuel: int) -> bool:
+    """Make at most *fuel* cycles; True when there is more to do."""
+    begun = fuel
+    while fuel > 0 and not agent.stopped:
+        _housekeeping(agent)
+        if agent.inbox:
+            speech_acts.process(agent, agent.inbox.popleft())
+        if agent.atomic is None and agent.events:
+            handle_event(agent)
+        intention = _select_intention(agent)
+        if intention is not None:
+            fuel = _execute(agent, intention, fuel)
+        elif agent.events and agent.atomic is None or agent.inbox:
+            fuel -= 1
+        elif not (agent.percepts or agent.tasks):
+            break
+    agent.cycles += begun - fuel
+    return not agent.stopped and _has_work(agent)
+
+
+def _has_work(agent: Circumstance) -> bool:
+    if agent.inbox or agent.percepts or agent.tasks:
+        return True
+    if agent.atomic is not None:
+        return agent.atomic in agent.intentions
+    return bool(agent.events or agent.intentions)
+
+
+def _housekeeping(agent: Circumstance) -> None:
+    """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
+    while agent.percepts:
+        apply_percepts(agent, agent.percepts.popleft())
+    while agent.tasks:
+        agent.tasks.popleft()()
+    if agent.condition_waits:
+        _check_conditions(agent)
+
+
+def _check_conditions(agent: Circumstance) -> None:
+    """Resume the intentions whose awaited condition holds now."""
+    for entry in list(agent.condition_waits):
+        holds, waiting = entry
+        if waiting.ended:
+            agent.condition_waits.remove(entry)
+        elif holds():
+            agent.condition_waits.remove(entry)
+            waiting.resume()
+    while agent.tasks:
+        agent.tasks.popleft()()
+
+
+def _select_intention(agent: Circumstance) -> Intention | None:
+    """Rule SelInt: the atomic one, else round robin."""
+    intentions = agent.intentions
+    if agent.atomic is not None:
+        if agent.atomic in intentions:
+            intentions.remove(agent.atomic)
+            return agent.atomic
+        return None
+    while intentions:
+        intention = intentions.popleft()
+        if intention.dropped:
+            continue
+        if intention.suspended is not None:
+            intention.parked = True
+            continue
+        return intention
+    return None
+
+
+def handle_event(agent: Circumstance) -> None:
+    """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
+    while agent.events:
+        event = agent.events.popleft()
+        intention = event.intention
+        if intention is None:
+            if _external(agent, event):
+                return
+        elif not intention.dropped:
+            if push(agent, intention, event.goal, event.annotations):
+                agent.make_ready(intention)
+            return
+
+
+def _external(agent: Circumstance, event: Event) -> bool:
+    """Begin an intention for an external event; False when it has no plan and is dropped silently."""
+    goal, annotations = event.goal, event.annotations
+    trigger = goal[0]
+    frame = select_plan(agent, goal, annotations)
+    if frame is None:
+        if trigger.kind == "" or trigger.operator == "^":
+            return False
+        intention = agent.new_intention(event.cause)
+        posted = _unplanned(agent, intention, goal, annotations)
+        if posted is not None:
+            agent.post(Event(posted.goal, intention, posted.annotations))
+        return True
+    intention = agent.new_intention(event.cause)
+    intention.frames.append(frame)
+    if trigger.failing:
+        intention.handlers.append(0)
+    if frame[PLAN].atomic:
+        agent.atomic = intention
+    if agent.meta:
+        meta_events.goal_state(agent, goal, annotations, "executing")
+    agent.make_ready(intention)
+    return True
+
+
+def select_plan(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+    """Rules RelPl, ApplPl and SelAppl: the frame of the first applicable plan."""
+    select = agent.selects[goal[0]]
+    agent.trail.serial += 1
+    if select is None:
+        return None
+    try:
+        frame = select(agent, goal, annotations)
+    except InternalError:
+        raise
+    except Exception as fault:  # noqa: BLE001 - a context that cannot be evaluated does not hold
+        undo(agent.trail, 0)
+        shown = text(literal_of(goal, ()))
+        agent.architecture.log("warning", f"a context of the plans for {shown} cannot be evaluated: {fault}")
+        return None
+    if agent.trail:
+        agent.trail.clear()
+    return frame
+
+
+def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> bool:
+    """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
+    while True:
+        trigger = goal[0]
+        frame = select_plan(agent, goal, annotations)
+        if frame is not None:
+            _add_frame(agent, intention, frame)
+            return True
+        if trigger.kind == "":
+            return True
+        posted = _unplanned(agent, intention, goal, annotations)
+        if posted is None:
+            return False
+        if not _alone(agent):
+            agent.post(Event(posted.goal, intention, posted.annotations))
+            return False
+        goal, annotations = posted
+
+
+def _alone(agent: Circumstance) -> bool:
+    """Whether nothing else wants the next cycle."""
+    if agent.atomic is not None:
+        return True
+    return not (
+        agent.events or agent.intentions or agent.inbox or agent.tasks or agent.percepts or agent.condition_waits
+    )
+
+
+def _add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> None:
+    frames = intention.frames
+    trigger = frame[GOAL][0]
+    if frames and trigger.operator == "+" and trigger.kind and agent.options.tail_calls:
+        caller = frames[-1]
+        if caller[STEP] is None and caller[GOAL][0] is trigger:
+            frames[-1] = frame
+        else:
+            frames.append(frame)
+    else:
+        frames.append(frame)
+    if frame[PLAN].atomic:
+        agent.atomic = intention
+    if agent.meta and trigger.kind:
+        meta_events.goal_state(agent, frame[GOAL], frame[2], "executing")
+
+
+def _unplanned(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+) -> Posted | None:
+    """A goal has no plan: its own handler, or one further down, or the end of the intention."""
+    trigger = goal[0]
+    if trigger.failing:
+        _lost_in_handler(agent, intention, goal, annotations)
+        return None
+    caller = intention.frames[-1] if intention.frames else None
+    reason = failure.no_plan(agent, goal, annotations, caller)
+    return fail_goal(agent, intention, goal, annotations, reason)
+
+
+def fail_goal(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any, reason: FailureReason
+) -> Posted | None:
+    """A goal that has no frame failed: post its handler, or look further down."""
+    trigger = goal[0]
+    if agent.meta:
+        meta_events.goal_state(agent, goal, annotations, "failed")
+    if trigger.on_fail is not None and agent.selects[trigger.on_fail] is not None:
+        intention.handlers.append(len(intention.frames))
+        return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
+    return fail_intention(agent, intention, reason)
+
+
+def fail_intention(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:
+    """The nearest handler down the stack takes over; without one the intention ends with a warning."""
+    posted = failure.handler_event(agent, intention, reason)
+    if posted is not None:
+        if agent.meta:
+            meta_events.goal_state(agent, (posted.goal[0], *posted.goal[1:]), posted.annotations, "failed")
+        return posted
+    if intention.on_failed is not None:
+        intention.on_failed()
+    else:
+        _warn_lost(agent, intention, reason)
+    finish(agent, intention)
+    return None
+
+
+def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+    goals = [text(literal_of(f[GOAL], ())) for f in intention.frames if f[GOAL][0].kind]
+    what = f"the goal {'!' + goals[0]}" if goals else "an intention"
+    where = reason.where()
+    place = f" ({where})" if where else ""
+    agent.architecture.log(
+        "warning", f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
+    )
+
+
+def _lost_in_handler(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> None:
+    if intention.on_failed is not None:
+        intention.on_failed()
+        finish(agent, intention)
+        return
+    shown = f"-{goal[0].kind}{text(literal_of(goal, ()))}"
+    told = f": {annotations.error()}, {annotations.message()}" if isinstance(annotations, FailureReason) else ""
+    agent.architecture.log("warning", f"no applicable plan for the failure event {shown}; the intention is dropped{told}")
+    finish(agent, intention)
+
+
+def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
+    """Rules ExecInt and ClrInt: steps of one intention while nothing else wants a cycle; gives the fuel left."""
+    agent.current = intention
+    frames = intention.frames
+    trail = agent.trail
+    while True:
+        fuel -= 1
+        frame = frames[-1]
+        step = frame[0]
+        goal: Any = None
+        if step is not None:
+            try:
+                goal = step(agent, frame)
+            except InternalError:
+                raise
+            except Exception as fault:  # noqa: BLE001 - whatever a step raises fails that step only
+                undo(trail, 0)
+                _report(agent, fault)
+                goal = fail_intention(agent, intention, failure.step_failure(frame, fault))
+                if goal is None:
+                    break
+            if trail:
+                trail.clear()
+        if agent.stopped or intention.dropped:
+            break
+        if goal is None:
+            if frame[0] is None and not pop_finished(agent, intention):
+                break
+            if fuel <= 0 or intention.suspended is not None or not _alone(agent):
+                agent.make_ready(intention)
+                break
+            if agent.atomic is not None and (agent.inbox or agent.tasks or agent.percepts):
+                agent.make_ready(intention)
+                break
+        elif goal is SUSPENDED:
+            break
+        else:
+            annotations: Any = BY_SELF
+            if goal.__class__ is Posted:
+                goal, annotations = goal
+            if agent.event_waits or agent.meta:
+                _announce(agent, intention, goal, annotations)
+            if fuel <= 0 or intention.suspended is not None or not _alone(agent):
+                if agent.atomic is intention:
+                    if push(agent, intention, goal, annotations):
+                        agent.make_ready(intention)
+                else:
+                    agent.events.append(Event(goal, intention, annotations))
+                break
+            if not push(agent, intention, goal, annotations):
+                break
+            frames = intention.frames
+    agent.current = None
+    return fuel
+
+
+def _report(agent: Circumstance, fault: Exception) -> None:
+    """Python errors inside internal actions are shown to people as well as to the plan."""
+    if not isinstance(fault, Fail) and agent.options.verbose > 1:
+        agent.architecture.log("debug", f"{type(fault).__name__}: {fault}")
+
+
+def _announce(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> None:
+    if agent.event_waits:
+        agent.notify_event_waits(Event(goal, intention, annotations))
+    if agent.meta and goal[0].operator == "+" and goal[0].kind:
+        meta_events.goal_state(agent, goal, annotations, "pending")
+
+
+def pop_finished(agent: Circumstance, intention: Intention) -> bool:
+    """Rule ClrInt: take finished plans off the stack; False when nothing is left."""
+    frames = intention.frames
+    while frames:
+        frame = frames[-1]
+        if frame[0] is not None:
+            break
+        trigger = frame[GOAL][0]
+        if trigger.failing:
+            del frames[intention.handlers.pop() :]
+        else:
+            frames.pop()
+        if agent.meta and trigger.kind and not trigger.failing:
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved")
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
+        if agent.atomic is intention and not intention.is_atomic():
+            agent.atomic = None
+    if frames:
+        return True
+    finish(agent, intention)
+    return False
+
+
+def finish(agent: Circumstance, intention: Intention) -> None:
+    """The intention is over."""
+    intention.dropped = True
+    intention.frames.clear()
+    intention.handlers.clear()
+    agent.alive.pop(intention.id, None)
+    if agent.atomic is intention:
+        agent.atomic = None
+    if intention.waiting is not None:
+        waiting, intention.waiting = intention.waiting, None
+        waiting.cancel()

@@ -1,0 +1,284 @@
+"""Failure: what becomes of a formula that fails or a goal without plan.  The only place where exceptions of internal
+actions become failures of goals."""
+
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import Posted
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
+from jacaros.bdi.internal_action import ActionError, WrongArguments
+from jacaros.compiler.bodies import StepInfo
+from jacaros.compiler.lowering import lower
+from jacaros.compiler.runtime import Fail, Failure, literal_of
+from jacaros.errors import InternalError
+from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.order import annotation_set
+from jacaros.terms.text import text
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import String, Term, Var, atom, bare, functor
+
+ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
+CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
+
+_IDS: dict[type, str] = {
+    nodes.Test: "test_goal_failed",
+    nodes.If: "constraint_failed",
+    nodes.While: "constraint_failed",
+    nodes.For: "constraint_failed",
+    nodes.ExternalAction: "action_failed",
+    nodes.BeliefChange: "belief_revision_failed",
+}
+
+
+class FailureReason:
+    """The annotations of a failure event; they are put together when a plan first asks for them.
+
+    Attributes:
+        terms: ``error(..)``, ``error_msg(..)`` and what else was given.
+        goal_annotations: those of the goal that failed.
+        code: the formula that failed, as a term, or a function that makes it.
+    """
+
+    __slots__ = ("_made", "_place", "goal_annotations", "terms")
+
+    def __init__(self, terms: tuple[Term, ...], place: Any, goal_annotations: Any = ()) -> None:
+        self.terms = terms
+        self._place = place
+        self.goal_annotations = goal_annotations
+        self._made: tuple[Term, ...] | None = None
+
+    def with_goal(self, annotations: Any) -> "FailureReason":
+        """The same reason, for the failure event of another goal."""
+        return FailureReason(self.terms, self._place, annotations)
+
+    def annotations(self) -> tuple[Term, ...]:
+        """All annotations, sorted."""
+        if self._made is None:
+            goal = self.goal_annotations
+            own = goal if isinstance(goal, tuple) else goal.annotations() if goal is not None else ()
+            self._made = annotation_set((*self.terms, *self._place.annotations(), *own))
+        return self._made
+
+    def error(self) -> str:
+        """The id of the error, for messages."""
+        for term in self.terms:
+            if term.__class__ is tuple and term[0] is ERROR:
+                return text(term[1])
+        return "unknown"
+
+    def message(self) -> str:
+        """The text for people, or an empty one."""
+        for term in self.terms:
+            if term.__class__ is tuple and term[0] is ERROR_MSG:
+                return str(term[1])
+        return ""
+
+    def where(self) -> str:
+        """``file:line``, or an empty text."""
+        return str(self._place.where())
+
+
+class _Nowhere:
+    def annotations(self) -> tuple[Term, ...]:
+        return ()
+
+    def where(self) -> str:
+        return ""
+
+
+class _StepPlace:
+    """The formula of a step that failed; its term is made at once, because variables are given back afterwards."""
+
+    __slots__ = ("code", "node", "plan")
+
+    def __init__(self, frame: Frame, info: StepInfo) -> None:
+        self.node = _failed_formula(info.node)
+        self.plan = frame[PLAN]
+        self.code: Any = None
+        slots = self.plan.slots
+        lookup = {name: frame[slot] for name, slot in slots.items() if slot < len(frame) and frame[slot] is not None}
+        self.code = (lookup, frame)
+
+    def annotations(self) -> tuple[Term, ...]:
+        lookup, _ = self.code
+        term = resolve(lower(self.node, lambda name: lookup[name] if name in lookup else Var(name)))
+        return _code(term, self.node.span, self.plan.file)
+
+    def where(self) -> str:
+        span = self.node.span
+        return f"{span.file.name}:{span.line}" if span is not None else self.plan.file
+
+
+def _failed_formula(node: nodes.Node) -> nodes.Node:
+    """What ``code(..)`` shows of a step: the formula, without the operator of a test."""
+    if isinstance(node, nodes.Test):
+        return node.formula
+    if isinstance(node, nodes.Constraint):
+        return node.formula
+    if isinstance(node, nodes.ExternalAction):
+        return node.action
+    if isinstance(node, (nodes.If, nodes.While, nodes.For)):
+        return node.condition
+    if isinstance(node, nodes.Achieve):
+        return node.goal
+    if isinstance(node, nodes.BeliefChange):
+        return node.operand
+    return node
+
+
+class _GoalPlace:
+    """A goal without plan: ``code`` is the goal, the line is that of the call."""
+
+    def __init__(self, goal: tuple[Any, ...], annotations: Any, caller: Frame | None) -> None:
+        self.goal, self.goal_annotations = goal, annotations
+        self.caller = caller
+
+    def annotations(self) -> tuple[Term, ...]:
+        term = resolve(literal_of(self.goal, self.goal_annotations))
+        span, file = self._call()
+        return _code(term, span, file)
+
+    def _call(self) -> tuple[Any, str]:
+        if self.caller is None:
+            return None, ""
+        plan = self.caller[PLAN]
+        following = self.caller[STEP].__name__ if self.caller[STEP] is not None else "None"
+        for info in plan.steps.values():
+            node = info.node
+            if isinstance(node, (nodes.Achieve, nodes.Test)) and info.next == following:
+                return node.span, plan.file
+        return plan.node.span, plan.file
+
+    def where(self) -> str:
+        span, file = self._call()
+        return f"{file}:{span.line}" if span is not None else file
+
+
+def _code(term: Term, span: Any, file: str) -> tuple[Term, ...]:
+    found: list[Term] = [(CODE, term)]
+    if file:
+        found.append((CODE_SRC, String(f"file:{file}")))
+    if span is not None:
+        found.append((CODE_LINE, float(span.line)))
+    return tuple(found)
+
+
+def error_terms(error: str, message: str) -> tuple[Term, ...]:
+    """``error(Id)`` and ``error_msg("…")``."""
+    return ((ERROR, atom(error)), (ERROR_MSG, String(message)))
+
+
+def step_failure(frame: Frame, fault: Exception) -> FailureReason:
+    """The reason of a step that raised *fault*.
+
+    Raises:
+        InternalError: when the fault is a defect of ours.
+    """
+    plan = frame[PLAN]
+    info = plan.steps.get(frame[STEP])
+    if info is None:
+        raise InternalError(f"a step of plan {plan!r} is unknown") from fault
+    return FailureReason(_terms_of(fault, info), _StepPlace(frame, info))
+
+
+def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
+    node = info.node
+    if isinstance(fault, Failure):
+        return fault.annotations
+    if isinstance(fault, Fail):
+        return error_terms(*_plain_failure(node))
+    if isinstance(fault, WrongArguments):
+        return error_terms("wrong_arguments", str(fault))
+    if isinstance(fault, ActionError):
+        given = fault.annotations
+        if any(t.__class__ is tuple and t[0] is ERROR for t in given):
+            return given
+        return ((ERROR, atom("internal_action")), *given, *_message_unless_given(given, str(fault)))
+    if isinstance(fault, ArithmeticFault):
+        return error_terms("arithmetic_error", str(fault))
+    if isinstance(fault, RecursionError):
+        return error_terms("too_deep", "a rule or condition is nested too deeply")
+    if isinstance(fault, InternalError):
+        raise fault
+    kind = "internal_action" if isinstance(node, nodes.Constraint) else "unknown"
+    return error_terms(kind, f"{type(fault).__name__}: {fault}")
+
+
+def _message_unless_given(given: tuple[Term, ...], message: str) -> tuple[Term, ...]:
+    if any(t.__class__ is tuple and t[0] is ERROR_MSG for t in given):
+        return ()
+    return ((ERROR_MSG, String(message)),)
+
+
+def _plain_failure(node: nodes.Node) -> tuple[str, str]:
+    if isinstance(node, nodes.Constraint):
+        if isinstance(node.formula, nodes.InternalAction):
+            return "ia_failed", f"internal action {node.formula.name} failed"
+        return "constraint_failed", "a constraint does not hold"
+    error = _IDS.get(type(node), "unknown")
+    return error, {"test_goal_failed": "a test found no answer"}.get(error, error.replace("_", " "))
+
+
+def no_plan(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, caller: Frame | None) -> FailureReason:
+    """The reason of a goal that has no relevant or no applicable plan."""
+    relevant = agent.selects[goal[0]] is not None
+    shown = goal[0].kind + text(literal_of(goal, ()))
+    if relevant:
+        terms = error_terms("no_applicable", f"no applicable plan for {shown}")
+    else:
+        terms = error_terms("no_relevant", f"no relevant plan for {shown}")
+    return FailureReason(terms, _GoalPlace(goal, annotations, caller))
+
+
+def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
+    """Give the variables of a failed goal back as they were when it was posted."""
+    stack = [a for a in goal[1:] if a.__class__ is Var or a.__class__ is tuple]
+    while stack:
+        term = stack.pop()
+        if term.__class__ is Var:
+            if term.ref is None:
+                continue
+            if term.at >= serial:
+                term.ref = None
+            else:
+                stack.append(term.ref)
+        elif term.__class__ is tuple:
+            stack.extend(a for a in term[1:] if a.__class__ is Var or a.__class__ is tuple)
+
+
+def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:
+    """Find the nearest goal down the stack that has a handler; None when there is none.
+
+    The failed frames stay on the stack under the handler until it ends.  A failure inside a handler goes on to the goals
+    below the one it handles.
+    """
+    frames = intention.frames
+    handlers = list(intention.handlers)
+    index = len(frames) - 1
+    while index >= 0:
+        frame = frames[index]
+        trigger = frame[GOAL][0]
+        if trigger.failing:
+            index = handlers.pop() - 1
+            continue
+        if trigger.on_fail is not None and agent.selects[trigger.on_fail] is not None:
+            event = reason.with_goal(frame[ANNOTATIONS])
+            release_bindings(frame[GOAL], frame[SERIAL])
+            intention.handlers.append(index)
+            return Posted((trigger.on_fail, *frame[GOAL][1:]), event)
+        index -= 1
+    return None
+
+
+def is_error(term: Term, error: str) -> bool:
+    """Whether a failure annotation is ``error(Id)``."""
+    inner = bare(term)
+    return inner.__class__ is tuple and inner[0] is ERROR and inner[1] is atom(error)
+
+
+def nowhere(*terms: Term) -> FailureReason:
+    """A reason without a formula, as ``.fail_goal`` gives it."""
+    return FailureReason(terms, _Nowhere())
+
+

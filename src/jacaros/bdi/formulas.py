@@ -1,0 +1,187 @@
+"""Formulae that are known only at run time: bound to variables, sent in messages, passed to internal actions.
+
+Formulae of the program itself are compiled (`jacaros.compiler.conditions`); these are searched directly.
+"""
+
+from collections.abc import Generator
+from typing import Any
+
+from jacaros.bdi.belief_base import OpenFact, literal
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.compiler.runtime import answers_of, deconstruct, exists, run, solve, solve_annotated, wrong_arity
+from jacaros.terms.arithmetic import settle
+from jacaros.terms.order import annotation_set, at_most, less
+from jacaros.terms.unifier import Trail, equal, rename, resolve, undo, unify
+from jacaros.terms.values import (
+    ACTION,
+    FALSE,
+    LOGIC,
+    NIL,
+    RELATION,
+    TRUE,
+    Annotated,
+    Functor,
+    Term,
+    Var,
+    functor,
+    make_list,
+)
+
+Search = Generator[Any, Any, None]
+_YES = ((),)
+
+
+def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Search:
+    """Answers of any formula given as a term (see `jacaros.compiler.runtime.run` for the protocol)."""
+    formula = settle(formula)
+    kind = formula.__class__
+    if kind is tuple:
+        symbol = formula[0]
+        if symbol.kind == LOGIC:
+            return _logic(agent, symbol.name, formula, trail)
+        if symbol.kind == RELATION:
+            return _relation(symbol.name, formula[1], formula[2], trail)
+        if symbol.kind == ACTION:
+            return _action(agent, symbol, formula[1:], trail)
+        return solve(agent, agent.beliefs[symbol], formula[1:], trail)
+    if kind is Functor:
+        return _atom(agent, formula, trail)
+    if kind is Annotated:
+        return _annotated(agent, formula, trail)
+    if kind is Var:
+        return _anything(agent, formula, trail)
+    return _nothing()
+
+
+def _nothing() -> Search:
+    return
+    yield
+
+
+def _once() -> Search:
+    yield ()
+
+
+def _atom(agent: Circumstance, symbol: Functor, trail: Trail) -> Search:
+    if symbol is TRUE:
+        return _once()
+    if symbol is FALSE or symbol is NIL:
+        return _nothing()
+    if symbol.kind == ACTION:
+        return _action(agent, symbol, (), trail)
+    return solve(agent, agent.beliefs[symbol], (), trail)
+
+
+def _annotated(agent: Circumstance, formula: Annotated, trail: Trail) -> Search:
+    term = settle(formula.term)
+    if term.__class__ is Annotated:
+        return _annotated(agent, resolve(formula), trail)
+    if term.__class__ is Var:
+        return _anything(agent, formula, trail)
+    symbol, arguments = (term[0], term[1:]) if term.__class__ is tuple else (term, ())
+    return solve_annotated(agent, agent.beliefs[symbol], arguments, formula.annotations, formula.tail, trail)
+
+
+def _anything(agent: Circumstance, pattern: Term, trail: Trail) -> Search:
+    """A variable as a query: every belief."""
+    for symbol, table in list(agent.beliefs.items()):
+        for entry, annotations in table.entries():
+            if entry.__class__ is not tuple and not isinstance(entry, OpenFact):
+                continue
+            believed = literal(symbol, entry, annotations) if entry.__class__ is tuple else entry.head()
+            mark = len(trail)
+            if unify(pattern, believed, trail):
+                yield ()
+            undo(trail, mark)
+
+
+def _logic(agent: Circumstance, name: str, formula: Term, trail: Trail) -> Search:
+    if name == "&":
+        left = solve_formula(agent, formula[1], trail)
+        while (yield left) is not None:
+            right = solve_formula(agent, formula[2], trail)
+            while (yield right) is not None:
+                yield ()
+    elif name == "|":
+        for side in formula[1:]:
+            search = solve_formula(agent, side, trail)
+            while (yield search) is not None:
+                yield ()
+    elif not exists(run(solve_formula(agent, formula[1], trail)), trail):
+        yield ()
+
+
+def _relation(name: str, left: Term, right: Term, trail: Trail) -> Search:
+    mark = len(trail)
+    if _holds(name, left, right, trail):
+        yield ()
+    undo(trail, mark)
+
+
+def _holds(name: str, left: Term, right: Term, trail: Trail) -> bool:
+    if name == "=":
+        return unify(left, right, trail)
+    if name == "==":
+        return equal(left, right)
+    if name == "\\==":
+        return not equal(left, right)
+    if name == "=..":
+        return deconstruct(left, right, trail)
+    if name == "<":
+        return less(left, right)
+    if name == "<=":
+        return at_most(left, right)
+    return less(right, left) if name == ">" else at_most(right, left)
+
+
+_COLLECTING = {".findall": 3, ".setof": 3, ".count": 2}
+
+
+def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], trail: Trail) -> Search:
+    mark = len(trail)
+    if _COLLECTING.get(symbol.name) == len(arguments):
+        if collect_formula(agent, symbol.name, arguments, trail):
+            yield ()
+        undo(trail, mark)
+        return
+    action = agent.actions.get(symbol.name)
+    if action is None:
+        return
+    if not action.minimum <= len(arguments) or (action.maximum is not None and len(arguments) > action.maximum):
+        wrong_arity(action, len(arguments))
+    context = agent.context  # type: ignore[attr-defined]
+    values = [resolve(a) for a in arguments]
+    if action.backtracks:
+        for _ in answers_of(context, trail, action.function(context, *values)):
+            yield ()
+        return
+    outer, context.trail = context.trail, trail
+    try:
+        found = action.function(context, *values)
+    finally:
+        context.trail = outer
+    if found is not False:
+        yield ()
+    undo(trail, mark)
+
+
+def collect_formula(agent: Circumstance, name: str, arguments: tuple[Term, ...], trail: Trail) -> bool:
+    """``.findall``, ``.setof`` and ``.count`` over a formula known only now."""
+    template, formula, target = arguments if len(arguments) == 3 else (0.0, *arguments)
+    mark = len(trail)
+    found = []
+    for _ in run(solve_formula(agent, formula, trail)):
+        found.append(rename(template))
+    undo(trail, mark)
+    if name == ".count":
+        return unify(target, float(len(found)), trail)
+    items = annotation_set(tuple(found)) if name == ".setof" else found
+    return unify(target, make_list(items), trail)
+
+
+def first_answer(agent: Circumstance, formula: Term) -> bool:
+    """Whether a formula holds; its first answer stays bound on the agent's trail."""
+    return any(True for _ in run(solve_formula(agent, formula, agent.trail)))
+
+
+COUNT = functor(".count", 1)

@@ -1,0 +1,280 @@
+"""Asking about and steering goals and intentions, wherever they are: running, in an event, waiting, suspended."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from jacaros.bdi import meta_events
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.cycle import fail_intention, finish, pop_finished
+from jacaros.bdi.event import Event
+from jacaros.bdi.failure import nowhere
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
+from jacaros.compiler.runtime import literal_of
+from jacaros.terms.unifier import undo, unify
+from jacaros.terms.values import Term
+
+
+def goal_literals(intention: Intention) -> list[Term]:
+    """The achievement goals on the stack, top first."""
+    return [
+        literal_of(frame[GOAL], frame[ANNOTATIONS])
+        for frame in reversed(intention.frames)
+        if frame[GOAL][0].kind == "!" and frame[GOAL][0].operator == "+"
+    ]
+
+
+def frame_of(agent: Circumstance, intention: Intention, goal: Term) -> int | None:
+    """Index of the lowest frame that serves a goal matching *goal*; the variables of *goal* are not bound."""
+    for index, frame in enumerate(intention.frames):
+        trigger = frame[GOAL][0]
+        if trigger.kind == "!" and trigger.operator == "+" and _matches(agent, goal, literal_of(frame[GOAL], frame[2])):
+            return index
+    return None
+
+
+def _matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
+    trail = agent.trail
+    mark = len(trail)
+    found = unify(pattern, literal, trail)
+    undo(trail, mark)
+    return found
+
+
+def pending_event(agent: Circumstance, intention: Intention) -> Event | None:
+    """The event of the queue that an intention waits for, if any."""
+    return next((e for e in agent.events if e.intention is intention), None)
+
+
+def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
+    """The intentions that pursue the goal at any depth, or are about to."""
+    found = []
+    for intention in list(agent.alive.values()):
+        if frame_of(agent, intention, goal) is not None:
+            found.append(intention)
+            continue
+        event = pending_event(agent, intention)
+        if event is not None and _is_goal(event) and _matches(agent, goal, literal_of(event.goal, event.annotations)):
+            found.append(intention)
+    return found
+
+
+def _is_goal(event: Event) -> bool:
+    return event.goal[0].kind == "!" and event.goal[0].operator == "+"
+
+
+def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
+    """Events of new goals (without intention) that match."""
+    return [
+        e
+        for e in (*agent.events, *agent.suspended_events)
+        if e.intention is None and _is_goal(e) and _matches(agent, goal, literal_of(e.goal, e.annotations))
+    ]
+
+
+def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
+    """All goals: of pending events and of intentions, with the id of the intention."""
+    for event in (*agent.events, *agent.suspended_events):
+        if _is_goal(event):
+            yield literal_of(event.goal, event.annotations), event.intention.id if event.intention else None
+    yield from intended(agent, include_suspended=True)
+
+
+def intended(agent: Circumstance, include_suspended: bool = False) -> Iterator[tuple[Term, int | None]]:
+    """Goals on the stacks of intentions, with the id of the intention."""
+    for intention in list(agent.alive.values()):
+        if include_suspended or intention.suspended is None:
+            for literal in goal_literals(intention):
+                yield literal, intention.id
+
+
+# --- dropping ----------------------------------------------------------------------------------------------
+
+
+def drop_intention(agent: Circumstance, intention: Intention) -> None:
+    """An intention vanishes without failure events; what it waits for is cancelled."""
+    if agent.meta:
+        for frame in intention.frames:
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
+    finish(agent, intention)
+
+
+def drop_events(agent: Circumstance, goal: Term) -> None:
+    """Events of matching goals vanish, with the intentions that posted them."""
+    for event in goal_events(agent, goal):
+        _remove_event(agent, event)
+    for event in list(agent.events):
+        if (
+            event.intention is not None
+            and _is_goal(event)
+            and _matches(agent, goal, literal_of(event.goal, event.annotations))
+        ):
+            _remove_event(agent, event)
+            drop_intention(agent, event.intention)
+
+
+def _remove_event(agent: Circumstance, event: Event) -> None:
+    kept = [e for e in agent.events if e is not event]
+    agent.events.clear()
+    agent.events.extend(kept)
+    agent.suspended_events = [e for e in agent.suspended_events if e is not event]
+
+
+def drop_goal(agent: Circumstance, goal: Term) -> None:
+    """``.drop_intention(G)``: whole intentions that have the goal vanish."""
+    for intention in intentions_for(agent, goal):
+        drop_intention(agent, intention)
+
+
+def drop_desire(agent: Circumstance, goal: Term) -> None:
+    """``.drop_desire(G)``: intentions and pending events."""
+    drop_events(agent, goal)
+    drop_goal(agent, goal)
+
+
+def drop_all_intentions(agent: Circumstance) -> None:
+    """All but the running one."""
+    for intention in list(agent.alive.values()):
+        if intention is not agent.current:
+            drop_intention(agent, intention)
+
+
+def drop_all_events(agent: Circumstance) -> None:
+    """All pending events; intentions that posted them vanish."""
+    for event in list(agent.events):
+        if event.intention is not None:
+            drop_intention(agent, event.intention)
+    agent.events.clear()
+    agent.suspended_events.clear()
+
+
+# --- suspending --------------------------------------------------------------------------------------------
+
+
+def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
+    """All intentions with the goal stop until it is resumed; a goal that has not begun yet does not begin."""
+    for event in goal_events(agent, goal):
+        if event in agent.events:
+            agent.events.remove(event)
+            agent.suspended_events.append(event)
+    for intention in intentions_for(agent, goal):
+        suspend_intention(agent, intention, reason)
+
+
+def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -> None:
+    """One intention stops; an external action that can pause is paused."""
+    if intention.suspended is not None:
+        return
+    intention.suspended = reason
+    if agent.meta:
+        for frame in intention.frames:
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "suspended")
+    if intention.waiting is not None and intention.waiting.on_suspend is not None:
+        intention.waiting.on_suspend()
+
+
+def resume_goal(agent: Circumstance, goal: Term) -> None:
+    """The reverse of `suspend_goal`."""
+    for event in list(agent.suspended_events):
+        if _matches(agent, goal, literal_of(event.goal, event.annotations)):
+            agent.suspended_events.remove(event)
+            agent.events.append(event)
+            agent.architecture.ready()
+    for intention in intentions_for(agent, goal):
+        resume_intention(agent, intention)
+
+
+def resume_intention(agent: Circumstance, intention: Intention) -> None:
+    """A suspended intention goes on where it is."""
+    if intention.suspended is None:
+        return
+    intention.suspended = None
+    if agent.meta:
+        for frame in intention.frames:
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "resumed")
+    if intention.parked:
+        intention.parked = False
+        agent.make_ready(intention)
+    elif intention.waiting is not None and intention.waiting.on_resume is not None:
+        intention.waiting.on_resume()
+
+
+# --- ending goals from outside -----------------------------------------------------------------------------
+
+
+def _cut(agent: Circumstance, intention: Intention, index: int) -> None:
+    """Take the frame at *index* and all above off the stack, and whatever the intention waits for."""
+    if intention.waiting is not None:
+        waiting, intention.waiting = intention.waiting, None
+        waiting.cancel()
+    event = pending_event(agent, intention)
+    if event is not None:
+        agent.events.remove(event)
+    if intention in agent.intentions:
+        agent.intentions.remove(intention)
+    intention.parked = False
+    del intention.frames[index:]
+    while intention.handlers and intention.handlers[-1] >= index:
+        intention.handlers.pop()
+    if agent.atomic is intention and not intention.is_atomic():
+        agent.atomic = None
+
+
+def succeed_goal(agent: Circumstance, goal: Term) -> bool:
+    """End matching goals as achieved: their callers go on.  True when the running intention is concerned."""
+    own = False
+    for intention in intentions_for(agent, goal):
+        index = frame_of(agent, intention, goal)
+        running = intention is agent.current
+        if index is None:
+            event = pending_event(agent, intention)
+            if event is not None:
+                agent.events.remove(event)
+        else:
+            _cut(agent, intention, index)
+        if running:
+            own = True
+        elif _goes_on(agent, intention):
+            agent.make_ready(intention)
+    for event in goal_events(agent, goal):
+        _remove_event(agent, event)
+    return own
+
+
+def _goes_on(agent: Circumstance, intention: Intention) -> bool:
+    if not intention.frames:
+        finish(agent, intention)
+        return False
+    return pop_finished(agent, intention)
+
+
+def fail_goal(agent: Circumstance, goal: Term) -> bool:
+    """End matching goals as failed: their own handlers run, or those below.  True when the caller itself is concerned."""
+    own = False
+    for intention in intentions_for(agent, goal):
+        index = frame_of(agent, intention, goal)
+        if index is None:
+            event = pending_event(agent, intention)
+            if event is not None:
+                agent.events.remove(event)
+        else:
+            own = own or intention is agent.current
+            _cut(agent, intention, index + 1)
+        _post_failure(agent, intention)
+    return own
+
+
+def _post_failure(agent: Circumstance, intention: Intention) -> None:
+    """The failure of the goal on top is handled like any other, but carries no error annotation."""
+    posted = fail_intention(agent, intention, nowhere())
+    if posted is not None:
+        agent.post(Event(posted.goal, intention, posted.annotations))
+        agent.architecture.ready()
+
+
+def describe(intention: Intention, current: bool) -> Any:
+    """State of an intention, as ``.intention`` tells it: (name, reason)."""
+    if intention.suspended is not None:
+        return "suspended", None
+    if intention.waiting is not None:
+        return "waiting", intention.waiting.reason
+    return "running", None if current else None

@@ -1,0 +1,75 @@
+"""How a Python function becomes an internal action.
+
+    @internal_action(".member", backtracks=True)
+    def member(ctx, item, collection):
+        for candidate in list_items(collection):
+            if ctx.unify(item, candidate):
+                yield
+
+The arguments arrive with all bindings applied (`jacaros.terms.unifier.resolve`); unbound ones are `Var`.  A plain
+function succeeds unless it returns False.  A generator (``backtracks``) yields once for every answer; bindings
+made before a yield are taken back before the next one is looked for.  A function that suspends the intention
+(``suspends``) calls `Context.suspend` and returns what that gave.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.terms.values import Term
+
+Function = Callable[..., Any]
+
+
+class WrongArguments(Exception):
+    """The arguments do not fit: the step fails with ``error(wrong_arguments)``."""
+
+
+class ActionError(Exception):
+    """The action could not be done: the step fails with ``error(internal_action)`` or the given terms.
+
+    Attributes:
+        annotations: terms for the failure event; an ``error(..)`` among them replaces the default one.
+    """
+
+    def __init__(self, message: str, *annotations: Term) -> None:
+        super().__init__(message)
+        self.annotations = annotations
+
+
+@dataclass(frozen=True, slots=True)
+class InternalAction:
+    """An internal action as the registry keeps it.
+
+    Attributes:
+        name: with the leading dot of the standard ones.
+        function: called with a `Context` and the arguments.
+        backtracks: the function is a generator of answers.
+        suspends: it may suspend the intention, or acts on it: not for contexts and rules.
+        minimum, maximum: number of arguments allowed; maximum None for any number.
+    """
+
+    name: str
+    function: Function
+    backtracks: bool = False
+    suspends: bool = False
+    minimum: int = 0
+    maximum: int | None = None
+
+
+Registry = dict[str, InternalAction]
+STANDARD: Registry = {}
+"""The internal actions of the language; an agent may have more."""
+
+
+def internal_action(
+    name: str, *, arity: int | tuple[int, int | None] = (0, None), backtracks: bool = False, suspends: bool = False
+) -> Callable[[Function], Function]:
+    """Register a standard internal action; *arity* is a number of arguments, or least and most (None: any)."""
+    least, most = (arity, arity) if isinstance(arity, int) else arity
+
+    def register(function: Function) -> Function:
+        STANDARD[name] = InternalAction(name, function, backtracks, suspends, least, most)
+        return function
+
+    return register

@@ -1,0 +1,275 @@
+"""What messages do (KQML as Jason defines it): tell, achieve, ask, and the rest."""
+
+from typing import Any
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import parse_plans
+from jacaros.bdi import belief_update
+from jacaros.bdi.belief_base import parts
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import Event
+from jacaros.bdi.formulas import solve_formula
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.compiler.lowering import fresh_names, lower_plan
+from jacaros.compiler.runtime import run
+from jacaros.compiler.triggers import trigger
+from jacaros.terms.order import annotation_set
+from jacaros.terms.plans import PLAN, TRIGGER, body_steps, step_parts
+from jacaros.terms.text import text
+from jacaros.terms.unifier import rename, resolve, undo
+from jacaros.terms.values import (
+    BY_SELF,
+    SOURCE,
+    SOURCE_SELF,
+    Annotated,
+    String,
+    Term,
+    Var,
+    annotations_of,
+    atom,
+    bare,
+    deref,
+    functor,
+    is_list,
+    list_items,
+    make_list,
+)
+
+RECEIVED = trigger("+", "!", functor("kqml_received", 4))
+PERFORMATIVES = {
+    "ask-one": "askOne",
+    "ask-all": "askAll",
+    "ask-how": "askHow",
+    "tell-how": "tellHow",
+    "untell-how": "untellHow",
+}
+
+
+def process(agent: Circumstance, message: SpeechAct) -> None:
+    """Rule ProcMsg: one message; a plan of the program for ``+!kqml_received`` comes before what is done here."""
+    if message.in_reply_to is not None and message.in_reply_to in agent.pending_asks:
+        agent.pending_asks[message.in_reply_to](message)
+        return
+    if message.in_reply_to is not None and message.performative in ("tell", "untell") and _is_late(message):
+        return
+    performative = PERFORMATIVES.get(message.performative, message.performative)
+    if _handled_by_program(agent, message):
+        return
+    action = _ACTIONS.get(performative)
+    if action is None:
+        agent.architecture.log("warning", f"a message with unknown performative {performative} from {message.sender}")
+        return
+    action(agent, message)
+
+
+def _is_late(message: SpeechAct) -> bool:
+    """An answer to a synchronous question that nobody waits for any more."""
+    return message.id.startswith("late")
+
+
+def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
+    """Post ``+!kqml_received`` when the program has an applicable plan for it."""
+    select = agent.selects[RECEIVED]
+    if select is None:
+        return False
+    goal = (RECEIVED, atom(message.sender), atom(message.performative), message.content, _id_term(message.id))
+    frame = select(agent, goal, BY_SELF)
+    undo(agent.trail, 0)
+    if frame is None:
+        return False
+    agent.post(Event(goal, None, BY_SELF))
+    return True
+
+
+def _id_term(message_id: str) -> Term:
+    return atom(message_id)
+
+
+def from_sender(content: Term, sender: str) -> Term:
+    """The content with ``source(sender)``; sources it had are nested inside."""
+    content = resolve(content)
+    inner = bare(content)
+    others, sources = [], []
+    for annotation in annotations_of(content):
+        (sources if _is_source(annotation) else others).append(annotation)
+    source: Term = (SOURCE, atom(sender))
+    if sources and sources != [SOURCE_SELF]:
+        source = Annotated(source, annotation_set(tuple(sources)))
+    return Annotated(inner, annotation_set((*others, source)))
+
+
+def _is_source(term: Term) -> bool:
+    inner = bare(term)
+    return inner.__class__ is tuple and inner[0] is SOURCE
+
+
+def _contents(content: Term) -> list[Term]:
+    """The literals of a message: one, or those of a list."""
+    content = deref(content)
+    return list(list_items(content)) if is_list(content) else [content]
+
+
+def _tell(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        if not belief_update.tell(agent, from_sender(content, message.sender)):
+            _refuse(agent, message)
+
+
+def _untell(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        belief_update.untell(agent, from_sender(content, message.sender))
+
+
+def _achieve(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        symbol, arguments, annotations = parts(from_sender(content, message.sender))
+        if symbol is None:
+            _refuse(agent, message)
+        else:
+            agent.post(Event((trigger("+", "!", symbol), *arguments), None, annotations))
+
+
+def _unachieve(agent: Circumstance, message: SpeechAct) -> None:
+    agent.drop_desire(message.content)  # type: ignore[attr-defined]
+
+
+def _signal(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        symbol, row, annotations = parts(from_sender(content, message.sender))
+        if symbol is None:
+            _refuse(agent, message)
+        else:
+            marked = annotation_set((*annotations, atom("signal")))
+            belief_update.external_change(agent, "+", symbol, row, marked)
+
+
+def _refuse(agent: Circumstance, message: SpeechAct) -> None:
+    agent.architecture.log(
+        "warning", f"the content of a {message.performative} from {message.sender} is no literal: {text(message.content)}"
+    )
+
+
+# --- questions ---------------------------------------------------------------------------------------------
+
+
+def _ask_one(agent: Circumstance, message: SpeechAct) -> None:
+    found = _first_belief(agent, message.content)
+    if found is not None:
+        answer(agent, message, found)
+        return
+    symbol, arguments, _ = parts(message.content)
+    if symbol is None or agent.selects[trigger("+", "?", symbol)] is None:
+        answer(agent, message, None)
+        return
+    agent.test_for(message, symbol, arguments)  # type: ignore[attr-defined]
+
+
+def _first_belief(agent: Circumstance, query: Term) -> Term | None:
+    trail = agent.trail
+    for literal in _each_belief(agent, query):
+        undo(trail, 0)
+        return literal
+    undo(trail, 0)
+    return None
+
+
+def _each_belief(agent: Circumstance, query: Term) -> Any:
+    """Instances of a query that hold, with the annotations of the beliefs, the own source left out."""
+    symbol, arguments, annotations = parts(query)
+    if symbol is None:
+        return
+    tail = Var()
+    question = Annotated((symbol, *arguments) if arguments else symbol, annotations, tail)
+    for _ in run(solve_formula(agent, question, agent.trail)):
+        found = resolve(question)
+        rest = tuple(a for a in annotations_of(found) if a != SOURCE_SELF)
+        inner = rename(bare(found))
+        yield Annotated(inner, rest) if rest else inner
+
+
+def _ask_all(agent: Circumstance, message: SpeechAct) -> None:
+    found = list(_each_belief(agent, message.content))
+    undo(agent.trail, 0)
+    answer(agent, message, make_list(found))
+
+
+def answer(agent: Circumstance, question: SpeechAct, content: Term | None) -> None:
+    """Send the answer to a question; None is the answer that there is none."""
+    performative = "untell" if content is None else "tell"
+    agent.architecture.send(
+        SpeechAct(
+            performative,
+            agent.name,
+            question.sender if question.sender != "self" else agent.name,
+            question.content if content is None else rename(content),
+            agent.next_message_id(),  # type: ignore[attr-defined]
+            question.id,
+        )
+    )
+
+
+# --- plans -------------------------------------------------------------------------------------------------
+
+
+def _ask_how(agent: Circumstance, message: SpeechAct) -> None:
+    wanted = _trigger_of(message.content)
+    if wanted is None:
+        _refuse(agent, message)
+        return
+    plans = [lower_plan(p.node, fresh_names()) for p in agent.library.relevant(wanted)]
+    answer(agent, message, make_list(plans))
+
+
+def _trigger_of(content: Term) -> Any:
+    content = deref(content)
+    if content.__class__ is String:
+        from_text = parse_plans(f"{content}.")
+        plan = from_text[0] if from_text else None
+        if plan is None:
+            return None
+        literal = lower_plan(plan, fresh_names())[2]
+        return _trigger_of(literal)
+    if content.__class__ is tuple and content[0] is TRIGGER:
+        operator = deref(content[1]).name
+        symbol = parts(content[2])[0]
+        return None if symbol is None else trigger(operator[0], operator[1:], symbol)
+    steps = list(body_steps(content))
+    if len(steps) == 1:
+        operator, operands = step_parts(steps[0])
+        symbol = parts(operands[0])[0]
+        if operator in ("+", "-") and symbol is not None:
+            return trigger(operator, "", symbol)
+    return None
+
+
+def _tell_how(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        try:
+            agent.add_plan(content, atom(message.sender))  # type: ignore[attr-defined]
+        except (AslError, ValueError) as fault:
+            agent.architecture.log("warning", f"a plan told by {message.sender} was refused: {fault}")
+
+
+def _untell_how(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        agent.remove_plan(content)  # type: ignore[attr-defined]
+
+
+def plan_term(content: Term) -> bool:
+    """Whether a message content is a plan."""
+    content = deref(content)
+    return content.__class__ is tuple and content[0] is PLAN
+
+
+_ACTIONS = {
+    "tell": _tell,
+    "untell": _untell,
+    "achieve": _achieve,
+    "unachieve": _unachieve,
+    "signal": _signal,
+    "askOne": _ask_one,
+    "askAll": _ask_all,
+    "askHow": _ask_how,
+    "tellHow": _tell_how,
+    "untellHow": _untell_how,
+}

@@ -1,0 +1,130 @@
+"""Internal actions about beliefs, rules and conditions."""
+
+from collections.abc import Iterator
+
+from jacaros.bdi import belief_update
+from jacaros.bdi.belief_base import Rule, parts
+from jacaros.bdi.context import Context
+from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.compiler.runtime import own_annotations
+from jacaros.terms.order import compare
+from jacaros.terms.plans import RULE
+from jacaros.terms.text import text
+from jacaros.terms.unifier import rename, resolve
+from jacaros.terms.values import FALSE, TRUE, Term, atom, functor_of
+
+
+@internal_action(".abolish", arity=1)
+def abolish(ctx: Context, pattern: Term) -> None:
+    """``.abolish(P)``: delete all matching beliefs, whatever their source unless the pattern names one."""
+    belief_update.abolish(ctx.agent, pattern)
+
+
+def _assert(ctx: Context, term: Term, last: bool) -> None:
+    if term.__class__ is tuple and term[0] is RULE:
+        ctx.agent.change_rule("+>" if last else "+", term)
+        return
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        raise WrongArguments(f"a literal or a rule is expected, not {text(term)}")
+    own = own_annotations(annotations)
+    new = belief_update.insert(ctx.agent, symbol, row, own, last)
+    if new is not None:
+        belief_update.external_change(ctx.agent, "+", symbol, row, new)
+
+
+@internal_action(".asserta", arity=1)
+def asserta(ctx: Context, term: Term) -> None:
+    """``.asserta(L)``: add a belief or rule before all others."""
+    _assert(ctx, term, last=False)
+
+
+@internal_action(".assertz", arity=1)
+def assertz(ctx: Context, term: Term) -> None:
+    """``.assertz(L)``: add a belief or rule behind all others."""
+    _assert(ctx, term, last=True)
+
+
+@internal_action(".belief", arity=1, backtracks=True)
+def belief(ctx: Context, pattern: Term) -> Iterator[None]:
+    """``.belief(P)``: each matching belief that is held, rules left out."""
+    wanted = functor_of(pattern)
+    for literal in list(ctx.agent.beliefs.literals()):
+        if (wanted is None or functor_of(literal) is wanted) and ctx.unify(pattern, literal):
+            yield
+
+
+@internal_action(".list_rules", arity=0)
+def list_rules(ctx: Context) -> None:
+    """Print the rules."""
+    for table in ctx.agent.beliefs.values():
+        for entry, _ in table.entries():
+            if isinstance(entry, Rule):
+                ctx.architecture.print(text(entry.head()))
+
+
+@internal_action(".eval", arity=2)
+def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
+    """``.eval(X, F)``: X is ``true`` or ``false``."""
+    mark = len(ctx.trail)
+    holds = ctx.succeeds(formula)
+    while len(ctx.trail) > mark:
+        ctx.trail.pop().ref = None
+    return ctx.unify(target, TRUE if holds else FALSE)
+
+
+@internal_action(".findall", arity=3)
+def findall(ctx: Context, template: Term, formula: Term, target: Term) -> bool:
+    """``.findall(T, F, L)``: L is the list of T for all answers of F, in order, duplicates kept."""
+    return bool(ctx.agent.collect_formula(".findall", (template, formula, target), ctx.trail))
+
+
+@internal_action(".setof", arity=3)
+def setof(ctx: Context, template: Term, formula: Term, target: Term) -> bool:
+    """``.setof(T, F, L)``: like `.findall`, sorted and without duplicates."""
+    return bool(ctx.agent.collect_formula(".setof", (template, formula, target), ctx.trail))
+
+
+@internal_action(".count", arity=2)
+def count(ctx: Context, formula: Term, target: Term) -> bool:
+    """``.count(F, N)``: N is the number of answers of F."""
+    return bool(ctx.agent.collect_formula(".count", (formula, target), ctx.trail))
+
+
+def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
+    """The greatest (sign 1) or smallest (sign -1) instance of a template, None without answers."""
+    found: Term | None = None
+    mark = len(ctx.trail)
+    for _ in ctx.answers(formula):
+        value = rename(resolve(template))
+        if found is None or sign * compare(value, found) > 0:
+            found = value
+    while len(ctx.trail) > mark:
+        ctx.trail.pop().ref = None
+    return found
+
+
+@internal_action(".perceive", arity=0)
+def perceive(ctx: Context) -> None:
+    """Look at the environment at once: nothing is left unseen between two cycles anyway."""
+    del ctx
+
+
+@internal_action(".namespace", arity=1, backtracks=True)
+def namespace(ctx: Context, target: Term) -> Iterator[None]:
+    """``.namespace(N)``: each namespace in use."""
+    names: dict[str, None] = {"default": None}
+    for symbol, table in ctx.agent.beliefs.items():
+        if symbol.namespace and len(table):
+            names[symbol.namespace] = None
+    for plan in ctx.agent.library.plans:
+        symbol = plan.trigger_functor()
+        if symbol is not None and symbol.namespace:
+            names[symbol.namespace] = None
+
+
+    for name in names:
+        if ctx.unify(target, atom(name)):
+            yield
+
+

@@ -1,0 +1,210 @@
+"""Internal actions about goals and intentions."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from jacaros.bdi import goals
+from jacaros.bdi.context import Context
+from jacaros.bdi.intention import GOAL, Intention
+from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.compiler.runtime import Failure
+from jacaros.terms.text import text
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import Annotated, String, Term, atom, bare, functor, functor_of, make_list, structure
+
+ERROR, REASON = functor("error", 1), functor("reason", 1)
+
+
+def _goal(term: Term) -> Term:
+    if functor_of(term) is None:
+        raise WrongArguments(f"a goal must be a literal, not {text(term)}")
+    return term
+
+
+@internal_action(".desire", arity=(1, 2), backtracks=True)
+def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
+    """``.desire(G [,Id])``: each goal the agent has, begun or not."""
+    for literal, number in list(goals.desires(ctx.agent)):
+        if ctx.unify(goal, literal) and (identity is None or (number is not None and ctx.unify(identity, float(number)))):
+            yield
+
+
+@internal_action(".intend", arity=(1, 2), backtracks=True)
+def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
+    """``.intend(G [,Id])``: each goal on the stack of an intention that is not suspended."""
+    for literal, number in list(goals.intended(ctx.agent)):
+        if ctx.unify(goal, literal) and (identity is None or (number is not None and ctx.unify(identity, float(number)))):
+            yield
+
+
+@internal_action(".intention", arity=(2, 4), backtracks=True)
+def intention(ctx: Context, number: Term, state: Term, stack: Term = None, which: Term = None) -> Iterator[None]:
+    """``.intention(Id, State [,Stack [,current]])``: each intention, its state and its stack."""
+    only_current = which is not None and bare(which) is atom("current")
+    for candidate in list(ctx.agent.alive.values()):
+        running = candidate is ctx.agent.current
+        if only_current and not running:
+            continue
+        if not ctx.unify(number, float(candidate.id)) or not ctx.unify(state, _state(candidate, running)):
+            continue
+        if stack is None or ctx.unify(stack, make_list([_means(f) for f in reversed(candidate.frames)])):
+            yield
+
+
+def _state(candidate: Intention, running: bool) -> Term:
+    name, reason = goals.describe(candidate, running)
+    if name != "waiting":
+        return atom(name)
+    inner = bare(reason)
+    if inner.__class__ is tuple and inner[0].name == "action":
+        return Annotated(atom("waiting"), (inner,))
+    return Annotated(atom("waiting"), ((REASON, reason),))
+
+
+def _means(frame: Any) -> Term:
+    """``im(Label, Goal, Body, Bindings)`` of one frame."""
+    plan = frame[4]
+    bindings = [
+        structure("map", atom(f"'{name}'"), resolve(frame[slot]))
+        for name, slot in plan.slots.items()
+        if slot < len(frame) and frame[slot] is not None
+    ]
+    literal = frame[GOAL][0].functor
+    goal = (literal, *frame[GOAL][1:]) if len(frame[GOAL]) > 1 else literal
+    return structure("im", plan.label, resolve(goal), String(""), make_list(bindings))
+
+
+@internal_action(".current_intention", arity=1)
+def current_intention(ctx: Context, target: Term) -> bool:
+    """``.current_intention(I)``: the calling intention as ``intention(Id, Stack)``."""
+    current = ctx.intention
+    if current is None:
+        return False
+    stack = make_list([_means(f) for f in reversed(current.frames)])
+    return ctx.unify(target, structure("intention", float(current.id), stack))
+
+
+@internal_action(".drop_intention", arity=(0, 1), suspends=True)
+def drop_intention(ctx: Context, goal: Term = None) -> Any:
+    """``.drop_intention [(G)]``: the own intention, or all that have the goal, vanish without failure."""
+    if goal is None:
+        assert ctx.intention is not None
+        goals.drop_intention(ctx.agent, ctx.intention)
+    else:
+        goals.drop_goal(ctx.agent, _goal(goal))
+
+
+@internal_action(".drop_event", arity=1, suspends=True)
+def drop_event(ctx: Context, goal: Term) -> None:
+    """``.drop_event(G)``: goals that were posted and not taken up yet vanish."""
+    goals.drop_events(ctx.agent, _goal(goal))
+
+
+@internal_action(".drop_desire", arity=1, suspends=True)
+def drop_desire(ctx: Context, goal: Term) -> None:
+    """``.drop_desire(G)``: `.drop_event` and `.drop_intention` together."""
+    goals.drop_desire(ctx.agent, _goal(goal))
+
+
+@internal_action(".drop_all_intentions", arity=0, suspends=True)
+def drop_all_intentions(ctx: Context) -> None:
+    """All intentions but the calling one vanish."""
+    goals.drop_all_intentions(ctx.agent)
+
+
+@internal_action(".drop_all_events", arity=0, suspends=True)
+def drop_all_events(ctx: Context) -> None:
+    """All pending events vanish."""
+    goals.drop_all_events(ctx.agent)
+
+
+@internal_action(".drop_all_desires", arity=0, suspends=True)
+def drop_all_desires(ctx: Context) -> None:
+    """All events and all intentions but the calling one vanish."""
+    goals.drop_all_events(ctx.agent)
+    goals.drop_all_intentions(ctx.agent)
+
+
+@internal_action(".suspend", arity=(0, 1), suspends=True)
+def suspend(ctx: Context, goal: Term = None) -> Any:
+    """``.suspend [(G)]``: the intentions with the goal (or the own one) stop until `.resume`."""
+    current = ctx.intention
+    if goal is None:
+        assert current is not None
+        goals.suspend_intention(ctx.agent, current, atom("suspended"))
+    else:
+        goals.suspend_goal(ctx.agent, _goal(goal), structure("suspended", goal))
+
+
+@internal_action(".resume", arity=1, suspends=True)
+def resume(ctx: Context, goal: Term) -> None:
+    """``.resume(G)``: suspended intentions with the goal go on."""
+    goals.resume_goal(ctx.agent, _goal(goal))
+
+
+@internal_action(".suspended", arity=2, backtracks=True)
+def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
+    """``.suspended(G, R)``: whether an intention with the goal is suspended or waits, and why (``act`` for an action)."""
+    for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
+        why = candidate.suspended
+        if why is None and candidate.waiting is not None:
+            why = candidate.waiting.reason
+            why = atom("act") if why.__class__ is tuple and why[0].name == "action" else why
+        if why is not None and ctx.unify(reason, why):
+            yield
+    for _ in goals.goal_events(ctx.agent, goal):
+        if any(goals._matches(ctx.agent, goal, _event(e)) for e in ctx.agent.suspended_events) and ctx.unify(
+            reason, atom("suspended")
+        ):
+            yield
+            return
+
+
+def _event(event: Any) -> Term:
+    symbol = event.goal[0].functor
+    return (symbol, *event.goal[1:]) if len(event.goal) > 1 else symbol
+
+
+@internal_action(".succeed_goal", arity=1, suspends=True)
+def succeed_goal(ctx: Context, goal: Term) -> Any:
+    """``.succeed_goal(G)``: matching goals end as achieved."""
+    return _ended(ctx, goals.succeed_goal(ctx.agent, _goal(goal)))
+
+
+@internal_action(".fail_goal", arity=1, suspends=True)
+def fail_goal(ctx: Context, goal: Term) -> Any:
+    """``.fail_goal(G)``: matching goals end as failed; the failure event carries no ``error``."""
+    if goals.fail_goal(ctx.agent, _goal(goal)):
+        return ctx.suspend("failed")
+    return None
+
+
+def _ended(ctx: Context, own: bool) -> Any:
+    """The calling intention was cut: its rest goes on in the next cycle, not with this step."""
+    if not own:
+        return None
+    agent, current = ctx.agent, ctx.intention
+    assert current is not None
+    waiting = ctx.suspend("succeeded")
+    if goals._goes_on(agent, current):
+        agent.make_ready(current)
+    return waiting
+
+
+@internal_action(".done", arity=0, suspends=True)
+def done(ctx: Context) -> Any:
+    """End the own goal as achieved."""
+    current = ctx.intention
+    assert current is not None
+    current.frames[-1][0] = None
+
+
+@internal_action(".fail", suspends=True)
+def fail(ctx: Context, *annotations: Term) -> Any:
+    """``.fail(a, b…)``: fail, with these annotations on the failure event."""
+    del ctx
+    if not annotations:
+        return False
+    if any(bare(a).__class__ is tuple and bare(a)[0] is ERROR for a in annotations):
+        raise Failure(*annotations)
+    raise Failure((ERROR, atom("internal_action")), *annotations)

@@ -1,0 +1,124 @@
+"""Internal actions that send messages."""
+
+from typing import Any
+
+from jacaros.bdi.context import Context
+from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.waiting import Waiting
+from jacaros.terms.text import text
+from jacaros.terms.unifier import rename
+from jacaros.terms.values import Functor, String, Term, Var, atom, bare, functor, is_list, list_items, make_list
+
+ERROR = functor("error", 1)
+QUESTIONS = ("askOne", "askAll", "askHow", "ask-one", "ask-all", "ask-how")
+
+
+def _name(term: Term, what: str) -> str:
+    term = bare(term)
+    if term.__class__ is String:
+        return str(term)
+    if term.__class__ is Functor:
+        return term.name.strip("'")  # type: ignore[no-any-return]
+    raise WrongArguments(f"{what} must be an atom or a string, not {text(term)}")
+
+
+def _deliver(ctx: Context, receiver: str, performative: str, content: Term, message_id: str, reply: str | None) -> None:
+    sender = ctx.agent.name
+    target = sender if receiver == "self" else receiver
+    act = SpeechAct(performative, "self" if target == sender else sender, target, rename(content), message_id, reply)
+    if not ctx.architecture.send(act):
+        raise ActionError(
+            f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
+        )
+
+
+class _Question:
+    """A synchronous question to one or several agents."""
+
+    def __init__(self, ctx: Context, waiting: Waiting, target: Term, receivers: list[str], many: bool) -> None:
+        self.ctx, self.waiting, self.target, self.many = ctx, waiting, target, many
+        self.missing = list(receivers)
+        self.answers: list[Term] = []
+        self.ids: list[str] = []
+        self.timer: Any = None
+
+    def answered(self, message: SpeechAct) -> None:
+        """An answer has come."""
+        self.ctx.agent.pending_asks.pop(message.in_reply_to, None)
+        content = atom("false") if message.performative == "untell" else self._with_source(message)
+        self.answers.append(content)
+        if len(self.answers) == len(self.missing):
+            self._end(make_list(self.answers) if self.many else content)
+
+    def _with_source(self, message: SpeechAct) -> Term:
+        from jacaros.bdi.speech_acts import from_sender  # noqa: PLC0415
+
+        content = message.content
+        if is_list(content):
+            return content
+        inner = bare(content)
+        return from_sender(content, message.sender) if inner.__class__ in (tuple, Functor) else content
+
+    def timed_out(self) -> None:
+        """No answer in time."""
+        self._end(atom("timeout"))
+
+    def _end(self, value: Term) -> None:
+        self.forget()
+        if self.ctx.unify(self.target, value):
+            del self.ctx.trail[:]
+            self.waiting.resume()
+        else:
+            self.waiting.fail("the answer does not fit", (ERROR, atom("ask_failed")))
+
+    def forget(self) -> None:
+        """Nobody waits for the answers any more."""
+        for message_id in self.ids:
+            self.ctx.agent.pending_asks.pop(message_id, None)
+        if self.timer is not None:
+            self.timer.cancel()
+
+
+@internal_action(".send", arity=(3, 5), suspends=True)
+def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Any:
+    """``.send(To, Performative, Content [, Answer [, Timeout]])``: a message; with an answer, a synchronous question.
+
+    *To* is a name or a list of names; *Timeout* is in milliseconds, and the answer is ``timeout`` then.
+
+    Raises:
+        ActionError: ``receiver_not_found``.
+    """
+    act = _name(performative, "the performative")
+    receivers = [_name(r, "a receiver") for r in list_items(receiver)] if is_list(receiver) else [_name(receiver, "the receiver")]
+    if act in QUESTIONS and rest:
+        return _ask(ctx, receivers, act, content, rest, is_list(receiver))
+    reply = _name(rest[0], "the message id") if rest and rest[0].__class__ is not Var else None
+    for name in receivers:
+        _deliver(ctx, name, act, content, ctx.agent.next_message_id(), reply)
+    return None
+
+
+def _ask(ctx: Context, receivers: list[str], act: str, content: Term, rest: tuple[Term, ...], many: bool) -> Any:
+    waiting = ctx.suspend("ask")
+    question = _Question(ctx, waiting, rest[0], receivers, many)
+    waiting.on_drop = question.forget
+    for name in receivers:
+        message_id = ctx.agent.next_message_id()
+        question.ids.append(message_id)
+        ctx.agent.pending_asks[message_id] = question.answered
+        _deliver(ctx, name, act, content, message_id, None)
+    if len(rest) > 1:
+        if rest[1].__class__ is not float:
+            raise WrongArguments(f"the time-out must be a number of milliseconds, not {text(rest[1])}")
+        question.timer = ctx.architecture.set_timer(rest[1] / 1000.0, question.timed_out)
+    return waiting
+
+
+@internal_action(".broadcast", arity=2, suspends=True)
+def broadcast(ctx: Context, performative: Term, content: Term) -> None:
+    """``.broadcast(Performative, Content)``: to all other agents."""
+    act = _name(performative, "the performative")
+    for name in ctx.architecture.agent_names():
+        if name != ctx.agent.name:
+            _deliver(ctx, name, act, content, ctx.agent.next_message_id(), None)

@@ -1,0 +1,88 @@
+"""Internal actions about the plan library."""
+
+from collections.abc import Iterator
+
+from jacaros.asl.errors import AslError
+from jacaros.bdi.context import Context
+from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.stdlib.waiting import trigger_of
+from jacaros.compiler.lowering import fresh_names, lower_plan
+from jacaros.compiler.plan import Plan
+from jacaros.compiler.reflection import NotAPlan
+from jacaros.terms.text import text
+from jacaros.terms.values import SELF, Term, atom, bare, is_list, list_items, make_list
+
+
+def _term(plan: Plan) -> Term:
+    """A plan as a term, with its label."""
+    term = lower_plan(plan.node, fresh_names())
+    return (term[0], plan.label, *term[2:])
+
+
+@internal_action(".add_plan", arity=(1, 3))
+def add_plan(ctx: Context, plan: Term, source: Term = None, where: Term = None) -> None:
+    """``.add_plan(P [,Source [,begin]])``: P is a plan term, a string, or a list of them."""
+    first = where is not None and bare(where) is atom("begin")
+    try:
+        ctx.agent.add_plan(plan, SELF if source is None else source, first)
+    except NotAPlan as fault:
+        raise WrongArguments(str(fault)) from fault
+    except AslError as fault:
+        raise ActionError(f"the text is no plan: {fault}") from fault
+
+
+@internal_action(".remove_plan", arity=(1, 2))
+def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> bool:
+    """``.remove_plan(Label)``: also a list of labels, or a plan term; fails when there is none."""
+    del source
+    if is_list(wanted):
+        return all([ctx.agent.remove_plan(item) for item in list_items(wanted)])
+    return bool(ctx.agent.remove_plan(wanted))
+
+
+@internal_action(".plan_label", arity=2, backtracks=True)
+def plan_label(ctx: Context, target: Term, label: Term) -> Iterator[None]:
+    """``.plan_label(P, L)``: each plan with its label."""
+    for plan in list(ctx.agent.library.plans):
+        if ctx.unify(label, plan.label) and ctx.unify(target, _term(plan)):
+            yield
+
+
+def _relevant(ctx: Context, event: Term) -> list[Plan]:
+    found = trigger_of(event)
+    if found is None:
+        raise WrongArguments(f"an event such as {{+!g}} is expected, not {text(event)}")
+    if found[0] is None:
+        operator = found[2]
+        return [
+            p
+            for p in ctx.agent.library.plans
+            if p.node.trigger.operator + p.node.trigger.kind == operator
+        ]
+    return list(ctx.agent.library.relevant(found[0]))
+
+
+@internal_action(".relevant_plans", arity=(2, 3))
+def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None) -> bool:
+    """``.relevant_plans({T}, Ps [,Labels])``: the plans for an event, in the order in which they are tried."""
+    plans = _relevant(ctx, event)
+    if not ctx.unify(target, make_list([_term(p) for p in plans])):
+        return False
+    return labels is None or ctx.unify(labels, make_list([p.label for p in plans]))
+
+
+@internal_action(".relevant_plan", arity=2, backtracks=True)
+def relevant_plan(ctx: Context, event: Term, target: Term) -> Iterator[None]:
+    """``.relevant_plan({T}, P)``: each plan for an event."""
+    for plan in _relevant(ctx, event):
+        if ctx.unify(target, _term(plan)):
+            yield
+
+
+@internal_action(".list_plans", arity=(0, 1))
+def list_plans(ctx: Context, event: Term = None) -> None:
+    """``.list_plans [({T})]``: print the plans."""
+    for plan in ctx.agent.library.plans if event is None else _relevant(ctx, event):
+        ctx.architecture.print(text(_term(plan)))
+
+

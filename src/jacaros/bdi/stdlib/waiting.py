@@ -1,0 +1,175 @@
+"""Internal actions that wait, and that post events later."""
+
+import re
+from typing import Any
+
+from jacaros.asl.loader import parse_trigger
+from jacaros.bdi.belief_base import parts
+from jacaros.bdi.context import Context
+from jacaros.bdi.event import Event
+from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.bdi.waiting import Waiting
+from jacaros.compiler.lowering import fresh_names, lower_trigger
+from jacaros.compiler.runtime import own_annotations
+from jacaros.compiler.triggers import Trigger, trigger
+from jacaros.terms.plans import TRIGGER, body_steps, is_body, step_parts, trigger_parts
+from jacaros.terms.text import text
+from jacaros.terms.unifier import rename
+from jacaros.terms.values import String, Term, atom, deref, functor
+
+ERROR = functor("error", 1)
+
+
+def trigger_of(term: Term) -> tuple[Trigger | None, Term, str] | None:
+    """Trigger object (None when its literal is a variable), literal and operator of a trigger term, or None."""
+    term = deref(term)
+    if term.__class__ is String:
+        term = lower_trigger(parse_trigger(str(term)), fresh_names())
+    if term.__class__ is tuple and term[0] is TRIGGER:
+        operator, literal = trigger_parts(term)
+    elif is_body(term):
+        steps = list(body_steps(term))
+        if len(steps) != 1:
+            return None
+        operator, operands = step_parts(steps[0])
+        if operator not in ("+", "-"):
+            return None
+        literal = operands[0]
+    else:
+        return None
+    symbol = parts(literal)[0]
+    return (None if symbol is None else trigger(operator[0], operator[1:], symbol)), literal, operator
+
+
+class _Wait:
+    """A ``.wait`` under way."""
+
+    def __init__(self, ctx: Context, elapsed: Term) -> None:
+        self.ctx = ctx
+        self.waiting: Waiting = ctx.suspend("wait")
+        self.elapsed = elapsed
+        self.began = ctx.architecture.now()
+        self.timer: Any = None
+        self.entry: Any = None
+        self.waiting.on_drop = self.forget
+
+    def limit(self, milliseconds: float, fails: bool) -> None:
+        """End after so many milliseconds."""
+        self.timer = self.ctx.architecture.set_timer(
+            milliseconds / 1000.0, self.timed_out if fails else self.over
+        )
+
+    def timed_out(self) -> None:
+        """The awaited thing did not come in time."""
+        self.forget()
+        if self.elapsed is not None:
+            self.over()
+        else:
+            self.waiting.fail("the wait is over without what it waited for", (ERROR, atom("wait_timeout")))
+
+    def over(self) -> None:
+        """The wait ends well."""
+        self.forget()
+        if self.elapsed is not None:
+            milliseconds = float(round((self.ctx.architecture.now() - self.began) * 1000))
+            self.ctx.unify(self.elapsed, milliseconds)
+            del self.ctx.trail[:]
+        self.waiting.resume()
+
+    def forget(self) -> None:
+        """Nothing is to be waited for any more."""
+        agent = self.ctx.agent
+        if self.timer is not None:
+            self.timer.cancel()
+        for waits in (agent.event_waits, agent.condition_waits):
+            waits[:] = [entry for entry in waits if entry is not self.entry]
+
+
+class _EventWait:
+    """Stands for the wait in the list of awaited events: the end of the wait is its own."""
+
+    def __init__(self, wait: _Wait) -> None:
+        self.wait = wait
+        self.resume = wait.over
+
+
+@internal_action(".wait", arity=(1, 3), suspends=True)
+def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> Any:
+    """``.wait(Ms)``, ``.wait({+e} [,Ms [,Elapsed]])``, ``.wait(Condition [,Ms [,Elapsed]])``.
+
+    Waits for a time in milliseconds, an event, or until a condition holds.  After *Ms* milliseconds it fails with
+    ``error(wait_timeout)``, unless *Elapsed* is given: then that is the time waited, in milliseconds.
+    """
+    if limit is not None and limit.__class__ is not float:
+        raise WrongArguments(f"the time-out must be a number of milliseconds, not {text(limit)}")
+    if what.__class__ is float:
+        waited = _Wait(ctx, elapsed)
+        waited.limit(what, fails=False)
+        return waited.waiting
+    found = trigger_of(what)
+    if found is None:
+        return _wait_for_condition(ctx, what, limit, elapsed)
+    waited = _Wait(ctx, elapsed)
+    waited.entry = (found[0], found[1], _EventWait(waited))
+    ctx.agent.event_waits.append(waited.entry)
+    if limit is not None:
+        waited.limit(limit, fails=True)
+    return waited.waiting
+
+
+def _wait_for_condition(ctx: Context, formula: Term, limit: Term, elapsed: Term) -> Any:
+    if ctx.succeeds(formula):
+        return None if elapsed is None else ctx.unify(elapsed, 0.0)
+    waited = _Wait(ctx, elapsed)
+
+    def holds() -> bool:
+        if ctx.succeeds(formula):
+            del ctx.trail[:]
+            return True
+        return False
+
+    waited.entry = (holds, waited.waiting)
+    ctx.agent.condition_waits.append(waited.entry)
+    if limit is not None:
+        waited.limit(limit, fails=True)
+    return waited.waiting
+
+
+_UNITS = {"": 0.001, "ms": 0.001, "s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}
+_MOMENT = re.compile(r"\s*now\s*(?:\+\s*([0-9.]+)\s*([a-z]*))?\s*$")
+
+
+def _unit(word: str) -> str | None:
+    for known in ("second", "minute", "hour", "day"):
+        if word.rstrip("s") == known:
+            return known[0]
+    return word if word in _UNITS else "ms" if word.startswith("milli") else None
+
+
+@internal_action(".at", arity=2)
+def at(ctx: Context, moment: Term, event: Term) -> None:
+    """``.at("now +5 s", {+!g})``: post an event later; units ms (when none is given), s, m, h and d."""
+    found = trigger_of(event)
+    match = _MOMENT.match(str(moment)) if moment.__class__ is String else None
+    unit = _unit(match.group(2) or "") if match else None
+    if found is None or found[0] is None or match is None or unit is None:
+        raise WrongArguments('.at takes a moment such as "now +5 s" and an event such as {+!g}')
+    delay = float(match.group(1) or 0) * _UNITS[unit]
+    ctx.architecture.set_timer(delay, lambda: post_event(ctx, found[0], found[1]))  # type: ignore[arg-type]
+
+
+def post_event(ctx: Context, kind: Trigger, literal: Term) -> None:
+    """Post an external event."""
+    _, arguments, annotations = parts(rename(literal))
+    ctx.agent.post(Event((kind, *arguments), None, own_annotations(annotations)))
+    ctx.architecture.ready()
+
+
+@internal_action(".signal", arity=(1, 2))
+def signal(ctx: Context, event: Term, kind: Term = None) -> None:
+    """``.signal({+e})``: post an event without changing beliefs."""
+    del kind
+    found = trigger_of(event)
+    if found is None or found[0] is None:
+        raise WrongArguments(".signal takes an event such as {+e}")
+    post_event(ctx, found[0], found[1])

@@ -1,0 +1,254 @@
+"""Code that builds terms: an expression for the value of a piece of syntax."""
+
+from jacaros.asl import nodes
+from jacaros.compiler.function import FunctionBuilder
+from jacaros.compiler.lowering import lower
+from jacaros.compiler.reflection import Constant
+from jacaros.compiler.variables import variables_in
+from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, NO_LABEL, PLAN, RULE, TRIGGER
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, atom, functor
+from jacaros.terms.values import PLAN as PLAN_KIND
+
+_STATIC = (nodes.Literal, nodes.ListTerm, nodes.String)
+_LONG_LIST = 12
+
+
+def build(fn: FunctionBuilder, node: nodes.Node) -> str:
+    """An expression (a name or a small literal) for the value of a term; variables without value get a `Var`."""
+    if isinstance(node, nodes.Number):
+        return repr(node.value) if node.value == node.value and abs(node.value) != float("inf") else _const(fn, node)
+    if isinstance(node, Constant):
+        return fn.constant(node.value)
+    if isinstance(node, nodes.Variable):
+        return _variable(fn, node)
+    if isinstance(node, _STATIC) and is_static(node):
+        return _const(fn, node)
+    return _COMPOUND[type(node)](fn, node)
+
+
+def is_static(node: object) -> bool:
+    """Whether a term is the same at every evaluation."""
+    if any(True for _ in variables_in(node)):
+        return False
+    return not _has_calls(node)
+
+
+def _has_calls(node: object) -> bool:
+    if isinstance(node, (nodes.FunctionCall, Constant)):
+        return True
+    if isinstance(node, nodes.Arithmetic):
+        return _has_calls(node.operands)
+    if isinstance(node, tuple):
+        return any(_has_calls(item) for item in node)
+    if isinstance(node, nodes.Literal):
+        return _has_calls(node.arguments) or (node.annotations is not None and _has_calls(node.annotations.items))
+    if isinstance(node, nodes.ListTerm):
+        return _has_calls(node.items) or (node.tail is not None and _has_calls(node.tail))
+    return not isinstance(node, (nodes.Number, nodes.String))
+
+
+def _const(fn: FunctionBuilder, node: nodes.Node) -> str:
+    return fn.constant(resolve(lower(node, _no_variable)))
+
+
+def _no_variable(name: str) -> object:
+    raise KeyError(name)
+
+
+def variable(fn: FunctionBuilder, name: str) -> str:
+    """The value of a variable; one without value gets a `Var` of its own."""
+    value = fn.values.get(name)
+    return value if value is not None else fn.bind(name, f'Var("{name}")')
+
+
+def _variable(fn: FunctionBuilder, node: nodes.Variable) -> str:
+    value = f'Var("{node.name}")' if node.unnamed else variable(fn, node.name)
+    if node.namespace is not None or node.negated:
+        value = f"qualify({value}, {namespace(fn, node.namespace)}, {node.negated})"
+    return _annotated(fn, value, node.annotations)
+
+
+def namespace(fn: FunctionBuilder, value: str | nodes.Variable | None) -> str:
+    """An expression for a namespace."""
+    if isinstance(value, nodes.Variable):
+        return f"namespace_name({variable(fn, value.name)})"
+    return repr(value)
+
+
+def _annotated(fn: FunctionBuilder, value: str, annotations: nodes.Annotations | None) -> str:
+    if annotations is None:
+        return value
+    items, tail = annotation_parts(fn, annotations)
+    return f"Annotated({value}, {items}, {tail})"
+
+
+def annotation_parts(fn: FunctionBuilder, annotations: nodes.Annotations) -> tuple[str, str]:
+    """Expressions for the sorted annotations and for the tail."""
+    tail = "None" if annotations.tail is None else build(fn, annotations.tail)
+    if all(is_static(item) for item in annotations.items):
+        from_terms = tuple(resolve(lower(item, _no_variable)) for item in annotations.items)
+        return fn.constant(sorted_annotations(from_terms)), tail
+    items = tuple_of([build(fn, item) for item in annotations.items])
+    return (f"annotation_set({items})" if len(annotations.items) > 1 else items), tail
+
+
+def sorted_annotations(items: tuple[object, ...]) -> tuple[object, ...]:
+    """Annotations as they are kept."""
+    from jacaros.terms.order import annotation_set  # noqa: PLC0415
+
+    return annotation_set(items)
+
+
+def tuple_of(items: list[str]) -> str:
+    """A tuple display."""
+    return f"({', '.join(items)}{',' if len(items) == 1 else ''})"
+
+
+def _literal(fn: FunctionBuilder, node: nodes.Literal) -> str:
+    arguments = [build(fn, a) for a in node.arguments]
+    if isinstance(node.namespace, nodes.Variable):
+        parts = ", ".join([repr(node.functor), repr(node.negated), namespace(fn, node.namespace), *arguments])
+        value = f"literal_in({parts})"
+    else:
+        symbol = fn.constant(functor(node.functor, len(arguments), node.negated, node.namespace))
+        value = tuple_of([symbol, *arguments]) if arguments else symbol
+    return _annotated(fn, value, node.annotations)
+
+
+def _list(fn: FunctionBuilder, node: nodes.ListTerm) -> str:
+    tail = fn.constant(NIL) if node.tail is None else build(fn, node.tail)
+    items = [build(fn, i) for i in node.items]
+    if len(items) > _LONG_LIST:
+        return f"make_list({tuple_of(items)}, {tail})"
+    for item in reversed(items):
+        tail = f"(CONS, {item}, {tail})"
+    return tail
+
+
+_INLINE = {"+": "+", "-": "-", "*": "*"}
+_CALLS = {"/": "divide", "div": "integer_divide", "mod": "remainder", "**": "power"}
+
+
+def _arithmetic(fn: FunctionBuilder, node: nodes.Arithmetic) -> str:
+    operands = [as_name(fn, build(fn, o)) for o in node.operands]
+    result = fn.local()
+    if len(operands) == 1:
+        operand = operands[0]
+        if node.operator == "-":
+            fn.line(f"{result} = -{operand} if {operand}.__class__ is float else negate({operand})")
+        else:
+            fn.line(f"{result} = {operand}")
+        return result
+    left, right = operands
+    if node.operator in _INLINE:
+        value = f"{left} {_INLINE[node.operator]} {right}"
+    else:
+        value = f"{_CALLS[node.operator]}({left}, {right})"
+    tests = [f"{o}.__class__ is float" for o in dict.fromkeys(operands) if not is_number(o)]
+    if tests:
+        value = f'{value} if {" and ".join(tests)} else binary("{node.operator}", {left}, {right})'
+    fn.line(f"{result} = {value}")
+    return result
+
+
+def is_number(expression: str) -> bool:
+    """Whether the expression is a number literal."""
+    return expression[0].isdigit() or expression[0] == "-"
+
+
+def as_name(fn: FunctionBuilder, expression: str) -> str:
+    """The expression as something that may be written twice."""
+    if expression.isidentifier() or is_number(expression):
+        return expression
+    name = fn.local()
+    fn.line(f"{name} = {expression}")
+    return name
+
+
+def _function(fn: FunctionBuilder, node: nodes.FunctionCall) -> str:
+    arguments = [build(fn, a) for a in node.arguments]
+    symbol = fn.constant(functor(node.name, len(arguments), kind=FUNCTION))
+    result = fn.local()
+    fn.line(f"{result} = agent.call_function({tuple_of([symbol, *arguments])})")
+    return result
+
+
+def _operator(fn: FunctionBuilder, name: str, kind: int, *operands: nodes.Node) -> str:
+    symbol = fn.constant(functor(name, len(operands), kind=kind))
+    return tuple_of([symbol, *(build(fn, o) for o in operands)])
+
+
+def _internal_action(fn: FunctionBuilder, node: nodes.InternalAction) -> str:
+    symbol = fn.constant(functor(node.name, len(node.arguments), kind=ACTION))
+    return tuple_of([symbol, *(build(fn, a) for a in node.arguments)]) if node.arguments else symbol
+
+
+def _plan(fn: FunctionBuilder, plan: nodes.Plan) -> str:
+    label = fn.constant(NO_LABEL) if plan.label is None else build(fn, plan.label)
+    context = fn.constant(atom("true")) if plan.context is None else build(fn, plan.context)
+    return f"({fn.constant(PLAN)}, {label}, {_trigger(fn, plan.trigger)}, {context}, {build(fn, plan.body)})"
+
+
+def _trigger(fn: FunctionBuilder, trigger: nodes.Trigger) -> str:
+    operator = fn.constant(atom(trigger.operator + trigger.kind))
+    return f"({fn.constant(TRIGGER)}, {operator}, {build(fn, trigger.literal)})"
+
+
+def _rule(fn: FunctionBuilder, node: nodes.RuleTerm) -> str:
+    return f"({fn.constant(RULE)}, {build(fn, node.rule.head)}, {build(fn, node.rule.body)})"
+
+
+def _body(fn: FunctionBuilder, body: nodes.Body) -> str:
+    result = fn.constant(BODY_END)
+    steps = [_step(fn, s) for s in body.steps]
+    for step in reversed(steps):
+        result = f"({fn.constant(BODY_SEQUENCE)}, {step}, {result})"
+    return result
+
+
+def _step_of(fn: FunctionBuilder, operator: str, *operands: nodes.Node) -> str:
+    symbol = fn.constant(functor(operator, len(operands), kind=PLAN_KIND))
+    return tuple_of([symbol, *(build(fn, o) for o in operands)])
+
+
+def _step(fn: FunctionBuilder, step: nodes.Node) -> str:
+    if isinstance(step, nodes.Achieve):
+        return _step_of(fn, "!!" if step.separate else "!", step.goal)
+    if isinstance(step, nodes.Test):
+        return _step_of(fn, "?", step.formula)
+    if isinstance(step, nodes.BeliefChange):
+        return _step_of(fn, step.operator, step.operand)
+    if isinstance(step, nodes.ExternalAction):
+        return _step_of(fn, "", step.action)
+    if isinstance(step, nodes.If):
+        rest = () if step.otherwise is None else (step.otherwise,)
+        return _step_of(fn, "if", step.condition, step.then, *rest)
+    if isinstance(step, nodes.While):
+        return _step_of(fn, "while", step.condition, step.body)
+    if isinstance(step, nodes.For):
+        return _step_of(fn, "for", step.condition, step.body)
+    if isinstance(step, nodes.Fork):
+        return _step_of(fn, "|&|" if step.operator == "and" else "|||", *step.branches)
+    if isinstance(step, nodes.Constraint):
+        return build(fn, step.formula)
+    return build(fn, step)
+
+
+_COMPOUND = {
+    nodes.String: _const,
+    nodes.Literal: _literal,
+    nodes.ListTerm: _list,
+    nodes.Arithmetic: _arithmetic,
+    nodes.FunctionCall: _function,
+    nodes.Relation: lambda fn, n: _operator(fn, n.operator, RELATION, n.left, n.right),
+    nodes.Not: lambda fn, n: _operator(fn, "not", LOGIC, n.operand),
+    nodes.And: lambda fn, n: _operator(fn, "&", LOGIC, n.left, n.right),
+    nodes.Or: lambda fn, n: _operator(fn, "|", LOGIC, n.left, n.right),
+    nodes.InternalAction: _internal_action,
+    nodes.PlanTerm: lambda fn, n: _plan(fn, n.plan),
+    nodes.TriggerTerm: lambda fn, n: _trigger(fn, n.trigger),
+    nodes.RuleTerm: _rule,
+    nodes.BodyTerm: lambda fn, n: _body(fn, n.body),
+    nodes.Body: _body,
+}

@@ -1,0 +1,455 @@
+"""Code for conditions: contexts, tests, bodies of rules, and the questions inside internal actions.
+
+Continuation style: ``condition(fn, formula, then)`` writes a search whose innermost point is what *then* writes; a
+literal becomes a loop over rows, a comparison an ``if``.  What is bound on the way is undone when the search goes on
+(`Trail`), and kept when *then* leaves the function.
+
+Predicates with rules are searched by generators.  Two ways of running them:
+
+* in an ordinary function the generator is driven by ``run`` and looks like a loop over rows;
+* in the body of a rule (``fn.trampoline``) the function is itself such a generator: it yields another generator to have
+  it run and is sent its next answer, so that rules of any depth need no Python recursion.
+"""
+
+from collections.abc import Callable, Iterable
+
+from jacaros.asl import nodes
+from jacaros.compiler.building import annotation_parts, as_name, build, is_number, is_static, namespace, tuple_of
+from jacaros.compiler.function import FunctionBuilder
+from jacaros.compiler.matching import Then, match, match_all, settle_fresh
+from jacaros.compiler.reflection import Constant
+from jacaros.compiler.variables import names_in
+from jacaros.terms.values import functor
+
+_MAX_LOOPS = 12
+_COMPARE = {"<": "less({0}, {1})", "<=": "at_most({0}, {1})", ">": "less({1}, {0})", ">=": "at_most({1}, {0})"}
+_TRUE = ("true", "false")
+
+
+def condition(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
+    """Write the search for answers of *node*, with *then* at its innermost point."""
+    fn.at(node)
+    if fn.writer.loops > _MAX_LOOPS and not isinstance(node, (nodes.Relation, nodes.Not)):
+        in_own_function(fn, node, then)
+        return
+    with fn.branch():
+        _WRITERS[type(node)](fn, node, then)
+
+
+def _and(fn: FunctionBuilder, node: nodes.And, then: Then) -> None:
+    condition(fn, node.left, lambda: condition(fn, node.right, then))
+
+
+def _or(fn: FunctionBuilder, node: nodes.Or, then: Then) -> None:
+    in_own_function(fn, node, then)
+
+
+def _not(fn: FunctionBuilder, node: nodes.Not, then: Then) -> None:
+    call = question(fn, node.operand, [])
+    if fn.trampoline:
+        mark, found = fn.local("n"), fn.local("m")
+        fn.line(f"{mark} = len(t)")
+        fn.line(f"{found} = yield {call}")
+        fn.line(f"undo(t, {mark})")
+        head = f"if {found} is None:"
+    else:
+        head = f"if not exists({call}, t):"
+    with fn.writer.block(head):
+        then()
+
+
+def in_own_function(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
+    """Search by a generator function of its own that yields the values of the variables it binds."""
+    new = [name for name in names_in(node) if name not in fn.values]
+    call = question(fn, node, new)
+    targets = [f"v_{name}" for name in new]
+
+    def bound() -> None:
+        for name in new:
+            fn.bind(name)
+        then()
+
+    loop_over_answers(fn, call, targets, bound)
+
+
+def loop_over_answers(fn: FunctionBuilder, generator: str, targets: list[str], then: Then) -> None:
+    """A loop over the answers of a generator expression, whose values go to *targets*."""
+    if fn.trampoline:
+        source, answer = fn.local("g"), fn.local("r")
+        fn.line(f"{source} = {generator}")
+        with fn.writer.block(f"while ({answer} := (yield {source})) is not None:"):
+            if targets:
+                fn.line(f"{tuple_of(targets)} = {answer}")
+            then()
+    else:
+        with fn.writer.block(f"for {tuple_of(targets) if targets else '_'} in {generator}:"):
+            then()
+
+
+def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
+    """Write a generator function for the answers of *node*; returns the call that makes the generator.
+
+    It yields the values of the variables *results*.  It runs the way its caller does (plain or trampolined).
+    """
+    captured = [name for name in names_in(node) if name in fn.values]
+    inner = type(fn)(fn.unit, trampoline=fn.trampoline, snapshot=fn.snapshot)
+    inner.own_trail = True
+    name = fn.unit.fresh_function("answers")
+    inner.values = {c: f"v_{c}" for c in captured}
+    inner.at(node)
+    with inner.writer.block(f"def {name}(agent, t{''.join(f', v_{c}' for c in captured)}):"):
+        if isinstance(node, nodes.Or):
+            for side in (node.left, node.right):
+                with inner.branch():
+                    condition(inner, side, lambda: _yield(inner, results))
+        else:
+            condition(inner, node, lambda: _yield(inner, results))
+        inner.line("return")
+        inner.line("yield")
+    fn.unit.add(inner.writer)
+    return f"{name}(agent, t{''.join(f', {fn.values[c]}' for c in captured)})"
+
+
+def _yield(fn: FunctionBuilder, results: list[str]) -> None:
+    values = [fn.values.get(r) or f'Var("{r}")' for r in results]
+    fn.line(f"yield {tuple_of(values)}" if values else "yield ()")
+
+
+# --- relations ---------------------------------------------------------------------------------------------
+
+
+def _relation(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
+    if node.operator == "=":
+        _unification(fn, node, then)
+    elif node.operator == "=..":
+        left, right = build(fn, node.left), build(fn, node.right)
+        _undoing(fn, f"deconstruct({left}, {right}, t)", [], then)
+    else:
+        with fn.writer.block(f"if {comparison(fn, node)}:"):
+            then()
+
+
+def comparison(fn: FunctionBuilder, node: nodes.Relation) -> str:
+    """An expression for a relation that binds nothing."""
+    left, right = as_name(fn, build(fn, node.left)), as_name(fn, build(fn, node.right))
+    tests = [f"{o}.__class__ is float" for o in dict.fromkeys((left, right)) if not is_number(o)]
+    if node.operator in ("==", "\\=="):
+        plain = f"{left} == {right}"
+        general = f"equal({left}, {right})"
+        value = f"({plain} if {' and '.join(tests)} else {general})" if tests else f"({plain})"
+        return f"not {value}" if node.operator == "\\==" else value
+    general = _COMPARE[node.operator].format(left, right)
+    plain = f"{left} {node.operator} {right}"
+    return f"({plain} if {' and '.join(tests)} else {general})" if tests else f"({plain})"
+
+
+def _unification(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
+    for side, other in ((node.left, node.right), (node.right, node.left)):
+        if _is_unbound(fn, side) and side.name not in names_in(other):  # type: ignore[attr-defined]
+            value = build(fn, other)
+            fn.bind(side.name, value)  # type: ignore[attr-defined]
+            then()
+            return
+    left, right = build(fn, node.left), build(fn, node.right)
+    _undoing(fn, f"unify({left}, {right}, t)", names_in(node), then)
+
+
+def _is_unbound(fn: FunctionBuilder, node: nodes.Node) -> bool:
+    return (
+        isinstance(node, nodes.Variable)
+        and not node.unnamed
+        and node.annotations is None
+        and node.namespace is None
+        and not node.negated
+        and node.name not in fn.values
+    )
+
+
+def _undoing(fn: FunctionBuilder, test: str, names: list[str], then: Then) -> None:
+    """A test that may bind variables; the bindings are taken back when the search goes on."""
+    mark = fn.local("n")
+    fn.line(f"{mark} = len(t)")
+    with fn.writer.block(f"if {test}:"):
+        settle_fresh(fn, names)
+        then()
+    fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+
+# --- beliefs and rules -------------------------------------------------------------------------------------
+
+
+def _literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
+    if node.functor in _TRUE and not node.arguments and not node.negated:
+        if node.functor == "true":
+            then()
+        else:
+            with fn.writer.block("if False:"):
+                then()
+        return
+    if isinstance(node.namespace, nodes.Variable):
+        _dynamic(fn, node, then)
+        return
+    if node.annotations is not None:
+        _annotated_literal(fn, node, then)
+        return
+    query(fn, node, then)
+
+
+def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
+    """A loop over the rows of a predicate, by an index when arguments are known."""
+    table = fn.local("b")
+    symbol = fn.constant(functor(node.functor, len(node.arguments), node.negated, node.namespace))  # type: ignore[arg-type]
+    fn.line(f"{table} = agent.beliefs[{symbol}]")
+    arguments = _Arguments(fn, node.arguments)
+    rows = arguments.fast_rows(table)
+    general = f"solve(agent, {table}, {tuple_of(arguments.terms)}, t)" if arguments.terms else f"solve(agent, {table}, (), t)"
+    test = " and ".join([f"{table}.plain", *arguments.tests])
+    if fn.trampoline:
+        _trampolined_rows(fn, arguments, rows, general, test, then)
+    else:
+        with fn.writer.block(f"for {arguments.target} in ({rows} if {test} else run({general})):"):
+            arguments.match_rest(then)
+
+
+def _trampolined_rows(
+    fn: FunctionBuilder, arguments: "_Arguments", rows: str, general: str, test: str, then: Then
+) -> None:
+    source, fast, row = fn.local("g"), fn.local("f"), fn.local("r")
+    fn.line(f"{fast} = {test}")
+    fn.line(f"{source} = iter({rows}) if {fast} else {general}")
+    with fn.writer.block("while True:"):
+        fn.line(f"{row} = next({source}, None) if {fast} else (yield {source})")
+        fn.line(f"if {row} is None: break")
+        if arguments.target != "_":
+            fn.line(f"{arguments.target} = {row}")
+        arguments.match_rest(then)
+
+
+class _Arguments:
+    """The arguments of a queried literal: which are known, which are read from the rows."""
+
+    def __init__(self, fn: FunctionBuilder, patterns: tuple[nodes.Term, ...]) -> None:
+        self.fn = fn
+        self.terms: list[str] = []
+        self.tests: list[str] = []
+        self.known: list[int] = []
+        self.parts: list[str] = []
+        self.rest: list[tuple[nodes.Node, str]] = []
+        for index, pattern in enumerate(patterns):
+            self._add(index, pattern)
+        self.target = tuple_of(self.parts) if any(p != "_" for p in self.parts) else "_"
+
+    def _add(self, index: int, pattern: nodes.Node) -> None:
+        fn = self.fn
+        unknown = [n for n in names_in(pattern) if n not in fn.values]
+        if isinstance(pattern, nodes.Variable) and pattern.unnamed and pattern.annotations is None:
+            self.terms.append("Var()")
+            self.parts.append("_")
+        elif unknown or not self._is_value(pattern):
+            part = fn.local("c")
+            self.terms.append("Var()")
+            self.parts.append(part)
+            self.rest.append((pattern, part))
+        else:
+            value = as_name(fn, build(fn, pattern))
+            self.terms.append(value)
+            self.parts.append("_")
+            self.known.append(index)
+            if not (is_number(value) or is_static(pattern)):
+                self.tests.append(f"{value}.__class__ in ATOMIC")
+
+    def _is_value(self, pattern: nodes.Node) -> bool:
+        """Whether the pattern can be a key: structures with annotations or anonymous parts cannot."""
+        if isinstance(pattern, (nodes.Variable, nodes.Number, nodes.String, nodes.Arithmetic, nodes.FunctionCall)):
+            return not isinstance(pattern, nodes.Variable) or pattern.annotations is None
+        return isinstance(pattern, nodes.Literal) and not pattern.arguments and pattern.annotations is None
+
+    def fast_rows(self, table: str) -> str:
+        """An expression for the rows of a table that holds only facts."""
+        if not self.known:
+            return f"list(reversed({table}.rows))" if self.fn.snapshot else f"reversed({table}.rows)"
+        keys = [self.terms[i] for i in self.known]
+        if len(keys) == len(self.terms):
+            return f"{table}.exact({tuple_of(keys)})"
+        positions = self.fn.constant(tuple(self.known))
+        key = keys[0] if len(keys) == 1 else tuple_of(keys)
+        rows = f"{table}.find({positions}, {key})"
+        return f"list({rows})" if self.fn.snapshot else rows
+
+    def match_rest(self, then: Then) -> None:
+        """Match the read parts with their patterns."""
+        mark = None
+        plain = all(isinstance(p, nodes.Variable) and p.annotations is None for p, _ in self.rest)
+        if self.rest and not plain:
+            mark = self.fn.local("n")
+            self.fn.line(f"{mark} = len(t)")
+        match_all(self.fn, [p for p, _ in self.rest], [v for _, v in self.rest], then)
+        if mark is not None:
+            self.fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+
+def _annotated_literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
+    """A query that asks for annotations: every way to find them in those of a belief is an answer."""
+    table = fn.local("b")
+    symbol = fn.constant(functor(node.functor, len(node.arguments), node.negated, node.namespace))  # type: ignore[arg-type]
+    fn.line(f"{table} = agent.beliefs[{symbol}]")
+    names = names_in(node)
+    arguments = tuple_of([build(fn, a) for a in node.arguments]) if node.arguments else "()"
+    assert node.annotations is not None
+    items, tail = annotation_parts(fn, node.annotations)
+    call = f"solve_annotated(agent, {table}, {arguments}, {items}, {tail}, t)"
+    _loop_binding(fn, call, names, then)
+
+
+def _loop_binding(fn: FunctionBuilder, generator: str, names: list[str], then: Then) -> None:
+    """A loop over answers that bind variables in place."""
+
+    def settled() -> None:
+        settle_fresh(fn, names)
+        then()
+
+    loop_over_answers(fn, generator if fn.trampoline else f"run({generator})", [], settled)
+
+
+def _dynamic(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
+    """A formula that is known only at run time."""
+    formula = build(fn, node)
+    _loop_binding(fn, f"agent.solve_formula({formula}, t)", names_in(node), then)
+
+
+# --- internal actions --------------------------------------------------------------------------------------
+
+
+def _internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
+    special = _SPECIAL.get((node.name, len(node.arguments)))
+    if special is not None:
+        special(fn, node, then)
+        return
+    action = fn.unit.actions.get(node.name)
+    names = names_in(node)
+    arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
+    if action is None:
+        fn.line(f"agent.unknown_internal_action({node.name!r})")
+        with fn.writer.block("if False:"):
+            then()
+        return
+    if not accepts(action, len(node.arguments)):
+        call = f"wrong_arity({fn.constant(action)}, {len(node.arguments)})"
+    elif fn.own_trail and not action.backtracks:
+        call = f"on_trail(agent.context, t, {fn.constant(action.function)}{arguments})"
+    else:
+        call = f"{fn.constant(action.function)}(agent.context{arguments})"
+    if action.backtracks:
+        mark = fn.local("n")
+        fn.line(f"{mark} = len(t)")
+        with fn.writer.block(f"for _ in answers_of(agent.context, t, {call}):"):
+            settle_fresh(fn, names)
+            then()
+        fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+    else:
+        _undoing(fn, f"{call} is not False", names, then)
+
+
+def accepts(action: object, count: int) -> bool:
+    """Whether an internal action takes so many arguments."""
+    maximum = getattr(action, "maximum", None)
+    return bool(getattr(action, "minimum", 0) <= count and (maximum is None or count <= maximum))
+
+
+def resolved(fn: FunctionBuilder, expression: str) -> str:
+    """The expression with all bindings applied."""
+    if is_number(expression):
+        return expression
+    name = as_name(fn, expression)
+    return f"{name} if {name}.__class__ in ATOMIC else resolve({name})"
+
+
+def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> str:
+    """Write a function that gives the list of all instances of *template*; returns the call."""
+    captured = [n for n in names_in(template, formula) if n in fn.values]
+    inner = type(fn)(fn.unit)
+    inner.own_trail = True
+    name = fn.unit.fresh_function("collect")
+    inner.values = {c: f"v_{c}" for c in captured}
+    inner.at(formula)
+    with inner.writer.block(f"def {name}(agent, t{''.join(f', v_{c}' for c in captured)}):"):
+        inner.line("found = []")
+        condition(inner, formula, lambda: inner.line(f"found.append(copy({build(inner, template)}))"))
+        inner.line("return found")
+    fn.unit.add(inner.writer)
+    return f"{name}(agent, t{''.join(f', {fn.values[c]}' for c in captured)})"
+
+
+def _result(fn: FunctionBuilder, target: nodes.Node, value: str, then: Then) -> None:
+    """Unify the last argument of an internal action with a computed value."""
+    found = as_name(fn, value)
+    mark = fn.local("n")
+    fn.line(f"{mark} = len(t)")
+    match(fn, target, found, then)
+    fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+
+def _findall(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
+    template, formula, target = node.arguments
+    if _is_question(fn, formula):
+        _result(fn, target, f"make_list({collect(fn, template, formula)})", then)
+    else:
+        _dynamic_collect(fn, node, then)
+
+
+def _setof(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
+    template, formula, target = node.arguments
+    if _is_question(fn, formula):
+        _result(fn, target, f"make_list(annotation_set(tuple({collect(fn, template, formula)})))", then)
+    else:
+        _dynamic_collect(fn, node, then)
+
+
+def _count(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
+    formula, target = node.arguments
+    if _is_question(fn, formula):
+        _result(fn, target, f"float(len({collect(fn, nodes.Number(0.0), formula)}))", then)
+    else:
+        _dynamic_collect(fn, node, then)
+
+
+def _is_question(fn: FunctionBuilder, formula: nodes.Node) -> bool:
+    """Whether a formula can be compiled here; a variable without annotations stands for one known later."""
+    return not isinstance(formula, (nodes.Variable, Constant))
+
+
+def _dynamic_collect(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
+    arguments = tuple_of([build(fn, a) for a in node.arguments])
+    _undoing(fn, f"agent.collect_formula({node.name!r}, {arguments}, t)", names_in(node), then)
+
+
+_SPECIAL: dict[tuple[str, int], Callable[..., None]] = {
+    (".findall", 3): _findall,
+    (".setof", 3): _setof,
+    (".count", 2): _count,
+}
+
+_WRITERS: dict[type, Callable[..., None]] = {
+    nodes.And: _and,
+    nodes.Or: _or,
+    nodes.Not: _not,
+    nodes.Relation: _relation,
+    nodes.Literal: _literal,
+    nodes.InternalAction: _internal_action,
+    nodes.Variable: _dynamic,
+    Constant: _dynamic,
+    nodes.FunctionCall: _dynamic,
+    nodes.Number: _dynamic,
+    nodes.String: _dynamic,
+    nodes.ListTerm: _dynamic,
+    nodes.Arithmetic: _dynamic,
+    nodes.PlanTerm: _dynamic,
+    nodes.TriggerTerm: _dynamic,
+    nodes.RuleTerm: _dynamic,
+    nodes.BodyTerm: _dynamic,
+}
+
+
+def special_names() -> Iterable[str]:
+    """Names of the internal actions that are compiled in place."""
+    return dict.fromkeys(name for name, _ in _SPECIAL)

@@ -1,0 +1,157 @@
+"""One generated Python function: its text and what is known about variables at the point being written."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Protocol
+
+from jacaros.asl import nodes
+from jacaros.compiler.writer import Writer
+from jacaros.terms.values import Term
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+FIRST_SLOT = 5
+"""A frame is ``[next step, goal, annotations, serial, plan, variable, ...]``."""
+
+
+class ActionInfo(Protocol):
+    """What the compiler needs to know of an internal action."""
+
+    name: str
+    function: "Callable[..., object]"
+    backtracks: bool
+    suspends: bool
+    minimum: int
+    maximum: int | None
+
+
+class Unit(Protocol):
+    """The unit that the function becomes part of: constants, and further functions."""
+
+    actions: Mapping[str, ActionInfo]
+
+    def constant(self, value: Term) -> str:
+        """A global name for a value."""
+
+    def add(self, writer: Writer) -> None:
+        """Make the finished function part of the unit."""
+
+    def fresh_function(self, prefix: str) -> str:
+        """A name for another function."""
+
+
+class Frame:
+    """The slots of a plan's variables, and what is known of them between two steps.
+
+    Attributes:
+        slots: index in the frame by variable name.
+        states: ``set`` (has a value, perhaps a `Var`) or ``maybe`` (None when it was bound on another branch);
+            names that are missing have no value yet.
+        counts: how often each variable is mentioned in the plan: a value that nobody reads is not kept.
+    """
+
+    def __init__(self, counts: dict[str, int]) -> None:
+        self.slots: dict[str, int] = {}
+        self.extra = 0
+        self.states: dict[str, str] = {}
+        self.counts = counts
+
+    def slot(self, name: str) -> int:
+        """The slot of a variable."""
+        index = self.slots.get(name)
+        if index is None:
+            index = self.slots[name] = FIRST_SLOT + len(self.slots) + self.extra
+        return index
+
+    def hidden_slot(self) -> int:
+        """A slot for the compiler's own use."""
+        index = FIRST_SLOT + len(self.slots) + self.extra
+        self.extra += 1
+        return index
+
+    @property
+    def size(self) -> int:
+        """Number of slots behind the fixed ones."""
+        return len(self.slots) + self.extra
+
+
+class FunctionBuilder:
+    """A function being written.
+
+    Attributes:
+        values: Python expression (a local name) of each variable that has a value here.
+        fresh: variables that got their value in this function, in order.
+        trampoline: the function is a generator that yields generators to have them run (see `conditions`).
+        snapshot: answers are taken while beliefs may change in between, so tables are copied first.
+        own_trail: the function may be run with another trail than the agent's.
+    """
+
+    def __init__(self, unit: Unit, *, trampoline: bool = False, snapshot: bool = False) -> None:
+        self.unit = unit
+        self.writer = Writer()
+        self.values: dict[str, str] = {}
+        self.fresh: list[str] = []
+        self.trampoline = trampoline
+        self.snapshot = snapshot
+        self.own_trail = trampoline or snapshot
+
+    def line(self, text: str) -> None:
+        """Write a line."""
+        self.writer.line(text)
+
+    def at(self, node: nodes.Node) -> None:
+        """The next lines stem from this node."""
+        if node.span is not None:
+            self.writer.origin = node.span.line
+
+    def constant(self, value: Term) -> str:
+        """A global name for a value."""
+        return self.unit.constant(value)
+
+    def local(self, prefix: str = "t") -> str:
+        """A local name that is used nowhere else."""
+        return self.writer.fresh(prefix)
+
+    def bind(self, name: str, expression: str | None = None) -> str:
+        """Give a variable its value here; returns the local name."""
+        target = f"v_{name}"
+        if expression is not None and expression != target:
+            self.line(f"{target} = {expression}")
+        self.values[name] = target
+        if name not in self.fresh:
+            self.fresh.append(name)
+        return target
+
+    @contextmanager
+    def branch(self) -> Iterator[None]:
+        """What is learnt inside is forgotten outside."""
+        values, fresh = dict(self.values), list(self.fresh)
+        yield
+        self.values, self.fresh = values, fresh
+
+    def load(self, frame: Frame, names: list[str]) -> None:
+        """Read the variables that have a value from the frame."""
+        for name in names:
+            state = frame.states.get(name)
+            if state is None:
+                continue
+            slot = frame.slot(name)
+            self.line(f"v_{name} = frame[{slot}]")
+            if state == "maybe":
+                self.line(f'if v_{name} is None: v_{name} = frame[{slot}] = Var("{name}")')
+                frame.states[name] = "set"
+            self.values[name] = f"v_{name}"
+
+    def store(self, frame: Frame) -> None:
+        """Write the variables that got a value here to the frame."""
+        for name in self.fresh:
+            if frame.counts.get(name, 0) > 1:
+                self.line(f"frame[{frame.slot(name)}] = {self.values[name]}")
+
+    def mark_stored(self, frame: Frame) -> None:
+        """Take note that the fresh variables have a value from now on."""
+        for name in self.fresh:
+            if frame.counts.get(name, 0) > 1:
+                frame.slot(name)
+                frame.states[name] = "set"

@@ -1,0 +1,116 @@
+"""Code that matches a pattern with a value: heads of plans and rules, rows of beliefs.
+
+Everything is written in continuation style: ``match(fn, pattern, value, then)`` writes the test, and inside it
+whatever *then* writes.  A pattern that meets a structure is taken apart in place; whatever is rarer (an unbound
+variable, annotations, arithmetic) goes to `unify`.
+"""
+
+from collections.abc import Callable, Sequence
+
+from jacaros.asl import nodes
+from jacaros.compiler.building import build, is_static, tuple_of
+from jacaros.compiler.function import FunctionBuilder
+from jacaros.compiler.variables import names_in
+from jacaros.terms.values import CONS, functor
+
+Then = Callable[[], None]
+
+
+def match(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool = True) -> None:
+    """Match one pattern with the value of a local name."""
+    if isinstance(pattern, nodes.Variable) and _is_plain(pattern):
+        _match_variable(fn, pattern, value, then)
+    elif isinstance(pattern, nodes.Number):
+        number = repr(pattern.value)
+        _test(fn, f"{value} == {number} if {value}.__class__ is float else unify({number}, {value}, t)", then)
+    elif isinstance(pattern, nodes.String):
+        text = build(fn, pattern)
+        _test(fn, f"{value} == {text} if {value}.__class__ is String else unify({text}, {value}, t)", then)
+    elif isinstance(pattern, nodes.Literal) and not pattern.arguments and _is_plain(pattern):
+        symbol = build(fn, pattern)
+        _test(fn, f"{value} is {symbol} or ({value}.__class__ is not Functor and unify({symbol}, {value}, t))", then)
+    elif isinstance(pattern, nodes.Literal) and _is_plain(pattern) and not is_static(pattern):
+        symbol = fn.constant(functor(pattern.functor, len(pattern.arguments), pattern.negated, pattern.namespace))
+        _match_structure(fn, pattern, symbol, pattern.arguments, value, then)
+    elif isinstance(pattern, nodes.ListTerm) and len(pattern.items) == 1 and pattern.tail is not None:
+        _match_structure(fn, pattern, fn.constant(CONS), (pattern.items[0], pattern.tail), value, then)
+    else:
+        _match_any(fn, pattern, value, then, pattern_left)
+
+
+def _is_plain(pattern: nodes.Variable | nodes.Literal) -> bool:
+    if pattern.annotations is not None:
+        return False
+    if isinstance(pattern, nodes.Variable):
+        return pattern.namespace is None and not pattern.negated
+    return not isinstance(pattern.namespace, nodes.Variable)
+
+
+def _test(fn: FunctionBuilder, condition: str, then: Then) -> None:
+    with fn.writer.block(f"if {condition}:"):
+        then()
+
+
+def _match_variable(fn: FunctionBuilder, pattern: nodes.Variable, value: str, then: Then) -> None:
+    if pattern.unnamed:
+        then()
+        return
+    known = fn.values.get(pattern.name)
+    if known is None:
+        fn.bind(pattern.name, value)
+        then()
+        return
+    condition = f"{known} == {value} if {known}.__class__ is float and {value}.__class__ is float"
+    _test(fn, f"{condition} else unify({known}, {value}, t)", then)
+
+
+def _match_structure(
+    fn: FunctionBuilder,
+    pattern: nodes.Node,
+    symbol: str,
+    arguments: Sequence[nodes.Node],
+    value: str,
+    then: Then,
+) -> None:
+    """Take a structure apart; the parts are matched inside the test."""
+    parts = [fn.local("p") for _ in arguments]
+    found = fn.local("m")
+    outer, value = value, fn.local("d")
+    fn.line(f"{value} = deref({outer}) if {outer}.__class__ is Var else {outer}")
+    with fn.writer.block(f"if {value}.__class__ is tuple:"):
+        fn.line(f"{found} = {value}[0] is {symbol}")
+        fn.line(f"if {found}: _, {', '.join(parts)} = {value}")
+    with fn.writer.block(f"elif {value}.__class__ in CLOSED:"):
+        fn.line(f"{found} = False")
+    with fn.writer.block("else:"):
+        for part in parts:
+            fn.line(f"{part} = Var()")
+        fn.line(f"{found} = unify({tuple_of([symbol, *parts])}, {value}, t)")
+    with fn.writer.block(f"if {found}:"):
+        match_all(fn, list(arguments), parts, then)
+
+
+def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str], then: Then) -> None:
+    """Match patterns with values, one inside the other."""
+    if not patterns:
+        then()
+        return
+    match(fn, patterns[0], values[0], lambda: match_all(fn, patterns[1:], values[1:], then))
+
+
+def _match_any(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool) -> None:
+    """Build the pattern as a term and unify."""
+    expected = build(fn, pattern)
+    left, right = (expected, value) if pattern_left else (value, expected)
+    with fn.writer.block(f"if unify({left}, {right}, t):"):
+        settle_fresh(fn, names_in(pattern))
+        then()
+
+
+def settle_fresh(fn: FunctionBuilder, names: list[str]) -> None:
+    """After unification the values of variables are read, into names of their own: the old ones may be tried again."""
+    for name in names:
+        if name in fn.values:
+            settled = fn.local("v")
+            fn.line(f"{settled} = deref({fn.values[name]})")
+            fn.values[name] = settled

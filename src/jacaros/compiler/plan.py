@@ -1,0 +1,85 @@
+"""A plan as the mind keeps it: its syntax, and what the compiler made of it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.compiler.bodies import StepInfo
+from jacaros.compiler.lowering import lower_value
+from jacaros.terms.values import Term, annotations_of, atom, bare, functor
+
+ATOMIC_LABEL = atom("atomic")
+
+
+class Plan:
+    """A plan of the library.
+
+    Attributes:
+        node: the syntax.
+        label: term of the label, without annotations.
+        annotations: those of the label.
+        atomic: whether the label says ``atomic``.
+        order: place in the library; plans are tried in ascending order.
+        slots: index in the frame by variable name.
+        size: number of slots of a body that is run on its own.
+        first: the first step function, None for an empty body; set when the plan is compiled.
+        steps: what is known of each step function.
+        scope: the plan that this one is a sub-plan of, or None.
+        source: who told it, as a term ``source(Name)``, or None.
+    """
+
+    __slots__ = (
+        "annotations",
+        "atomic",
+        "first",
+        "label",
+        "node",
+        "order",
+        "scope",
+        "size",
+        "slots",
+        "source",
+        "steps",
+    )
+
+    def __init__(self, node: nodes.Plan, label: Term, order: float = 0.0) -> None:
+        self.node = node
+        self.label = bare(label)
+        self.annotations = annotations_of(label)
+        self.atomic = ATOMIC_LABEL in self.annotations
+        self.order = order
+        self.slots: dict[str, int] = {}
+        self.size = 0
+        self.first: Callable[[Any, list[Any]], Any] | None = None
+        self.steps: dict[Callable[..., Any], StepInfo] = {}
+        self.scope: Plan | None = None
+        self.source: Term = None
+
+    def __repr__(self) -> str:
+        return f"Plan({self.label!r})"
+
+    @property
+    def file(self) -> str:
+        """Name of the file the plan stands in."""
+        span = self.node.span
+        return span.file.name if span is not None else "<run time>"
+
+    def has_variable_trigger(self) -> bool:
+        """Whether the plan reacts to any literal."""
+        return isinstance(self.node.trigger.literal, nodes.Variable)
+
+    def trigger_functor(self) -> Term:
+        """Functor of the trigger; None when it is a variable or its namespace is."""
+        literal = self.node.trigger.literal
+        if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
+            return None
+        return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def label_of(node: nodes.Plan, number: int) -> Term:
+    """The label of a plan; plans without one are given ``p__N``."""
+    if node.label is None or isinstance(node.label, nodes.Variable):
+        return atom(f"p__{number}")
+    return lower_value(node.label)
+
+

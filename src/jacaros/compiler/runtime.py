@@ -1,0 +1,287 @@
+"""What generated code calls: the names of its global namespace.
+
+Nothing here knows of agents beyond what is passed in: tables of beliefs, the trail, the context of internal actions.
+"""
+
+from collections.abc import Generator, Iterator
+from typing import Any
+
+from jacaros.compiler.lowering import qualify
+from jacaros.terms.arithmetic import binary, divide, integer_divide, negate, power, remainder
+from jacaros.terms.order import annotation_set, at_most, less
+from jacaros.terms.unifier import (
+    ATOMIC,
+    Trail,
+    each_annotation_match,
+    equal,
+    free_variables,
+    rename,
+    resolve,
+    undo,
+    unify,
+    unify_annotations,
+)
+from jacaros.terms.values import (
+    BY_SELF,
+    CONS,
+    SOURCE,
+    SOURCE_SELF,
+    Annotated,
+    Functor,
+    String,
+    Term,
+    Var,
+    annotations_of,
+    atom,
+    bare,
+    deref,
+    functor,
+    list_items,
+    make_list,
+)
+
+
+class Fail(Exception):
+    """A formula does not hold: the step fails with the error that goes with its kind."""
+
+
+class Failure(Fail):
+    """A step fails with given annotations.
+
+    Attributes:
+        annotations: terms for the failure event, ``error(..)`` among them.
+    """
+
+    def __init__(self, *annotations: Term) -> None:
+        super().__init__(*annotations)
+        self.annotations = annotations
+
+
+SUSPENDED = object()
+"""What a step returns when its intention has to wait."""
+
+Answers = Generator[Any, Any, None]
+
+
+def run(question: Answers) -> Iterator[Any]:
+    """Drive a search generator: a tuple it yields is an answer, a generator is to be run for it.
+
+    The stack of generators is a list, so depth costs no Python recursion.
+    """
+    stack: list[Answers] = []
+    current, answer = question, None
+    while True:
+        item = next(current, None) if answer is None and not stack else _resume(current, answer)
+        if item is not None and item.__class__ is not tuple:
+            stack.append(current)
+            current, answer = item, None
+        elif stack:
+            current, answer = stack.pop(), item if item is not None else _NO_MORE
+        elif item is None:
+            return
+        else:
+            yield item
+            answer = None
+
+
+_NO_MORE = object()
+
+
+def _resume(generator: Answers, answer: Any) -> Any:
+    try:
+        if answer is None:
+            return next(generator)
+        return generator.send(None if answer is _NO_MORE else answer)
+    except StopIteration:
+        return None
+
+
+def exists(answers: Iterator[Any], trail: Trail) -> bool:
+    """Whether there is an answer; bindings are taken back."""
+    mark = len(trail)
+    for _ in answers:
+        undo(trail, mark)
+        return True
+    return False
+
+
+def solve(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
+    """Answers of a predicate in the order of its base: facts by unification, rules by their functions."""
+    for entry, _ in table.candidates(arguments):
+        mark = len(trail)
+        if entry.__class__ is tuple:
+            if unify_rows(arguments, entry, trail):
+                yield arguments
+        else:
+            search = entry.search(agent, arguments, trail)
+            while (yield search) is not None:
+                yield arguments
+        undo(trail, mark)
+
+
+def solve_annotated(
+    agent: Any, table: Any, arguments: tuple[Term, ...], items: tuple[Term, ...], tail: Term, trail: Trail
+) -> Answers:
+    """Answers of a predicate that is asked with annotations."""
+    for entry, annotations in table.candidates(arguments):
+        mark = len(trail)
+        if entry.__class__ is tuple:
+            if unify_rows(arguments, entry, trail):
+                for _ in each_annotation_match(items, tail, annotations, None, trail):
+                    yield arguments
+        else:
+            search = entry.search(agent, arguments, trail)
+            while (yield search) is not None:
+                for _ in each_annotation_match(items, tail, entry.head_annotations(), None, trail):
+                    yield arguments
+        undo(trail, mark)
+
+
+def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) -> bool:
+    """Unify arguments pairwise."""
+    for a, b in zip(left, right, strict=True):
+        if a is not b and not unify(a, b, trail):
+            return False
+    return True
+
+
+def answers_of(context: Any, trail: Trail, generator: Iterator[Any]) -> Iterator[None]:
+    """The answers of a backtracking internal action, on the given trail; its bindings are undone in between."""
+    mark = len(trail)
+    while True:
+        outer, context.trail = context.trail, trail
+        try:
+            found = next(generator, generator)
+        finally:
+            context.trail = outer
+        if found is generator:
+            return
+        yield
+        undo(trail, mark)
+
+
+def on_trail(context: Any, trail: Trail, function: Any, *arguments: Term) -> Any:
+    """Call an internal action with another trail than the agent's."""
+    outer, context.trail = context.trail, trail
+    try:
+        return function(context, *arguments)
+    finally:
+        context.trail = outer
+
+
+def wrong_arity(action: Any, count: int) -> Any:
+    """An internal action was called with a number of arguments it does not take."""
+    most = action.maximum
+    expected = str(action.minimum) if most == action.minimum else f"{action.minimum} to {most if most is not None else 'any'}"
+    message = f"{action.name} takes {expected} arguments, not {count}"
+    raise Failure((functor("error", 1), atom("wrong_arguments")), (functor("error_msg", 1), String(message)))
+
+
+def release(variables: list[Var]) -> None:
+    """Take back the values of variables that were free when a loop began."""
+    for variable in variables:
+        variable.ref = None
+
+
+def literal_of(goal: tuple[Any, ...], annotations: Any) -> Term:
+    """The literal of a goal or event, with its annotations."""
+    symbol = goal[0].functor
+    term = (symbol, *goal[1:]) if len(goal) > 1 else symbol
+    found = annotations_of_event(annotations)
+    return Annotated(term, found) if found else term
+
+
+def annotations_of_event(annotations: Any) -> tuple[Term, ...]:
+    """The annotations of an event; those of failure events are made when first asked for."""
+    if annotations.__class__ is tuple:
+        return annotations  # type: ignore[no-any-return]
+    return annotations.annotations()  # type: ignore[no-any-return]
+
+
+def positive(term: Term) -> Term:
+    """A negated literal without its negation."""
+    inner = bare(term)
+    symbol = inner[0] if inner.__class__ is tuple else inner
+    plain = functor(symbol.name, symbol.arity, False, symbol.namespace)
+    result = (plain, *inner[1:]) if inner.__class__ is tuple else plain
+    annotations = annotations_of(term)
+    return Annotated(result, annotations) if annotations else result
+
+
+def own_annotations(items: tuple[Term, ...], tail: Term = None) -> tuple[Term, ...]:
+    """The annotations of a belief or goal of one's own: ``source(self)`` is added when no source is named."""
+    found = [resolve(i) for i in items]
+    if tail is not None:
+        found.extend(resolve(i) for i in list_items(tail))
+    if not any(a.__class__ is tuple and a[0] is SOURCE or _is_source(a) for a in found):
+        found.append(SOURCE_SELF)
+    return annotation_set(tuple(found))
+
+
+def _is_source(term: Term) -> bool:
+    inner = bare(term)
+    return inner.__class__ is tuple and inner[0] is SOURCE
+
+
+def resolve_all(terms: tuple[Term, ...]) -> tuple[Term, ...]:
+    """Apply all bindings to each."""
+    return tuple(resolve(t) for t in terms)
+
+
+def namespace_name(term: Term) -> str | None:
+    """The namespace that an atom names."""
+    name = getattr(bare(term), "name", None)
+    return None if name == "default" else name
+
+
+def literal_in(name: str, negated: bool, namespace: str | None, *arguments: Term) -> Term:
+    """A literal whose namespace became known at run time."""
+    symbol = functor(name, len(arguments), negated, namespace)
+    return (symbol, *arguments) if arguments else symbol
+
+
+def deconstruct(left: Term, right: Term, trail: Trail) -> bool:
+    """The relation ``=..``: a literal and the list ``[namespace, functor, arguments, annotations]``."""
+    term = resolve(left)
+    if term.__class__ is Var:
+        return _construct(term, [resolve(i) for i in list_items(right)], trail)
+    inner = bare(term)
+    if inner.__class__ is tuple and inner[0] is not CONS:
+        symbol, arguments = inner[0], inner[1:]
+    elif inner.__class__ is Functor:
+        symbol, arguments = inner, ()
+    else:
+        return False
+    name = functor(symbol.name, 0, symbol.negated)
+    parts = [atom(symbol.namespace or "default"), name, make_list(arguments), make_list(annotations_of(term))]
+    return unify(make_list(parts), right, trail)
+
+
+def _construct(variable: Term, parts: list[Term], trail: Trail) -> bool:
+    if len(parts) == 3:
+        parts = [atom("default"), *parts]
+    if len(parts) != 4 or parts[1].__class__ is not Functor:
+        return False
+    namespace = namespace_name(parts[0])
+    if namespace is not None:
+        return False
+    arguments = tuple(list_items(parts[2]))
+    symbol = functor(parts[1].name, len(arguments), parts[1].negated)
+    term: Term = (symbol, *arguments) if arguments else symbol
+    annotations = annotation_set(tuple(list_items(parts[3])))
+    return unify(variable, Annotated(term, annotations) if annotations else term, trail)
+
+
+CLOSED = frozenset({float, String, Functor})
+"""Values that never unify with a structure."""
+
+NAMES = {
+    name: value
+    for name, value in globals().items()
+    if not name.startswith("__") and name not in ("Any", "Generator", "Iterator", "NAMES")
+}
+NAMES["copy"] = rename
+
+__all__ = ["BY_SELF", "NAMES", "SUSPENDED", "Fail", "Failure", "annotations_of_event", "deref", "run", "solve"]
+_USED = (ATOMIC, at_most, binary, divide, equal, free_variables, integer_divide, less, negate, power, qualify, remainder)
+_ALSO = (unify_annotations,)

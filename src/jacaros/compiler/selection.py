@@ -1,0 +1,132 @@
+"""Code that selects a plan: one function per event kind, holding all its plans in order.
+
+``select(agent, goal, annotations)`` tries the plans one after the other: head, then context; the first that applies gives
+its new frame; None means that no plan is applicable (rules RelPl, ApplPl and SelAppl in one).
+"""
+
+from collections.abc import Sequence
+
+from jacaros.asl import nodes
+from jacaros.compiler.bodies import BodyCompiler
+from jacaros.compiler.building import annotation_parts, tuple_of
+from jacaros.compiler.conditions import condition
+from jacaros.compiler.function import Frame, FunctionBuilder, Unit
+from jacaros.compiler.matching import match_all, settle_fresh
+from jacaros.compiler.plan import Plan
+from jacaros.compiler.variables import names_in, occurrences
+
+
+class SelectCompiler:
+    """Writes the select function of one event kind, and the steps of its plans.
+
+    Attributes:
+        bodies: for each plan, the names of its step functions and what is known of them.
+        firsts: for each plan, the name of the first step function.
+    """
+
+    def __init__(self, unit: Unit, arity: int) -> None:
+        self.unit = unit
+        self.arity = arity
+        self.bodies: list[tuple[Plan, BodyCompiler, str]] = []
+
+    def select(self, plans: Sequence[Plan]) -> str:
+        """Write the function; returns its name."""
+        name = self.unit.fresh_function("select")
+        fn = FunctionBuilder(self.unit)
+        fn.at(plans[0].node)
+        with fn.writer.block(f"def {name}(agent, goal, annotations):"):
+            fn.line("t = agent.trail")
+            for index, plan in enumerate(plans):
+                fn.at(plan.node)
+                if index:
+                    fn.line("if t: undo(t, 0)")
+                with fn.branch():
+                    self._plan(fn, plan)
+            fn.line("if t: undo(t, 0)")
+            fn.line("return None")
+        self.unit.add(fn.writer)
+        return name
+
+    def _plan(self, fn: FunctionBuilder, plan: Plan) -> None:
+        literal = plan.node.trigger.literal
+        if isinstance(literal, nodes.Variable):
+            self._variable_trigger(fn, plan, literal)
+            return
+        parts = [fn.local("a") for _ in literal.arguments]
+        used = [not (isinstance(a, nodes.Variable) and a.unnamed) for a in literal.arguments]
+        if any(used):
+            fn.line(f"_, {', '.join(parts)} = goal")
+        match_all(fn, list(literal.arguments), parts, lambda: self._annotations(fn, plan, literal.annotations))
+
+    def _variable_trigger(self, fn: FunctionBuilder, plan: Plan, variable: nodes.Variable) -> None:
+        if variable.unnamed:
+            self._annotations(fn, plan, variable.annotations)
+            return
+        whole = variable.annotations is None
+        value = f"literal_of(goal, {'annotations' if whole else '()'})"
+        if variable.negated:
+            with fn.writer.block("if goal[0].functor.negated:"):
+                fn.bind(variable.name, f"positive({value})")
+                self._annotations(fn, plan, variable.annotations)
+            return
+        fn.bind(variable.name, value)
+        self._annotations(fn, plan, variable.annotations)
+
+    def _annotations(self, fn: FunctionBuilder, plan: Plan, annotations: nodes.Annotations | None) -> None:
+        if annotations is None:
+            self._context(fn, plan)
+            return
+        items, tail = annotation_parts(fn, annotations)
+        with fn.writer.block(f"if unify_annotations({items}, {tail}, annotations_of_event(annotations), None, t):"):
+            settle_fresh(fn, names_in(annotations))
+            self._context(fn, plan)
+
+    def _context(self, fn: FunctionBuilder, plan: Plan) -> None:
+        if plan.node.context is None:
+            self._frame(fn, plan)
+        else:
+            condition(fn, plan.node.context, lambda: self._frame(fn, plan))
+
+    def _frame(self, fn: FunctionBuilder, plan: Plan) -> None:
+        """The innermost point: the plan is applicable, its frame is made and given back."""
+        node = plan.node
+        counts = occurrences(node.trigger, node.context, node.body, node.goal_condition, node.subplans)
+        frame = Frame(counts)
+        for variable in fn.values:
+            if counts.get(variable, 0) > 1:
+                frame.slot(variable)
+                frame.states[variable] = "set"
+        bound = list(frame.slots)
+        prefix = self.unit.fresh_function("step")
+        body = BodyCompiler(self.unit, frame, prefix)
+        assert isinstance(node.body, nodes.Body)
+        first = body.body(node.body.steps, "None")
+        self.bodies.append((plan, body, first))
+        plan.slots = frame.slots
+        values = [fn.values[v] for v in bound]
+        rest = frame.size - len(values)
+        fixed = [first, "goal", "annotations", "t.serial", fn.constant(plan)]
+        fn.line(f"return [{', '.join([*fixed, *values, *(['None'] * rest)])}]")
+
+
+def compile_rule(unit: Unit, rule: nodes.Rule) -> str:
+    """Write the generator function of a rule: ``rule(agent, arguments, t)`` yields once per answer."""
+    name = unit.fresh_function("rule")
+    fn = FunctionBuilder(unit, trampoline=True)
+    fn.at(rule)
+    arguments = rule.head.arguments
+    parts = [fn.local("a") for _ in arguments]
+    with fn.writer.block(f"def {name}(agent, arguments, t):"):
+        fn.line("n0 = len(t)")
+        if parts:
+            fn.line(f"{tuple_of(parts)} = arguments")
+
+        def matched() -> None:
+            condition(fn, rule.body, lambda: fn.line("yield ()"))
+
+        match_all(fn, list(arguments), parts, matched)
+        fn.line("if len(t) > n0: undo(t, n0)")
+        fn.line("return")
+        fn.line("yield")
+    unit.add(fn.writer)
+    return name

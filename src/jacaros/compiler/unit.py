@@ -1,0 +1,98 @@
+"""A unit of generated code: the functions of one event kind or rule, made real."""
+
+import linecache
+from collections.abc import Callable, Mapping, Sequence
+from types import FunctionType
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.compiler import runtime
+from jacaros.compiler.function import ActionInfo
+from jacaros.compiler.plan import Plan
+from jacaros.compiler.selection import SelectCompiler, compile_rule
+from jacaros.compiler.triggers import Trigger
+from jacaros.compiler.writer import Writer
+from jacaros.terms.values import Functor, String, Term
+
+Select = Callable[[Any, tuple[Term, ...], Any], list[Any] | None]
+
+
+class CodeUnit:
+    """Collects functions and constants, and executes the code.
+
+    Attributes:
+        actions: the internal actions known at compile time.
+        source: the text of everything generated, for people.
+    """
+
+    def __init__(self, filename: str, actions: Mapping[str, ActionInfo]) -> None:
+        self.filename = filename
+        self.actions = actions
+        self.globals: dict[str, Any] = dict(runtime.NAMES)
+        self.source: list[str] = []
+        self._writers: list[Writer] = []
+        self._constants: dict[Any, str] = {}
+        self._count = 0
+
+    def constant(self, value: Term) -> str:
+        """A global name for a value; equal values share it."""
+        key = value if value.__class__ in (Functor, Trigger) else (value.__class__, id(value))
+        if value.__class__ in (String, float):
+            key = (value.__class__, value)
+        name = self._constants.get(key)
+        if name is None:
+            name = self._constants[key] = f"{_prefix(value)}_{len(self._constants)}"
+            self.globals[name] = value
+        return name
+
+    def add(self, writer: Writer) -> None:
+        """Make a finished function part of the unit."""
+        self._writers.append(writer)
+        self.source.append(writer.text())
+
+    def fresh_function(self, prefix: str) -> str:
+        """A name for another function."""
+        self._count += 1
+        return f"{prefix}{self._count}"
+
+    def execute(self) -> None:
+        """Make the functions: afterwards they are in `globals`."""
+        for writer in self._writers:
+            exec(writer.compile(self.filename), self.globals)  # noqa: S102 - only ever from the syntax tree
+        self._writers.clear()
+
+
+def _prefix(value: Term) -> str:
+    name = getattr(value, "name", None) or getattr(value, "__name__", None) or value.__class__.__name__
+    text = "".join(c if c.isalnum() and c.isascii() else "_" for c in str(name))
+    return f"K_{text}"
+
+
+def compile_select(
+    trigger: Trigger, plans: Sequence[Plan], actions: Mapping[str, ActionInfo]
+) -> tuple[Select, str]:
+    """The select function of an event kind, and the generated text."""
+    unit = CodeUnit(plans[0].file, actions)
+    compiler = SelectCompiler(unit, trigger.functor.arity)
+    name = compiler.select(plans)
+    unit.execute()
+    for plan, body, first in compiler.bodies:
+        plan.first = unit.globals[first] if first != "None" else None
+        plan.steps = {unit.globals[step]: info for step, info in body.infos.items()}
+    select: Select = unit.globals[name]
+    return select, "\n".join(unit.source)
+
+
+def compile_rule_function(rule: nodes.Rule, actions: Mapping[str, ActionInfo]) -> FunctionType:
+    """The generator function of a rule."""
+    span = rule.span
+    unit = CodeUnit(span.file.name if span is not None else "<run time>", actions)
+    name = compile_rule(unit, rule)
+    unit.execute()
+    function: FunctionType = unit.globals[name]
+    return function
+
+
+def register_source(name: str, text: str) -> None:
+    """Let tracebacks show the lines of a program that is no file."""
+    linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
