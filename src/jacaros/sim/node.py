@@ -1,5 +1,7 @@
 """The world as a ROS node: all its robots over any backend, in the time of any clock."""
 
+import math
+
 from jacaros.clock import Clock, Timer
 from jacaros.ros.backend import Backend
 from jacaros.sim.robot_node import TICKS_PER_SECOND, RobotNode
@@ -36,13 +38,13 @@ class SimNode:
 
     def _wait_for_tick(self) -> None:
         period = 1.0 / TICKS_PER_SECOND
-        self._ticks += 1
-        if self.clock.virtual:
-            delay = period
-        else:
-            # From the start, not from the last tick: delays of the loop must not add up.
-            due = self.time.epoch + self._ticks * period
-            delay = max(0.0, due - self.clock.now())
+        delay = period
+        if not self.clock.virtual:
+            # From the start, not from the last tick: delays of the loop must not add up.  Ticks that were
+            # missed (the process was held up, the computer slept) are left out, not made up for in a burst.
+            passed = self.clock.now() - self.time.epoch
+            self._ticks = max(self._ticks + 1, math.floor(passed / period) + 1)
+            delay = max(0.0, self._ticks * period - passed)
         self._timer = self.clock.call_later(delay, self._tick)
 
     def _tick(self) -> None:

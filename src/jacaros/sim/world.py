@@ -15,7 +15,7 @@ from jacaros.sim.description import WorldDescription
 from jacaros.sim.ground_truth import Event, GroundTruth
 from jacaros.sim.robot import Robot
 from jacaros.sim.sensors import Laser
-from jacaros.sim.world_file import find_world, read_world
+from jacaros.sim.world_file import load_world, read_world
 
 STEP = 0.02
 """Length of a step in seconds: 50 Hz."""
@@ -57,8 +57,7 @@ class World:
         """
         if isinstance(source, str) and "\n" in source:
             return cls(read_world(source), seed)
-        path = find_world(str(source))
-        return cls(read_world(path.read_text(encoding="utf-8"), str(path)), seed)
+        return cls(load_world(str(source)), seed)
 
     @property
     def ground_truth(self) -> GroundTruth:

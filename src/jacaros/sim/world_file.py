@@ -51,6 +51,21 @@ def find_world(name: str) -> Path:
     raise WorldError(name, "", [Problem(1, 1, "there is no such world file", cure)])
 
 
+def load_world(name: str) -> WorldDescription:
+    """Read the world file of a path or of a shipped world's name.
+
+    Raises:
+        WorldError: the file is missing, or wrong; with all mistakes at once.
+    """
+    path = find_world(name)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        problem = Problem(1, 1, f"not a text in UTF-8: {error.reason}", "save it as UTF-8")
+        raise WorldError(str(path), "", [problem]) from None
+    return read_world(text, str(path))
+
+
 def read_world(text: str, name: str = "world") -> WorldDescription:
     """Read the text of a world file; *name* is what errors call it.
 

@@ -204,6 +204,51 @@ def test_a_closed_node_stops_the_world_where_it_is() -> None:
     assert in_world("empty", body).world.time == pytest.approx(1.0)
 
 
+class HeldUpClock:
+    """A wall clock whose timers come when the test says so."""
+
+    virtual = False
+
+    def __init__(self) -> None:
+        self.time = 1000.0
+        self.timers: list[tuple[float, Callable[[], None]]] = []
+
+    def now(self) -> float:
+        return self.time
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Any:
+        self.timers.append((self.time + delay, callback))
+
+    async def sleep(self, delay: float) -> None:
+        raise AssertionError
+
+    def busy(self, cycles: int) -> None:
+        raise AssertionError
+
+    def fire(self, late: float = 0.0) -> float:
+        """Call the next timer, *late* seconds after its time; gives the time it was set for."""
+        when, callback = self.timers.pop(0)
+        self.time = max(self.time, when + late)
+        callback()
+        return when
+
+
+def test_a_world_that_was_held_up_catches_up_without_a_burst_of_messages() -> None:
+    clock, world, received = HeldUpClock(), World.load("empty"), []
+
+    async def main() -> None:
+        backend = open_backend("memory", VirtualClock(), "test")
+        await backend.start()
+        backend.subscription("/odom", "nav_msgs/msg/Odometry", received.append)
+        SimNode(world, backend, clock).start()
+        times = [clock.fire(0.01), clock.fire(), clock.fire(60.0), clock.fire(), clock.fire()]
+        assert times == pytest.approx([1000.05, 1000.1, 1000.15, 1060.2, 1060.25])
+        await backend.close()
+
+    run(main, VirtualClock())
+    assert world.time == pytest.approx(60.24, abs=0.021)
+
+
 def test_served_worlds_write_their_ground_truth_and_it_reads_back_the_same(tmp_path: Path) -> None:
     clock, path = VirtualClock(), tmp_path / "truth.jsonl"
     world = World.load("patrol")

@@ -1,6 +1,7 @@
 """World files: what they say, and what is wrong with them, all at once and with lines."""
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -105,6 +106,13 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
 def test_a_wrong_world_says_what_is_wrong(text: str, message: str) -> None:
     with pytest.raises(WorldError, match=message):
         read_world(text)
+
+
+def test_a_file_that_is_no_text_is_told_so(tmp_path: Path) -> None:
+    path = tmp_path / "picture.yaml"
+    path.write_bytes(b"\x89PNG\xff\xfe")
+    with pytest.raises(WorldError, match="not a text in UTF-8"):
+        World.load(path)
 
 
 def test_a_mistake_is_told_once() -> None:
