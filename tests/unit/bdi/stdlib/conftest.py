@@ -1,0 +1,7 @@
+import pytest
+from fake_context import FakeContext
+
+
+@pytest.fixture
+def mind() -> FakeContext:
+    return FakeContext()
