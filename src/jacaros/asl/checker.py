@@ -102,7 +102,7 @@ def _goal_text(signature: tuple[object, str, int]) -> str:
 
 
 def _meant_goal(wanted: tuple[object, str, int], handled: Iterable[tuple[object, str, int]]) -> str | None:
-    """The goal with a plan that is most like *wanted*: of the same name, of a like name, in another namespace."""
+    """The goal with a plan that is most like *wanted*: of the same name or of a like one."""
     texts = sorted(_goal_text(signature) for signature in handled)
     same_name = [_goal_text(signature) for signature in handled if signature[1] == wanted[1]]
     close = sorted(same_name) or get_close_matches(_goal_text(wanted), texts, 1)

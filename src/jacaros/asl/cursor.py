@@ -39,6 +39,12 @@ class Cursor:
         self.index = 0
         self.token = tokens[0]
         self._nesting = 0
+        # One error for a place is enough; what follows from it would only confuse.
+        self._blamed = {
+            (diagnostic.span.line, diagnostic.span.column)
+            for diagnostic in diagnostics
+            if diagnostic.span is not None and diagnostic.span.file is file
+        }
 
     # places
 
@@ -96,8 +102,12 @@ class Cursor:
     # reports
 
     def report(self, message: str, span: Span | None = None, hint: str | None = None) -> None:
-        """Record an error; reading goes on."""
-        self.diagnostics.append(Diagnostic("error", message, span or self.span_of(self.token), hint))
+        """Record an error, unless there is one for the same place; reading goes on."""
+        span = span or self.span_of(self.token)
+        place = (span.line, span.column)
+        if place not in self._blamed:
+            self._blamed.add(place)
+            self.diagnostics.append(Diagnostic("error", message, span, hint))
 
     def warn(self, message: str, span: Span, hint: str | None = None) -> None:
         """Record a warning."""
@@ -204,10 +214,8 @@ class Cursor:
         return index
 
     def at_plan(self, index: int | None = None) -> bool:
-        """Whether a plan begins at *index*: a label, a goal trigger, or a belief trigger with more behind it.
-
-        A belief trigger alone looks like a body step (``+b(X)``), so it needs a context, a goal condition or
-        a body behind it.
+        """Whether a plan begins at *index*: a label, a goal trigger that begins a line, or any trigger with a
+        context, a goal condition or a body behind it (a belief trigger alone looks like a step, ``+b(X)``).
         """
         at = self.index if index is None else index
         token = self.tokens[at]
@@ -216,10 +224,12 @@ class Cursor:
         if token.kind not in ("+", "-", "^"):
             return False
         following = self.tokens[at + 1]
-        if following.kind in ("!", "?"):
+        goal = following.kind in ("!", "?")
+        if goal and token.first:
             return not self._spells_unequal(following, at + 1)
-        behind = self.after_literal(at + 1)
-        return behind > at + 1 and self.tokens[behind].kind in (":", "<-", "<:")
+        literal = at + 2 if goal else at + 1
+        behind = self.after_literal(literal)
+        return behind > literal and self.tokens[behind].kind in (":", "<-", "<:")
 
     def _spells_unequal(self, token: Token, index: int) -> bool:
         return token.kind == "!" and self.tokens[index + 1].kind == "="

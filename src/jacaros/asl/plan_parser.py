@@ -37,7 +37,8 @@ class PlanParser(BodyParser):
             self.unexpected("a literal")
         literal = self.operand(formula=True)
         if not isinstance(literal, nodes.Literal | nodes.Variable):
-            self.fail("an internal action cannot trigger a plan", literal.span)
+            hint = "a '.' that ends a plan has a blank or a line end behind it"
+            self.fail("an internal action cannot trigger a plan", literal.span, hint)
         return nodes.Trigger(start.kind, kind, literal, span=self.span_from(start))
 
     def _label(self, as_term: bool) -> nodes.Literal | nodes.Variable:

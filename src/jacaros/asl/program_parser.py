@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
-from jacaros.asl.cursor import Names, SyntaxPanic
+from jacaros.asl.cursor import CLOSERS, Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
 from jacaros.asl.namespaces import Namespaces
@@ -14,6 +14,9 @@ from jacaros.asl.section import Section
 from jacaros.asl.source import SourceFile
 
 _DIRECTIVE_WORDS: Final = frozenset({"begin", "end", "include", "namespace", "register_function"})
+_STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^"})
+"""What a clause may begin with."""
+
 _NOT_IN_CONDITIONS: Final = frozenset(
     {
         ".send",
@@ -185,13 +188,17 @@ class ProgramParser(PlanParser):
         token = self.token
         if token.kind == "end":
             self.report(f"the {what} has no final '.'", hint="the file ends here")
-        elif self._begins_clause(self.index):
+        elif self._begins_clause(self.index) or (what != "plan" and token.first and token.kind in _STARTS):
             self.report(
                 f"the {what} before has no final '.'; {_naming(token)} begins here",
                 hint=f"put a '.' behind line {self.previous().line}",
             )
         elif token.kind == "," and what in ("belief", "goal"):
             self.fail(f"a {what} ends with '.', not with ','", hint="write p(1). p(2).")
+        elif token.kind == ",":
+            self.fail("conditions are not joined by ','", hint="write & for 'and'")
+        elif token.kind in CLOSERS.values():
+            self.fail(f"nothing is open that this '{token.kind}' closes")
         else:
             self.unexpected("';' or '.'" if what == "plan" else "'.'")
 

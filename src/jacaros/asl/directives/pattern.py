@@ -60,9 +60,16 @@ class PatternCall:
         trigger: nodes.Trigger,
         *steps: nodes.Step,
         context: nodes.Term | None = None,
+        atomic: str | None = None,
     ) -> nodes.Plan:
-        """A plan without label."""
-        return nodes.Plan(None, trigger, context, nodes.Body(steps, span=self.span), span=self.span)
+        """A plan without label, or an atomic one whose label ends with *atomic*."""
+        label = None
+        if atomic is not None:
+            annotations = nodes.Annotations((nodes.Literal("atomic"),))
+            label = nodes.Literal(
+                f"p__{self.name}{self.number}_{atomic}", annotations=annotations, span=self.span
+            )
+        return nodes.Plan(label, trigger, context, nodes.Body(steps, span=self.span), span=self.span)
 
     def achieve(self, goal: nodes.Literal, separate: bool = False) -> nodes.Step:
         """``!goal`` or ``!!goal``."""

@@ -24,22 +24,28 @@ def sequenced(call: PatternCall, section: Section) -> Section:
     idle: nodes.Term = nodes.Not(busy, span=call.span)
     serve_this = nodes.Literal("p__serve", (key, goal), span=call.span)
     queue_this = nodes.Literal("p__queue", (key, goal), span=call.span)
+    # Whether the queue is busy is asked and noted without anything in between, hence the atomic plans.
     adopted = [
         call.plan(
             trigger,
             call.change("+", busy),
             call.achieve(serve_this, separate=True),
             context=idle if context is None else nodes.And(idle, context, span=call.span),
+            atomic="begin",
         ),
-        call.plan(trigger, call.change("+>", queue_this), context=context),
+        call.plan(trigger, call.change("+>", queue_this), context=context, atomic="wait"),
         call.plan(
             on("+!", serve), nodes.Achieve(any_goal, span=call.span), call.achieve(turn, separate=True)
         ),
         call.plan(on("-!", serve), call.achieve(turn, separate=True), call.internal(".fail")),
         call.plan(
-            on("+!", turn), call.change("-", queued), call.achieve(serve, separate=True), context=queued
+            on("+!", turn),
+            call.change("-", queued),
+            call.achieve(serve, separate=True),
+            context=queued,
+            atomic="next",
         ),
-        call.plan(on("+!", turn), call.change("-", busy)),
+        call.plan(on("+!", turn), call.change("-", busy), atomic="end"),
     ]
     return with_plans(section, [], section.plans, adopted)
 
