@@ -53,12 +53,16 @@ class SimNode:
         for robot in self.robots:
             robot.publish()
 
-    def close(self) -> None:
-        """Stop the world where it is and leave the graph."""
+    def stop(self) -> None:
+        """Stop the world where it is; its topics stay."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
             self.time.catch_up()
+
+    def close(self) -> None:
+        """Stop the world where it is and leave its topics."""
+        self.stop()
         for robot in self.robots:
             robot.close()
         self.robots = []

@@ -44,7 +44,8 @@ class GroundTruthFile:
         truth = self._world.ground_truth
         for robot in truth.robots:
             self._write({"kind": "sample", "robot": robot, **truth.latest(robot)._asdict()})
-        self._write({"kind": "end", "time": self._world.time})
+        if kind is None:
+            self._write({"kind": "end", "time": self._world.time})
         self._file.close()
 
 
@@ -82,11 +83,11 @@ async def serve(
         else:
             with GroundTruthFile(ground_truth_path, world, node.time.epoch):
                 await stop.wait()
-                node.close()
+                node.stop()
     finally:
         if timer is not None:
             timer.cancel()
-        node.close()
+        node.stop()
         await backend.close()
         for number in _SIGNALS:
             loop.remove_signal_handler(number)

@@ -15,6 +15,7 @@ topic (below the robot's namespace)         type                          direct
 from typing import Any
 
 from jacaros.ros.backend import TRANSFORMS, Backend, Publisher, Sample, Subscription
+from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.message import constant, stamp
 from jacaros.ros.qos import QoS
 from jacaros.sim.robot import Robot
@@ -57,7 +58,10 @@ class RobotNode:
         if TRANSFORMS not in self.backend.capabilities:
             return None
         # Not `tf_broadcast`, which cannot tell whether anybody listens.
-        return self.backend.publisher("/tf", "tf2_msgs/msg/TFMessage", QoS(depth=100))
+        try:
+            return self.backend.publisher("/tf", "tf2_msgs/msg/TFMessage", QoS(depth=100))
+        except UnknownInterface:  # tf2_msgs is not everywhere where ROS 2 is
+            return None
 
     def _subscribe(self) -> list[Subscription]:
         twist, text = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
