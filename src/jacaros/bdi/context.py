@@ -49,6 +49,14 @@ class Context:
         undo(self.trail, mark)
         return False
 
+    def unify_all(self, *pairs: tuple[Term, Term]) -> bool:
+        """Unify the terms of every pair; nothing stays bound when some do not."""
+        mark = len(self.trail)
+        if all(unify(left, right, self.trail) for left, right in pairs):
+            return True
+        undo(self.trail, mark)
+        return False
+
     def answers(self, formula: Term) -> Iterator[None]:
         """The answers of a formula; its bindings hold until the next one is asked for."""
         for _ in run(solve_formula(self.agent, formula, self.trail)):

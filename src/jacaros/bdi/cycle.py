@@ -189,7 +189,7 @@ def _add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> None:
         frames.append(frame)
     if frame[PLAN].atomic:
         agent.atomic = intention
-    if agent.meta and trigger.kind:
+    if agent.meta and trigger.kind and not trigger.failing:
         meta_events.goal_state(agent, frame[GOAL], frame[2], "executing")
 
 

@@ -10,14 +10,12 @@ from jacaros.terms.order import annotation_set
 from jacaros.terms.values import atom, structure
 
 
-def goal_state(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str, reason: Any = None) -> None:
+def goal_state(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str) -> None:
     """Tell plans that a goal has got into another state; the event comes one cycle later, before ordinary ones."""
     kind = goal[0]
-    if not kind.kind:
+    if not kind.kind or kind.operator == "^":
         return
     told = structure("state", atom(state))
-    if reason is not None:
-        told = structure("state", atom(state))
     meta = trigger("^", kind.kind, kind.functor)
     event = Event((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))))
     agent.tasks.append(lambda: agent.events.appendleft(event))

@@ -46,12 +46,14 @@ class BodyCompiler:
 
     def body(self, steps: tuple[nodes.Step, ...], after: str) -> str:
         """Write the steps; returns the name of the first, or *after* when there are none."""
+        if not steps:
+            return after
         names = [self.name() for _ in steps]
         following = [*names[1:], after]
         for step, name, next_name in zip(steps, names, following, strict=True):
             self.infos[name] = StepInfo(step, next_name)
             _STEPS[type(step)](self, step, name, next_name)
-        return names[0] if names else after
+        return names[0]
 
     def name(self) -> str:
         """A name for a step function."""

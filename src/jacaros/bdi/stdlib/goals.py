@@ -21,11 +21,17 @@ def _goal(term: Term) -> Term:
     return term
 
 
+def _matches_goal(ctx: Context, goal: Term, literal: Term, identity: Term, number: int | None) -> bool:
+    if identity is None:
+        return ctx.unify(goal, literal)
+    return number is not None and ctx.unify_all((goal, literal), (identity, float(number)))
+
+
 @internal_action(".desire", arity=(1, 2), backtracks=True)
 def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
     """``.desire(G [,Id])``: each goal the agent has, begun or not."""
     for literal, number in list(goals.desires(ctx.agent)):
-        if ctx.unify(goal, literal) and (identity is None or (number is not None and ctx.unify(identity, float(number)))):
+        if _matches_goal(ctx, goal, literal, identity, number):
             yield
 
 
@@ -33,7 +39,7 @@ def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
 def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
     """``.intend(G [,Id])``: each goal on the stack of an intention that is not suspended."""
     for literal, number in list(goals.intended(ctx.agent)):
-        if ctx.unify(goal, literal) and (identity is None or (number is not None and ctx.unify(identity, float(number)))):
+        if _matches_goal(ctx, goal, literal, identity, number):
             yield
 
 
@@ -45,9 +51,10 @@ def intention(ctx: Context, number: Term, state: Term, stack: Term = None, which
         running = candidate is ctx.agent.current
         if only_current and not running:
             continue
-        if not ctx.unify(number, float(candidate.id)) or not ctx.unify(state, _state(candidate, running)):
-            continue
-        if stack is None or ctx.unify(stack, make_list([_means(f) for f in reversed(candidate.frames)])):
+        pairs = [(number, float(candidate.id)), (state, _state(candidate, running))]
+        if stack is not None:
+            pairs.append((stack, make_list([_means(f) for f in reversed(candidate.frames)])))
+        if ctx.unify_all(*pairs):
             yield
 
 

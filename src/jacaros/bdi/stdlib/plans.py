@@ -44,7 +44,7 @@ def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> bool:
 def plan_label(ctx: Context, target: Term, label: Term) -> Iterator[None]:
     """``.plan_label(P, L)``: each plan with its label."""
     for plan in list(ctx.agent.library.plans):
-        if ctx.unify(label, plan.label) and ctx.unify(target, _term(plan)):
+        if ctx.unify_all((label, plan.label), (target, _term(plan))):
             yield
 
 
