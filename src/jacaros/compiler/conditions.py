@@ -247,7 +247,7 @@ class _Arguments:
             self.parts.append("_")
         elif unknown or not self._is_value(pattern):
             part = fn.local("c")
-            self.terms.append("Var()")
+            self.terms.append(self._pattern_term(pattern))
             self.parts.append(part)
             self.rest.append((pattern, part))
         else:
@@ -257,6 +257,13 @@ class _Arguments:
             self.known.append(index)
             if not (is_number(value) or is_static(pattern)):
                 self.tests.append(f"{value}.__class__ in ATOMIC")
+
+    def _pattern_term(self, pattern: nodes.Node) -> str:
+        """What rules are asked with: as much of the pattern as is known, so that they do not search for more."""
+        if isinstance(pattern, nodes.Variable):
+            return "Var()"
+        with self.fn.branch():
+            return as_name(self.fn, build(self.fn, pattern))
 
     def _is_value(self, pattern: nodes.Node) -> bool:
         """Whether the pattern can be a key: structures with annotations or anonymous parts cannot."""

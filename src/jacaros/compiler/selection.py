@@ -13,7 +13,11 @@ from jacaros.compiler.conditions import condition
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.matching import match_all, settle_fresh
 from jacaros.compiler.plan import Plan
-from jacaros.compiler.variables import names_in, occurrences
+from jacaros.compiler.variables import actions_in, names_in, occurrences
+
+
+_BY_NAME = (".term2string", ".puts", ".print_unifier")
+"""Internal actions that reach variables by their names: all variables of the plan are kept for them."""
 
 
 class SelectCompiler:
@@ -91,6 +95,8 @@ class SelectCompiler:
         """The innermost point: the plan is applicable, its frame is made and given back."""
         node = plan.node
         counts = occurrences(node.trigger, node.context, node.body, node.goal_condition, node.subplans)
+        if any(a.name in _BY_NAME for a in actions_in(node.body)):
+            counts = {name: count + 1 for name, count in counts.items()}
         frame = Frame(counts)
         for variable in fn.values:
             if counts.get(variable, 0) > 1:

@@ -41,3 +41,16 @@ def occurrences(*parts: object) -> dict[str, int]:
             if not variable.unnamed:
                 counts[variable.name] = counts.get(variable.name, 0) + 1
     return counts
+
+
+def actions_in(node: object) -> Iterator[nodes.InternalAction]:
+    """All internal actions called in a piece of syntax."""
+    if isinstance(node, nodes.InternalAction):
+        yield node
+    if isinstance(node, nodes.Node):
+        for field in fields(node):
+            if field.name != "span":
+                yield from actions_in(getattr(node, field.name))
+    elif isinstance(node, tuple):
+        for item in node:
+            yield from actions_in(item)
