@@ -141,8 +141,30 @@ def each_annotation_match(
 ) -> Iterator[None]:
     """Every way to find the annotations of *left* in *right*, in the order of *right*.
 
-    With a tail on the left there is one answer at most.
+    With an unbound tail on the left there is one answer at most.  The elements of bound tails are annotations
+    like the others.
     """
+    if left_tail is not None or right_tail is not None:
+        left, left_tail = _with_tail(left, left_tail)
+        right, right_tail = _with_tail(right, right_tail)
+    return _annotation_matches(left, left_tail, right, right_tail, trail)
+
+
+def _with_tail(annotations: tuple[Term, ...], tail: Term) -> tuple[tuple[Term, ...], Term]:
+    """The annotations together with those of the tail, and what is unbound of it."""
+    tail = deref(tail)
+    if tail is None or tail.__class__ is Var:
+        return annotations, tail
+    more: list[Term] = []
+    while tail.__class__ is tuple and tail[0] is CONS:
+        more.append(tail[1])
+        tail = deref(tail[2])
+    return annotation_set((*annotations, *more)), tail if tail.__class__ is Var else None
+
+
+def _annotation_matches(
+    left: tuple[Term, ...], left_tail: Term, right: tuple[Term, ...], right_tail: Term, trail: Trail
+) -> Iterator[None]:
     if not left:
         mark = len(trail)
         if _unify_tail(left_tail, right, trail):
@@ -153,9 +175,10 @@ def each_annotation_match(
         mark = len(trail)
         if unify(left[0], candidate, trail):
             rest = right[:index] + right[index + 1 :]
-            for _ in each_annotation_match(left[1:], left_tail, rest, right_tail, trail):
+            for _ in _annotation_matches(left[1:], left_tail, rest, right_tail, trail):
                 yield
                 if left_tail is not None:
+                    undo(trail, mark)
                     return
         undo(trail, mark)
     if right_tail is not None:
@@ -237,14 +260,10 @@ def _resolve_list(term: Term) -> Term:
 def _resolve_annotated(term: Annotated) -> Term:
     inner = resolve(term.term)
     annotations = tuple(resolve(a) for a in term.annotations)
-    tail = None if term.tail is None else deref(term.tail)
-    if tail is not None and tail.__class__ is not Var:
-        from_tail: list[Term] = []
-        while tail.__class__ is tuple and tail[0] is CONS:
-            from_tail.append(resolve(tail[1]))
-            tail = deref(tail[2])
-        annotations += tuple(from_tail)
-        tail = tail if tail.__class__ is Var else None
+    tail = term.tail
+    if tail is not None:
+        annotations, tail = _with_tail(annotations, tail)
+        annotations = tuple(resolve(a) for a in annotations)
     if inner.__class__ is Annotated:
         annotations += inner.annotations
         inner = inner.term

@@ -1,4 +1,4 @@
-"""A mind for internal actions under test: unification on a trail, and a host that remembers what it was told."""
+"""A mind for internal actions under test: unification on a trail, and a host that remembers it all."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from jacaros.terms.values import String, Term, Var, atom, make_list, structure
 
 
 def term(value: object) -> Term:
-    """Numbers, ``"atoms"``, ``("structures", ...)`` and ``[lists]`` of Python as terms; others as they are."""
+    """Numbers, ``"atoms"``, ``("structures", ...)`` and ``[lists]`` as terms; other values as they are."""
     if isinstance(value, String):
         return value
     if isinstance(value, str):

@@ -1,0 +1,186 @@
+import math
+from collections.abc import Iterator
+
+import pytest
+
+import jacaros.terms.functions  # noqa: F401 - the functions of the language
+from jacaros.terms import arithmetic
+from jacaros.terms.arithmetic import ADD, ArithmeticFault, binary, functions, negate, settle
+from jacaros.terms.collections import MapValue, SetValue
+from jacaros.terms.text import text
+from jacaros.terms.unifier import Trail, resolve, unify
+from jacaros.terms.values import ARITHMETIC, FUNCTION, String, Term, Var, atom, functor, make_list, structure
+
+INFINITY = math.inf
+
+
+@pytest.fixture
+def warnings() -> Iterator[list[str]]:
+    told: list[str] = []
+    before, arithmetic.warn = arithmetic.warn, told.append
+    yield told
+    arithmetic.warn = before
+
+
+@pytest.mark.parametrize(
+    ("left", "operator", "right", "value"),
+    [
+        (2.0, "+", 3.0, 5.0),
+        (2.0, "-", 3.0, -1.0),
+        (2.0, "*", 3.0, 6.0),
+        (10.0, "/", 4.0, 2.5),
+        (1.0, "/", 0.0, INFINITY),
+        (-1.0, "/", 0.0, -INFINITY),
+        (1.0, "/", -0.0, -INFINITY),
+        (7.0, "div", 2.0, 3.0),
+        (-7.0, "div", 2.0, -3.0),
+        (7.9, "div", 2.9, 3.0),
+        (5e9, "div", 1.0, 2147483647.0),
+        (-5e9, "div", 1.0, -2147483648.0),
+        (7.0, "mod", 3.0, 1.0),
+        (-7.0, "mod", 3.0, -1.0),
+        (7.0, "mod", -3.0, 1.0),
+        (7.5, "mod", 2.0, 1.5),
+        (2.0, "**", 10.0, 1024.0),
+        (2.0, "**", -1.0, 0.5),
+        (0.0, "**", -1.0, INFINITY),
+        (10.0, "**", 400.0, INFINITY),
+        (-10.0, "**", 401.0, -INFINITY),
+    ],
+)
+def test_operations_on_doubles(left: float, operator: str, right: float, value: float) -> None:
+    assert binary(operator, left, right) == value
+
+
+@pytest.mark.parametrize(
+    ("left", "operator", "right"), [(0.0, "/", 0.0), (1.0, "mod", 0.0), (-8.0, "**", 1 / 3)]
+)
+def test_operations_without_a_real_result_give_no_number(left: float, operator: str, right: float) -> None:
+    assert math.isnan(binary(operator, left, right))
+
+
+def test_integer_division_by_zero_is_a_fault() -> None:
+    with pytest.raises(ArithmeticFault, match="division by zero"):
+        binary("div", 1.0, 0.5)
+
+
+def test_expressions_are_evaluated_once_their_variables_have_values() -> None:
+    operand, result = Var("Z"), Var("Y")
+    trail = Trail()
+    assert unify(result, (ADD, operand, 1.0), trail)
+    assert text(result) == "(Z+1)"
+    unify(operand, 2.0, trail)
+    assert resolve(result) == 3.0
+    assert unify(structure("f", 3.0), structure("f", result), trail)
+    assert not unify(structure("f", 4.0), structure("f", result), trail)
+
+
+def test_minus_of_terms() -> None:
+    assert negate(2.0) == -2.0
+    assert text(negate(Var("X"))) == "(-X)"
+
+
+@pytest.mark.parametrize("operand", [atom("a"), String("2"), make_list([1.0])])
+def test_an_operand_that_is_no_number_gives_no_number_and_a_warning(
+    operand: Term, warnings: list[str]
+) -> None:
+    assert math.isnan(binary("+", operand, 1.0))
+    assert "'+' is no number" in warnings[0]
+
+
+def call(name: str, *arguments: Term) -> Term:
+    return settle((functor(name, len(arguments), kind=FUNCTION), *arguments))
+
+
+def numbers(*values: float) -> Term:
+    return make_list([float(value) for value in values])
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "value"),
+    [
+        ("math.abs", (-2.0,), 2.0),
+        ("math.ceil", (1.2,), 2.0),
+        ("math.ceil", (-INFINITY,), -INFINITY),
+        ("math.floor", (-1.2,), -2.0),
+        ("math.floor", (INFINITY,), INFINITY),
+        ("math.round", (2.5,), 3.0),
+        ("math.round", (-2.5,), -2.0),
+        ("math.round", (0.49999999999999994,), 0.0),
+        ("math.round", (1e300,), 9223372036854775807.0),
+        ("math.round", (-INFINITY,), -9223372036854775808.0),
+        ("math.round", (math.nan,), 0.0),
+        ("math.sqrt", (9.0,), 3.0),
+        ("math.exp", (1000.0,), INFINITY),
+        ("math.log", (1.0,), 0.0),
+        ("math.log", (0.0,), -INFINITY),
+        ("math.max", (1.0, 3.0), 3.0),
+        ("math.min", (1.0, 3.0), 1.0),
+        ("math.max", (make_list([3.0, atom("a"), String("s"), 5.0]),), 5.0),
+        ("math.max", (numbers(-3, -2),), -2.0),
+        ("math.min", (SetValue({2.0: None, 1.0: None}),), 1.0),
+        ("math.sum", (numbers(),), 0.0),
+        ("math.sum", (numbers(0.1, 0.2, 0.3),), 0.1 + 0.2 + 0.3),
+        ("math.sum", (make_list([3.0, atom("a"), 5.0]),), 8.0),
+        ("math.average", (numbers(1, 2, 6),), 3.0),
+        ("math.mean", (1.0, 3.0), 2.0),
+        ("math.median", (numbers(3, 1, 2),), 2.0),
+        ("math.median", (numbers(4, 1, 2, 3),), 2.5),
+        ("math.std_dev", (numbers(1, 2, 3),), 1.0),
+        ("math.std_dev", (numbers(),), 0.0),
+        (".length", (String("hello"),), 5.0),
+        (".length", (numbers(1, 2),), 2.0),
+        (".length", (MapValue({1.0: 2.0}),), 1.0),
+    ],
+)
+def test_functions_of_known_arguments(name: str, arguments: tuple[Term, ...], value: float) -> None:
+    assert call(name, *arguments) == value
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("math.sqrt", (-1.0,)),
+        ("math.log", (-1.0,)),
+        ("math.acos", (2.0,)),
+        ("math.std_dev", (numbers(1),)),
+        (".length", (1.0,)),
+    ],
+)
+def test_functions_without_a_value_give_no_number(name: str, arguments: tuple[Term, ...]) -> None:
+    assert math.isnan(call(name, *arguments))
+
+
+@pytest.mark.parametrize("name", ["math.max", "math.min", "math.average", "math.mean", "math.median"])
+def test_some_functions_need_numbers(name: str) -> None:
+    with pytest.raises(ArithmeticFault):
+        call(name, make_list([atom("a")]))
+
+
+@pytest.mark.parametrize("name", ["math.abs", "math.max", ".length"])
+def test_functions_wait_for_their_arguments(name: str) -> None:
+    waiting = call(name, Var("X"))
+    assert text(waiting) == f"{name}(X)"
+
+
+def test_a_function_of_no_number_warns(warnings: list[str]) -> None:
+    assert math.isnan(call("math.abs", atom("a")))
+    assert "is no number" in warnings[0]
+
+
+def test_an_unknown_function_stays_a_term() -> None:
+    assert text(call("math.unknown", 1.0)) == "math.unknown(1)"
+
+
+def test_a_function_added_by_a_program_is_called() -> None:
+    functions["my.double"] = lambda value: value * 2
+    try:
+        assert call("my.double", 4.0) == 8.0
+        assert binary("+", (functor("my.double", 1, kind=FUNCTION), 4.0), 1.0) == 9.0
+    finally:
+        del functions["my.double"]
+
+
+def test_arithmetic_inside_terms_is_evaluated_when_they_are_resolved() -> None:
+    product = (functor("*", 2, kind=ARITHMETIC), 2.0, 3.0)
+    assert resolve(structure("f", product)) == structure("f", 6.0)

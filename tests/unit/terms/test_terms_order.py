@@ -1,0 +1,124 @@
+from collections.abc import Callable
+
+import pytest
+from drawn_terms import any_plans, build
+from hypothesis import given
+
+from jacaros.terms.arithmetic import ADD
+from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.order import at_most, compare, less, sorted_terms
+from jacaros.terms.text import text
+from jacaros.terms.unifier import equal
+from jacaros.terms.values import Annotated, Reference, String, Term, Var, atom, functor, make_list, structure
+
+
+def sign(number: int) -> int:
+    return (number > 0) - (number < 0)
+
+
+@given(any_plans, any_plans)
+def test_the_order_is_total_and_antisymmetric(left: object, right: object) -> None:
+    scope: dict[str, Var] = {}
+    first, second = build(left, scope), build(right, scope)
+    assert sign(compare(first, second)) == -sign(compare(second, first))
+    assert (compare(first, second) == 0) == equal(first, second)
+
+
+@given(any_plans, any_plans, any_plans)
+def test_the_order_is_transitive(first: object, second: object, third: object) -> None:
+    scope: dict[str, Var] = {}
+    low, middle, high = sorted_terms([build(plan, scope) for plan in (first, second, third)])
+    assert at_most(low, middle)
+    assert at_most(middle, high)
+    assert at_most(low, high)
+
+
+IN_ORDER: list[Term] = [
+    float("-inf"),
+    -1.0,
+    2.0,
+    float("inf"),
+    float("nan"),
+    String(""),
+    String("a"),
+    String("b"),
+    make_list([]),
+    make_list([1.0]),
+    make_list([1.0, 1.0]),
+    make_list([2.0]),
+    atom("a"),
+    Annotated(atom("a"), (atom("x"),)),
+    Annotated(atom("a"), (atom("x"), atom("y"))),
+    Annotated(atom("a"), (atom("y"),)),
+    structure("a", 1.0),
+    structure("a", 1.0, 1.0),
+    structure("a", 2.0),
+    functor("a", 0, negated=True),
+    atom("b"),
+    atom("a", "namespace"),
+    MapValue(),
+    QueueValue(),
+    SetValue(),
+    Var("X"),
+    Var("Y"),
+    Var("_"),
+]
+
+
+@pytest.mark.parametrize("position", range(1, len(IN_ORDER)))
+def test_each_kind_of_term_has_its_place(position: int) -> None:
+    lower, higher = IN_ORDER[position - 1], IN_ORDER[position]
+    assert less(lower, higher)
+    assert not less(higher, lower)
+    assert at_most(lower, higher)
+
+
+def test_sorting_puts_terms_in_order_and_keeps_equal_ones_apart() -> None:
+    assert sorted_terms(reversed(IN_ORDER)) == IN_ORDER
+    twins = [Annotated(atom("a"), ()), atom("a")]
+    assert sorted_terms(twins) == twins
+
+
+def test_what_is_not_a_number_is_sorted_behind_the_numbers() -> None:
+    nan = float("nan")
+    assert [text(n) for n in sorted_terms([nan, 2.0, nan, 1.0])] == ["1", "2", "NaN", "NaN"]
+    assert compare(nan, float("nan")) == 0
+
+
+def test_arithmetic_is_compared_by_its_value() -> None:
+    assert compare((ADD, 1.0, 2.0), 3.0) == 0
+
+
+def test_variables_of_one_name_keep_an_order_once_it_is_asked_for() -> None:
+    first, second = Var("X"), Var("X")
+    assert compare(first, second) < 0 < compare(second, first)
+    assert compare(first, first) == 0
+
+
+def test_collections_are_compared_by_what_they_hold() -> None:
+    def queue(*items: float) -> QueueValue:
+        made = QueueValue()
+        for item in items:
+            made.add(item)
+        return made
+
+    makers: list[Callable[[float], Term]] = [
+        lambda n: SetValue({n: None}),
+        lambda n: MapValue({atom("k"): n}),
+        lambda n: MapValue({n: atom("v")}),
+        queue,
+    ]
+    for make in makers:
+        assert compare(make(1.0), make(2.0)) < 0 < compare(make(2.0), make(1.0))
+        assert compare(make(1.0), make(1.0)) == 0
+
+
+def test_opaque_objects_are_in_the_order_of_their_numbers() -> None:
+    first, second = Reference(object()), Reference(object())
+    assert compare(first, second) < 0 < compare(second, first)
+    assert compare(first, Reference(first.value)) == 0
+
+
+def test_long_lists_are_compared_without_recursion() -> None:
+    items = [float(n) for n in range(50_000)]
+    assert compare(make_list(items), make_list([*items, 1.0])) < 0
