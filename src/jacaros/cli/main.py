@@ -75,7 +75,7 @@ def call(arguments: list[str] | None = None) -> int:
         return _tell(wrong, 1)
     except BrokenPipeError:
         # Whoever read the output has gone (as in `| head`): there is nobody left to be told.
-        sys.stdout = None  # type: ignore[assignment]
+        sys.stdout = None
         return 1
     return result if isinstance(result, int) else 0
 

@@ -20,6 +20,12 @@ _REASON = functor("env_failure_reason", 1)
 class Mind(Protocol):
     """An agent as its host sees it (`jacaros.bdi.agent.Agent`)."""
 
+    stopped: bool
+    """Set by the host: no further cycle."""
+
+    def start(self) -> None:
+        """Take up initial beliefs and goals."""
+
     def run(self, fuel: int) -> bool:
         """Make reasoning cycles; True when there is more to do."""
 
@@ -107,15 +113,20 @@ class AgentHost:
         """Let the mind make up to *fuel* cycles; True when there is more to do."""
         return not self._ended and self.mind.run(fuel)
 
-    def end(self) -> None:
-        """Let nothing come in or go out any more."""
+    def halt(self) -> None:
+        """Let the mind make no further cycle, also when it is in the middle of its turn."""
         self._ended = True
+        self.mind.stopped = True
+
+    def end(self) -> None:
+        """Give up all actions and focused artifacts."""
         if self.body is not None:
             self.body.close()
 
     def receive(self, message: SpeechAct) -> None:
         """Hand a message to the mind."""
-        self.mind.receive(message)
+        if not self._ended:
+            self.mind.receive(message)
 
     # From here on, the port `jacaros.bdi.architecture.Architecture`.
 
@@ -162,8 +173,9 @@ class AgentHost:
         return self._run.agent_names()
 
     def print(self, text: str) -> None:
-        """Show a line of the program's output."""
-        self._run.console.print(self.name, text)
+        """Show a line of the program's output; an agent that has ended prints nothing more."""
+        if not self._ended:
+            self._run.console.print(self.name, text)
 
     def log(self, level: str, text: str) -> None:
         """Tell people about trouble."""

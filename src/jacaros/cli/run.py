@@ -1,0 +1,90 @@
+"""``jacaros run FILE``."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from jacaros.mas.console import Console, StandardConsole
+from jacaros.mas.launch import launch
+from jacaros.mas.mas import Mas
+from jacaros.mas.options import ROS_KINDS, RunOptions
+
+
+@click.command("run", short_help="Run an agent program or a project.")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option(
+    "--clock",
+    type=click.Choice(["real", "fast"]),
+    default="real",
+    show_default=True,
+    help="In real time, or as fast as the machine can (not with a real ROS graph).",
+)
+@click.option("--seed", type=int, help="Makes random numbers repeatable; with --clock fast the whole run.")
+@click.option(
+    "--ros",
+    type=click.Choice(ROS_KINDS),
+    default="memory",
+    show_default=True,
+    help="The ROS graph: inside the process, or a real one.",
+)
+@click.option("--world", metavar="FILE", help="World file, or the name of a world that comes with jacaros.")
+@click.option("--until-idle", is_flag=True, help="End when no agent has anything to do or to wait for.")
+@click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds of the run's clock.")
+@click.option("--namespace", default="", metavar="NAME", help="Put before relative ROS names.")
+@click.option(
+    "--record", type=click.Path(path_type=Path), metavar="FILE", help="Record the run as JSON lines."
+)
+@click.option(
+    "--replay",
+    type=click.Path(path_type=Path),
+    metavar="FILE.html",
+    help="Write the run as a page to look at in a browser.",
+)
+@click.option("--view", is_flag=True, help="Show the world in the terminal.")
+@click.option("--quiet", is_flag=True, help="Tell warnings and errors only.")
+def command(
+    file: Path,
+    clock: str,
+    seed: int | None,
+    ros: str,
+    world: str | None,
+    until_idle: bool,
+    seconds: float | None,
+    namespace: str,
+    record: Path | None,
+    replay: Path | None,
+    view: bool,
+    quiet: bool,
+) -> int:
+    """Run FILE: an agent program (.asl) or a project (.mas2j, .jcm).
+
+    What agents print goes to the standard output as `[agent] text`, everything else to the standard error
+    output.
+    """  # fmt: skip
+    watched = record is not None or replay is not None or view
+    options = RunOptions(
+        fast=clock == "fast",
+        seed=seed,
+        ros=ros,
+        world=world,
+        show_world=watched,
+        namespace=namespace,
+        until_idle=until_idle,
+        seconds=seconds,
+    )
+    console = StandardConsole("warning" if quiet else "info")
+    if not watched:
+        return launch(file, options, console)
+    return _launch_watched(file, options, console, record, replay, view)
+
+
+def _launch_watched(
+    file: Path, options: RunOptions, console: Console, record: Path | None, replay: Path | None, view: bool
+) -> int:
+    # Imported here: numpy, rich and the simulator are for those who want to see something.
+    from jacaros.cli.watching import Watching
+
+    with Watching(console, record, replay, view) as watching:
+        begin: Callable[[Mas], None] = watching.begin
+        return launch(file, options, watching, begin)

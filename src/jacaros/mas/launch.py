@@ -1,0 +1,109 @@
+"""Launching a project in a process: clock, loop, signals, garbage collector."""
+
+import asyncio
+import gc
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from jacaros.clock import Clock, VirtualClock, WallClock, run
+from jacaros.errors import InternalError
+from jacaros.mas.console import Console
+from jacaros.mas.deployment import Deployment
+from jacaros.mas.mas import Mas
+from jacaros.mas.options import RunOptions
+from jacaros.mas.project import load_deployment
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+GARBAGE_THRESHOLD = 100_000
+"""Terms are made and dropped by the million, mostly without cycles: looking for cycles more often costs a
+tenth of the time and finds nothing."""
+
+
+def launch(
+    project: str | Path | Deployment,
+    options: RunOptions,
+    console: Console,
+    when_started: Callable[[Mas], None] | None = None,
+    own_process: bool = True,
+) -> int:
+    """Run a project to its end; the exit code.
+
+    Args:
+        project: a project file, a lone program, or what one declares.
+        options: how to run it.
+        console: its outputs.
+        when_started: called when everything has been made, before the first agent has its turn.
+        own_process: settings of the whole process may be changed: signals and the garbage collector.
+
+    Raises:
+        JacarosError: the project cannot be run; the text tells what is wrong.
+        InternalError: a defect of JaCaROS showed itself.
+    """
+    options.check()
+    deployment = project if isinstance(project, Deployment) else load_deployment(project)
+    clock: Clock = VirtualClock() if options.fast else WallClock()
+
+    async def main() -> int:
+        mas = Mas(deployment, clock, console, options)
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(lambda _, context: _escaped(mas, context))
+
+        def started() -> None:
+            if own_process:
+                gc.freeze()
+                gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
+            if when_started is not None:
+                when_started(mas)
+
+        with _ended_by_signals(mas, loop) if own_process else _ended_by_nobody():
+            return await mas.run(started)
+
+    return run(main, clock)
+
+
+def _escaped(mas: Mas, context: dict[str, Any]) -> None:
+    """Something raised an exception outside of anybody's care."""
+    error = context.get("exception")
+    if isinstance(error, Exception) and "handle" in context:
+        mas.fail(error)
+        return
+    mas.console.log(f"error: {context.get('message')}: {type(error).__name__}: {error}", "error")
+
+
+@contextmanager
+def _ended_by_nobody() -> Iterator[None]:
+    yield
+
+
+@contextmanager
+def _ended_by_signals(mas: Mas, loop: asyncio.AbstractEventLoop) -> Iterator[None]:
+    """Let Ctrl-C and SIGTERM end the run in good order; the second one ends it at once."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+
+    def end(number: int, frame: FrameType | None) -> None:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+        loop.call_soon_threadsafe(mas.end, 128 + number)
+
+    for number in SIGNALS:
+        if before[number] is not signal.SIG_IGN:
+            signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def explain(error: BaseException) -> str:
+    """What to tell people of a defect of JaCaROS."""
+    cause = error.__cause__ if isinstance(error, InternalError) and error.__cause__ is not None else error
+    return f"internal error of jacaros, please report it: {type(cause).__name__}: {cause}"

@@ -1,0 +1,272 @@
+"""A running multi-agent system: where minds, bodies, environment, ROS and time are put together."""
+
+import asyncio
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from random import Random
+from typing import Any
+
+import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+from jacaros.asl.errors import AslError
+from jacaros.asl.nodes import Program
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.options import Options
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.body.body import AgentBody
+from jacaros.body.percepts import PerceptWriter
+from jacaros.body.values import References
+from jacaros.clock import Clock
+from jacaros.env.environment import Environment
+from jacaros.env.errors import OperationFailed
+from jacaros.mas.activity import Activity
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.console import Console
+from jacaros.mas.deployment import AgentSpec, Deployment
+from jacaros.mas.directory import Directory
+from jacaros.mas.mailboxes import Mailboxes
+from jacaros.mas.options import RunOptions
+from jacaros.mas.programs import Programs
+from jacaros.mas.ros_graph import RosGraph
+from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.surroundings import Resources, artifact_of, furnish, open_environment, path_of
+from jacaros.terms import arithmetic
+
+_HOPS = 8
+"""Turns of the loop that must pass without anything to do before a run counts as idle: a message of a ROS
+graph inside the process takes a few to become a belief."""
+
+
+class Mas:
+    """One run of a project; `run` brings it from its start to its end.
+
+    Args:
+        deployment: what to run.
+        clock: its time; `run` is called on the loop that goes with it.
+        console: its outputs.
+        options: how to run it.
+
+    Attributes:
+        directory: the agents by name.
+        environment: None in a project without environment.
+        ros: the ROS graph and the embedded world.
+        scheduler: gives the agents their turns.
+        activity: what the agents wait for.
+    """
+
+    def __init__(
+        self, deployment: Deployment, clock: Clock, console: Console, options: RunOptions | None = None
+    ) -> None:
+        self.deployment = deployment
+        self.clock = clock
+        self.console = console
+        self.options = options or RunOptions()
+        self.options.check()
+        self.directory: Directory[AgentHost] = Directory()
+        self.activity = Activity()
+        self.scheduler = Scheduler(clock, self._when_idle, self.fail)
+        self.environment: Environment | None = None
+        log = self.console.log
+        self.ros = RosGraph(self.options, clock, deployment.name, deployment.world, log)
+        self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"))
+        self._mailboxes = Mailboxes(self._mailbox_of)
+        self._references = References()
+        self._writer: PerceptWriter | None = None
+        self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
+        self._ended: asyncio.Future[int] | None = None
+        self._ending = False
+        self._error: BaseException | None = None
+        self._idle_looks = 0
+
+    async def run(self, when_started: Callable[[], None] | None = None) -> int:
+        """Run the project until it ends; the exit code.
+
+        Args:
+            when_started: called when everything has been made, before the first agent has its turn.
+
+        Raises:
+            JacarosError: the project cannot be started; the text tells what is wrong.
+            InternalError: a defect of JaCaROS showed itself.
+        """
+        self._ended = asyncio.get_running_loop().create_future()
+        arithmetic.warn = lambda text: self.console.log(f"warning: {text}", "warning")
+        try:
+            await self._start()
+            if when_started is not None:
+                when_started()
+            code = await self._ended
+        finally:
+            await self._close()
+        if self._error is not None:
+            raise self._error
+        return code
+
+    # ---- the start
+
+    async def _start(self) -> None:
+        for diagnostic in self.deployment.ignored:
+            self.console.log(diagnostic.render(), "warning")
+        programs = self._programs.load_all(self.deployment.agents)
+        await self.ros.start()
+        if self.deployment.artifact_environment or self.deployment.workspaces:
+            self._open_environment()
+        if self.environment is not None:
+            await furnish(self.environment, self.deployment)
+        for spec, program in zip(self.deployment.agents, programs, strict=True):
+            self._add(spec, program)
+        for spec in self.deployment.agents:
+            self._situate(spec)
+        for host in self.directory:
+            host.mind.start()
+        if self.options.seconds is not None:
+            self.clock.call_later(self.options.seconds, lambda: self.end(0))
+        self._when_idle()
+
+    def _open_environment(self) -> None:
+        random = Random(f"{self._seed}/artifacts")
+        resources = Resources(
+            {"ros": self.ros.backend, "console": lambda: self.console.print, "random": lambda: random}
+        )
+        self.environment = open_environment(
+            self.deployment, self.clock, resources, self.console.log, self.fail
+        )
+        self._writer = PerceptWriter(self._references, self.environment.workspace)
+
+    def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
+        name = spec.name
+        host = AgentHost(name, self, Random(f"{self._seed}/{name}"))
+        agent = Agent(name, program, host, _options(spec))
+        host.mind = agent
+        if self.environment is not None and self._writer is not None:
+            host.body = AgentBody(
+                name, agent, self.environment, self._references, self._writer, host.print, self.activity
+            )
+        self.directory.add(name, host)
+        return host
+
+    def _situate(self, spec: AgentSpec) -> None:
+        """Let an agent join and focus what the project says, before it begins to reason."""
+        host = self.directory.find(spec.name)
+        body = host.body if host is not None else None
+        if self.environment is None or not isinstance(body, AgentBody):
+            return
+        if self.deployment.environment is not None or self.deployment.workspaces:
+            body.enter()
+        try:
+            for workspace in spec.join:
+                body.join(path_of(self.environment, workspace))
+            for focus in spec.focus:
+                body.focus(artifact_of(self.environment, focus), focus.namespace)
+        except OperationFailed as failure:
+            self.console.log(f"[{spec.name}] error: {failure.message}", "error")
+
+    # ---- the end
+
+    def end(self, exit_code: int) -> None:
+        """End the run: no agent has another turn, no line is printed any more."""
+        if self._ending:
+            return
+        self._ending = True
+        self.scheduler.stop()
+        for host in self.directory:
+            host.halt()
+        if self._ended is not None and not self._ended.done():
+            self._ended.set_result(exit_code)
+
+    def fail(self, error: BaseException) -> None:
+        """End the run because of a defect of JaCaROS itself."""
+        if self._error is None:
+            self._error = error
+        self.end(1)
+
+    async def _close(self) -> None:
+        self.end(1)
+        for host in self.directory:
+            host.end()
+        if self.environment is not None:
+            await self.environment.close()
+        await self.ros.close()
+
+    def _when_idle(self) -> None:
+        if self.options.until_idle and not self._ending:
+            self._idle_looks += 1
+            self._look_again(self._idle_looks, _HOPS)
+
+    def _look_again(self, look: int, hops: int) -> None:
+        if look != self._idle_looks or self.activity.pending or not self.scheduler.idle or self._ending:
+            return
+        if hops == 0:
+            self.end(0)
+            return
+        asyncio.get_running_loop().call_soon(self._look_again, look, hops - 1)
+
+    # ---- what agents ask for
+
+    def _mailbox_of(self, name: str) -> Callable[[SpeechAct], None] | None:
+        host = self.directory.find(name)
+        return host.receive if host is not None else None
+
+    def deliver(self, message: SpeechAct) -> bool:
+        """Bring a message to its receiver; False when there is none."""
+        return self._mailboxes.deliver(message)
+
+    def agent_names(self) -> Sequence[str]:
+        """Names of all agents, in the order of their making."""
+        return self.directory.names()
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        """End the run after *delay* seconds."""
+        if delay > 0:
+            self.clock.call_later(delay, lambda: self.end(exit_code))
+        else:
+            self.end(exit_code)
+
+    def create_agent(self, name: str, source: str | None) -> str | None:
+        """Make and start an agent; its final name, or None with the reason logged."""
+        wanted = source if source is not None else f"{name}.asl"
+        try:
+            path = self._programs.find(wanted)
+            spec = AgentSpec(self.directory.free_name(name), path, name)
+            host = self._add(spec, self._programs.load(spec))
+        except FileNotFoundError:
+            folders = ", ".join(str(folder) for folder in self.deployment.source_paths)
+            self.console.log(f"error: agent {name}: there is no program {wanted} in {folders}", "error")
+            return None
+        except AslError as wrong:
+            self.console.log(str(wrong), "error")
+            return None
+        self._situate(spec)
+        host.mind.start()
+        return host.name
+
+    def kill_agent(self, name: str) -> bool:
+        """End an agent; False when there is none of that name."""
+        host = self.directory.remove(name)
+        if host is None:
+            return False
+        host.halt()
+        host.end()
+        return True
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        """Name and text of a program file.
+
+        Raises:
+            FileNotFoundError: there is none.
+        """
+        return self._programs.include(path, str(self.deployment.base_path / "."))
+
+
+def _options(spec: AgentSpec) -> Options:
+    """The options of an agent, as its project file has them."""
+    given = spec.options
+    options = Options()
+    changes: dict[str, Any] = {}
+    if given.get("events") in ("discard", "requeue"):
+        changes["events"] = given["events"]
+    if "intBels" in given:
+        changes["new_focus"] = given["intBels"] == "newFocus"
+    if "tro" in given:
+        changes["tail_calls"] = given["tro"] != "false"
+    if given.get("verbose", "").isdigit():
+        changes["verbose"] = int(given["verbose"])
+    return replace(options, **changes)

@@ -1,0 +1,103 @@
+"""The agent programs of a run: found, read once, shared by all agents that run them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from jacaros.asl import nodes
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import load_program, parse_literals
+from jacaros.mas.deployment import AgentSpec
+
+
+class Programs:
+    """Reads agent programs.
+
+    Args:
+        folders: where programs and included files are looked for, in order.
+        warn: takes the text of a warning about a program.
+    """
+
+    def __init__(self, folders: Sequence[Path], warn: Callable[[str], None]) -> None:
+        self._folders = tuple(folders)
+        self._warn = warn
+        self._read: dict[Path, nodes.Program] = {}
+
+    def load_all(self, agents: Sequence[AgentSpec]) -> list[nodes.Program]:
+        """The programs of all agents, with the beliefs and goals that the project adds.
+
+        Raises:
+            AslError: with the errors of all programs.
+        """
+        wrong: list[Diagnostic] = []
+        programs = []
+        for agent in agents:
+            try:
+                programs.append(self.load(agent))
+            except AslError as error:
+                wrong += [d for d in error.diagnostics if d not in wrong]
+        if wrong:
+            raise AslError(wrong)
+        return programs
+
+    def load(self, agent: AgentSpec) -> nodes.Program:
+        """The program of one agent.
+
+        Raises:
+            AslError: the program, or what the project adds, is wrong.
+        """
+        program = self.read(agent.source_path)
+        place = f"the declaration of {agent.name}"
+        # As in Jason: the project's beliefs are believed first, and its goals come first.
+        beliefs = parse_literals(agent.beliefs, place) if agent.beliefs.strip() else ()
+        goals = parse_literals(agent.goals, place) if agent.goals.strip() else ()
+        if not beliefs and not goals:
+            return program
+        return replace(program, beliefs=(*program.beliefs, *beliefs), goals=(*goals, *program.goals))
+
+    def read(self, path: Path) -> nodes.Program:
+        """The program in a file.
+
+        Raises:
+            AslError: it is wrong, or not there.
+        """
+        program = self._read.get(path)
+        if program is None:
+            program, warnings = load_program(str(path), _text(path), self.include)
+            for warning in warnings:
+                self._warn(warning.render())
+            self._read[path] = program
+        return program
+
+    def find(self, name: str) -> Path:
+        """The file of a program named by another program.
+
+        Raises:
+            FileNotFoundError: there is none.
+        """
+        candidates = [name] if name.endswith(".asl") else [f"{name}.asl", name]
+        for folder in self._folders:
+            for candidate in candidates:
+                if (folder / candidate).is_file():
+                    return folder / candidate
+        raise FileNotFoundError(name)
+
+    def include(self, path: str, including: str) -> tuple[str, str]:
+        """Name and text of an included file: beside the including one, or in one of the folders.
+
+        Raises:
+            FileNotFoundError: there is none.
+        """
+        beside = Path(including).parent / path
+        file = beside if beside.is_file() else self.find(path)
+        return str(file), file.read_text(encoding="utf-8")
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise AslError([Diagnostic("error", f"{path} is not found")]) from None
+    except (OSError, UnicodeError) as error:
+        raise AslError([Diagnostic("error", f"{path} cannot be read: {error}")]) from error

@@ -1,0 +1,128 @@
+"""The ROS graph of a run, and the embedded world on it.
+
+The graph inside the process, and the world with it, come into being when the first artifact asks for them:
+a program that talks to no robot pays for none.  A real graph is joined at the start.
+"""
+
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jacaros.clock import Clock
+from jacaros.mas.options import RunOptions
+
+if TYPE_CHECKING:
+    from jacaros.ros.backend import Backend
+    from jacaros.sim.node import SimNode
+    from jacaros.sim.world import World
+
+DEFAULT_WORLD = "empty"
+"""The world of a project that names none: an open floor with one robot."""
+
+
+class RosGraph:
+    """Opens backend and world of a run.
+
+    Args:
+        options: of the run.
+        clock: of the run.
+        name: of the agent system; its ROS node is called so.
+        world: the world that the project names, None for the default one.
+        log: takes a line for people.
+
+    Attributes:
+        world: the embedded world, None while there is none.
+    """
+
+    def __init__(
+        self,
+        options: RunOptions,
+        clock: Clock,
+        name: str,
+        world: str | Path | None,
+        log: Callable[[str], None],
+    ) -> None:
+        self._options = options
+        self._clock = clock
+        self._name = _node_name(name)
+        self._source = options.world if options.world is not None else world
+        self._log = log
+        self._backend: Backend | None = None
+        self._world_backend: Backend | None = None
+        self._node: SimNode | None = None
+        self.world: World | None = None
+
+    async def start(self) -> None:
+        """Join a real graph; make the world if it was asked for by name.
+
+        Raises:
+            BackendUnavailable: the library for the graph is missing; the text tells the cure.
+            WorldError: the world file is wrong.
+        """
+        if self._options.ros != "memory":
+            backend = self._open()
+            self._backend = backend
+            await backend.start()
+            if self._source is not None:
+                self._start_world(backend)
+        elif self._source is not None or self._options.show_world:
+            self.backend()
+
+    def backend(self) -> "Backend":
+        """The node of the agent system in the ROS graph."""
+        if self._backend is None:
+            self._backend = self._open()
+            _finish_at_once(self._backend.start())
+            self._world_backend = self._open_for_world(self._backend)
+            _finish_at_once(self._world_backend.start())
+            self._start_world(self._world_backend)
+        return self._backend
+
+    async def close(self) -> None:
+        """Stop the robots, then the world, and leave the graph."""
+        if self._backend is not None:
+            await self._backend.close()
+        if self._node is not None:
+            self._node.close()
+        if self._world_backend is not None:
+            await self._world_backend.close()
+
+    def _open(self) -> "Backend":
+        from jacaros.ros.open import open_backend
+
+        return open_backend(
+            self._options.ros, self._clock, self._name, self._options.namespace, log=self._log_ros
+        )
+
+    def _open_for_world(self, beside: Any) -> "Backend":
+        from jacaros.ros.open import open_backend
+
+        return open_backend("memory", self._clock, "world", log=self._log_ros, graph=beside.graph)
+
+    def _log_ros(self, text: str) -> None:
+        self._log(f"[ros] {text}")
+
+    def _start_world(self, backend: "Backend") -> None:
+        from jacaros.sim.node import SimNode
+        from jacaros.sim.world import World
+
+        source = self._source if self._source is not None else DEFAULT_WORLD
+        self.world = World.load(source, self._options.seed)
+        self._node = SimNode(self.world, backend, self._clock)
+        self._node.start()
+
+
+def _finish_at_once(coroutine: Coroutine[Any, Any, None]) -> None:
+    """Run a coroutine that waits for nothing: an artifact that asks for the graph cannot wait."""
+    try:
+        coroutine.send(None)
+    except StopIteration:
+        return
+    coroutine.close()
+    raise RuntimeError("the ROS graph inside the process must start without waiting")
+
+
+def _node_name(name: str) -> str:
+    """A ROS name from that of the agent system."""
+    plain = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in name)
+    return plain if plain[:1].isalpha() else f"mas_{plain}"

@@ -1,0 +1,129 @@
+"""The environment of a run: workspaces and artifacts of the project, made in the order of the file."""
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.clock import Clock
+from jacaros.env.environment import Environment
+from jacaros.env.errors import OperationFailed
+from jacaros.env.workspace import Workspace
+from jacaros.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
+
+if TYPE_CHECKING:
+    from jacaros.env.artifact import Artifact
+    from jacaros.env.ids import ArtifactId
+
+
+class Resources(Mapping[str, object]):
+    """What a run lends to artifacts; each thing is made when it is first asked for."""
+
+    def __init__(self, makers: Mapping[str, Callable[[], object]]) -> None:
+        self._makers = makers
+
+    def __getitem__(self, name: str) -> object:
+        return self._makers[name]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
+
+
+class TypeFinder:
+    """Finds artifact classes for type names.
+
+    A project's own artifacts are read at the start, so that a mistake in them is told before anything runs;
+    those that come with JaCaROS are imported when the first artifact is made.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._find: Callable[[str], type[Artifact]] | None = None
+        if (folder / "artifacts.py").is_file() or (folder / "artifacts").is_dir():
+            self._prepare()
+
+    def __call__(self, type_name: str) -> "type[Artifact]":
+        """The class of that name; raises `UnknownArtifactType`."""
+        return (self._find or self._prepare())(type_name)
+
+    def _prepare(self) -> "Callable[[str], type[Artifact]]":
+        from jacaros.artifacts.registry import type_finder
+
+        self._find = type_finder(self._folder)
+        return self._find
+
+
+def open_environment(
+    deployment: Deployment,
+    clock: Clock,
+    resources: Mapping[str, object],
+    log: Callable[[str], None],
+    on_internal_error: Callable[[BaseException], None],
+) -> Environment:
+    """Make an environment that holds nothing yet.
+
+    Raises:
+        ArtifactsUnreadable: the project's own artifacts have a mistake.
+    """
+    find_type = TypeFinder(deployment.base_path)
+    return Environment(clock, resources, find_type, log, on_internal_error)
+
+
+async def furnish(environment: Environment, deployment: Deployment) -> None:
+    """Make the workspaces and artifacts that the project declares.
+
+    Raises:
+        ProjectError: one cannot be made.
+    """
+    for spec in deployment.workspaces:
+        workspace = _workspace(environment, spec)
+        for artifact in spec.artifacts:
+            await _make(workspace, artifact)
+
+
+def _workspace(environment: Environment, spec: WorkspaceSpec) -> Workspace:
+    above = environment.workspace(path_of(environment, spec.parent)) if spec.parent else None
+    path = f"{above.path if above is not None else '/main'}/{spec.name}"
+    if spec.name == "main" and above is None:
+        return environment.workspace("/main")
+    try:
+        return environment.create_workspace(path)
+    except OperationFailed as failure:
+        raise ProjectError([Diagnostic("error", failure.message, spec.span)]) from failure
+
+
+async def _make(workspace: Workspace, spec: ArtifactSpec) -> None:
+    try:
+        await workspace.make_artifact(spec.name, spec.type_name, spec.arguments)
+    except OperationFailed as failure:
+        raise ProjectError([Diagnostic("error", failure.message, spec.span)]) from failure
+
+
+def path_of(environment: Environment, name: str) -> str:
+    """The full path of a workspace that the project calls *name*.
+
+    Raises:
+        UnknownWorkspace: there is none.
+    """
+    for workspace in environment.workspaces():
+        if name in (workspace.name, workspace.path):
+            return workspace.path
+    return environment.workspace(name if name.startswith("/") else f"/main/{name}").path
+
+
+def artifact_of(environment: Environment, focus: FocusSpec) -> "ArtifactId":
+    """The artifact that an agent of the project is to focus.
+
+    Raises:
+        OperationFailed: there is none.
+    """
+    if focus.workspace is not None:
+        return environment.workspace(path_of(environment, focus.workspace)).lookup(focus.artifact)
+    for workspace in environment.workspaces():
+        for artifact in workspace.artifacts():
+            if artifact.name == focus.artifact:
+                return artifact
+    return environment.workspace("/main").lookup(focus.artifact)
