@@ -74,7 +74,7 @@ class Manual:
         lines = [f"{self.type_name}: {self.text}".rstrip(": "), f"  {self.usage}"]
         for each in self.operations:
             lines.append(f"  {each.kind} {each.usage}")
-            lines += [f"      {line}" for line in each.text.splitlines()]
+            lines += [f"      {line}".rstrip() for line in each.text.splitlines()]
         if self.ports:
             lines.append(f"  out ports {', '.join(self.ports)}")
         return "\n".join(lines)

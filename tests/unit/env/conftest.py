@@ -77,7 +77,9 @@ class Stage:
     def __init__(self, clock, resources):
         self.clock, self.lines, self.defects, self.story = clock, [], [], []
         self.types = {}
-        self.environment = Environment(clock, resources, self.find_type, self.lines.append, self.defects.append)
+        self.environment = Environment(
+            clock, resources, self.find_type, self.lines.append, self.defects.append
+        )
         self.main = self.environment.workspace("/main")
 
     def find_type(self, name):

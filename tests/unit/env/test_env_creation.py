@@ -287,7 +287,9 @@ def test_the_creator_is_the_caller_in_init(play):
 def test_artifacts_know_their_surroundings_in_init(play):
     class Curious(Artifact):
         def init(self):
-            self.define_property("told", self.name, self.workspace.path, self.workspace.name, self.clock.virtual)
+            self.define_property(
+                "told", self.name, self.workspace.path, self.workspace.name, self.clock.virtual
+            )
             self.define_property("lent", self.resources["lent"])
 
     async def scene(stage):

@@ -121,7 +121,13 @@ def test_operations_running_or_waiting_fail_with_artifact_disposed(play):
         assert stage.story[0] == ("main", "-level(0) -mode('idle')"), "observers first, as they knew it"
         assert [call.reason for call in calls] == [Structure("artifact_disposed", ("it",))] * 5
         assert "was disposed before run/0 ended" in calls[0].outcome.message
-        assert stage.thing.events == ["run stopped", "run stopped", "dispose", "last registered", "first registered"]
+        assert stage.thing.events == [
+            "run stopped",
+            "run stopped",
+            "dispose",
+            "last registered",
+            "first registered",
+        ]
 
     play(scene)
 

@@ -236,7 +236,11 @@ def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(play):
             agent = "x"
 
             def observe(self, observation):
-                if observation.changed and chain[-1].outcome is None and observation.changed[0][1].values == (0,):
+                if (
+                    observation.changed
+                    and chain[-1].outcome is None
+                    and observation.changed[0][1].values == (0,)
+                ):
                     stage.call(store, "fill")
 
         stage.main.focus(store, Refill())

@@ -1,5 +1,7 @@
 """Processes of an artifact's own, started by its operations, by ``init`` and by callbacks."""
 
+import pytest
+
 from jacaros.env import Artifact, InvalidArtifact, OperationFailed, internal_operation, operation
 from jacaros.trace import cause
 
@@ -261,10 +263,8 @@ def test_a_callback_starts_a_process_which_runs_at_once_when_the_artifact_is_fre
         stage.main.dispose_artifact(sensor)
         kept[0].on_sample(10)
         kept[0].start("receive", 11, cause=cause("sample", "late"))
-        try:
+        with pytest.raises(InvalidArtifact, match="receive with 0 arguments"):
             kept[0].start("receive")
-        except InvalidArtifact as error:
-            assert "receive with 0 arguments" in str(error)
 
     play(scene)
 

@@ -118,7 +118,7 @@ def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_the_call
 
 def test_the_chain_runs_on_behalf_of_the_agent_that_started_it(play):
     async def scene(stage):
-        lamp, first = await linked(stage)
+        _, first = await linked(stage)
         second = await stage.make(Switch, name="second")
         stage.main.link(second, "out", first)
         name = Out()

@@ -197,7 +197,9 @@ def test_a_wrong_argument_fails_and_is_named(play, operation, arguments, paramet
         call = stage.call(counter, operation, *arguments)
         key = f"{operation}/{len(arguments)}"
         assert call.reason == Structure("wrong_op_arguments", (counter, key))
-        assert f"operation {key} of artifact it: parameter {parameter} wants {expected}" in call.outcome.message
+        assert (
+            f"operation {key} of artifact it: parameter {parameter} wants {expected}" in call.outcome.message
+        )
         assert f"got {got}" in call.outcome.message
 
     play(scene)
@@ -326,7 +328,7 @@ def test_properties_cannot_be_changed_outside_of_operations(play):
             lambda: leaky.define_property("q", 2),
             lambda: leaky.remove_property("p"),
             lambda: leaky.signal("s"),
-            lambda: leaky.commit(),
+            leaky.commit,
             lambda: leaky.current,
         ):
             with pytest.raises(InvalidArtifact, match=r"within an operation.*self\.start"):

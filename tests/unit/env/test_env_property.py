@@ -136,7 +136,9 @@ def test_annotations_stay_until_they_are_replaced():
 
 def test_an_unknown_property_is_explained():
     store = store_of(("count", 0), ("level", 1))
-    with pytest.raises(UnknownProperty, match=r"no observable property cuont \(it has count, level\); did you mean"):
+    with pytest.raises(
+        UnknownProperty, match=r"no observable property cuont \(it has count, level\); did you mean"
+    ):
         store.update("cuont", (1,), None)
     with pytest.raises(UnknownProperty, match="it has none"):
         PropertyStore().first("p")

@@ -151,7 +151,7 @@ class Steps:
         except Exception as error:
             self._end(execution, error)
         except BaseException:
-            self._end(execution, InternalError("interrupted"))
+            self._end(execution, OperationFailed("the process was interrupted"))
             raise
         else:
             self._end(execution, None)
@@ -201,8 +201,12 @@ class Steps:
         if execution.disposed:
             outcome = outcomes.disposed(execution.request)
         self._running.pop(execution, None)
-        self.turns.end(self._tell, execution, outcome)
-        self._close_if_over()
+        try:
+            self.turns.end(self._tell, execution, outcome)
+        finally:
+            self._close_if_over()
+        if isinstance(error, InternalError):
+            self.setting.report(error)
 
     def _tell(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
         execution.ended = True
@@ -219,8 +223,8 @@ class Steps:
         """Log what nobody else would see, or what its author must see."""
         key = outcomes.key(execution.request)
         if isinstance(error, InternalError):
-            self.setting.report(error)
-        elif not isinstance(error, OperationFailed):
+            return
+        if not isinstance(error, OperationFailed):
             self.setting.log_error(self.id.name, f"error in operation {key}, its step is undone:", error)
         elif execution.request.on_done is ignore_outcome or execution.stopped:
             self.setting.log(f"[{self.id.name}] operation {key} failed: {error.message}")

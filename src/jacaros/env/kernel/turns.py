@@ -60,7 +60,7 @@ class TurnQueue:
                 self._places.append(place)
         finally:
             self._serving = False
-        self.serve()
+            self.serve()
 
     def line_up(
         self, executions: list[OperationExecution], guard: Callable[[OperationExecution], Guard | None]
@@ -135,7 +135,7 @@ class TurnQueue:
             tell(execution, outcome)
         finally:
             self._serving = False
-        self.serve()
+            self.serve()
 
     def reconsider(self) -> None:
         """Evaluate the guards again, because something has changed."""

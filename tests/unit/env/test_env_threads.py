@@ -1,0 +1,140 @@
+"""Operations that block run in a worker thread; what they change is published when they end."""
+
+import threading
+
+from jacaros.env import Artifact, Out, Structure, operation
+
+
+class Blocking(Artifact):
+    def init(self):
+        self.define_property("count", 0)
+        self.gate = threading.Event()
+        self.inside = threading.Event()
+        self.threads = []
+
+    @operation(threaded=True)
+    def work(self, result: Out):
+        self.threads.append(threading.current_thread())
+        self.update_property("count", self.value("count") + 1)
+        self.signal("half", 1)
+        self.signal_to("bob", "psst")
+        self.commit()
+        self.inside.set()
+        assert self.gate.wait(10.0)
+        self.update_property("count", self.value("count") + 1)
+        self.define_property("done", True)
+        self.start("inc")
+        result.set([self.caller, 42])
+
+    @operation(threaded=True)
+    def fail_late(self):
+        self.update_property("count", 99)
+        self.signal("never")
+        self.fail("no", "no", 1)
+
+    @operation
+    def inc(self):
+        self.update_property("count", self.value("count") + 10)
+
+
+def blocking_of(stage):
+    class Kept(Blocking):
+        def init(self):
+            super().init()
+            stage.it = self
+
+    return stage.make(Kept)
+
+
+async def until_inside(stage):
+    """Let the worker thread come to its gate; virtual time stands still meanwhile."""
+    import asyncio
+
+    await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 10.0)
+
+
+def test_it_runs_in_another_thread_and_publishes_once_when_it_ends(play):
+    async def scene(stage):
+        blocking = await blocking_of(stage)
+        alice, bob = stage.watch(blocking, "alice"), stage.watch(blocking, "bob")
+        result = Out()
+        call = stage.call(blocking, "work", result)
+        await until_inside(stage)
+        assert alice.notes == ["+count(0)"], "nothing is seen of a step in progress"
+        late = stage.watch(blocking, "late")
+        assert late.notes == ["+count(0)"]
+        assert stage.property(blocking, "count") == (0,)
+        waiting = stage.call(blocking, "inc")
+        assert waiting.outcome is None
+        stage.it.gate.set()
+        await waiting.wait()
+        await call.wait()
+        assert result.value == ["main", 42]
+        assert stage.it.threads[0] is not threading.current_thread()
+        assert alice.notes[1:] == [
+            "~half(1) -count(0) +count(2) +done(True)",
+            "-count(2) +count(12)",
+            "-count(12) +count(22)",
+        ]
+        assert bob.notes[1:3] == ["~half(1) -count(0) +count(2) +done(True)", "~psst"]
+        assert late.notes[1:] == alice.notes[1:]
+        assert stage.elapsed == 0.0, "virtual time stood still"
+
+    play(scene)
+
+
+def test_a_failure_in_a_thread_is_undone(play):
+    async def scene(stage):
+        blocking = await blocking_of(stage)
+        watcher = stage.watch(blocking)
+        call = stage.call(blocking, "fail_late")
+        await call.wait()
+        assert call.reason == Structure("no", (1,))
+        assert watcher.notes == ["+count(0)"]
+        assert stage.call(blocking, "inc").ok
+
+    play(scene)
+
+
+def test_a_thread_cannot_be_dropped_and_runs_to_its_end_untold(play):
+    async def scene(stage):
+        blocking = await blocking_of(stage)
+        call = stage.call(blocking, "work", Out())
+        await until_inside(stage)
+        call.execution.cancel()
+        waiting = stage.call(blocking, "inc")
+        stage.it.gate.set()
+        await waiting.wait()
+        assert call.outcome is None
+        assert stage.property(blocking, "done") == (True,)
+
+    play(scene)
+
+
+def test_disposing_waits_for_the_thread(play):
+    async def scene(stage):
+        blocking = await blocking_of(stage)
+        watcher = stage.watch(blocking)
+        call = stage.call(blocking, "work", Out())
+        await until_inside(stage)
+        stage.main.dispose_artifact(blocking)
+        assert watcher.notes == ["+count(0)", "-count(0)"]
+        assert call.outcome is None
+        stage.it.gate.set()
+        await call.wait()
+        assert call.reason == Structure("artifact_disposed", ("it",))
+
+    play(scene)
+
+
+def test_a_callback_may_start_a_process_while_a_thread_has_the_artifact(play):
+    async def scene(stage):
+        blocking = await blocking_of(stage)
+        call = stage.call(blocking, "work", Out())
+        await until_inside(stage)
+        stage.it.start("inc")
+        stage.it.gate.set()
+        await call.wait()
+        assert stage.property(blocking, "count") == (22,)
+
+    play(scene)

@@ -1,0 +1,164 @@
+"""The tree of workspaces, what each has from the beginning, and how artifacts are found."""
+
+import asyncio
+
+import pytest
+
+from jacaros.env import Artifact, OperationFailed, Structure, UnknownArtifact, UnknownWorkspace, operation
+
+
+class Counter(Artifact):
+    def init(self, start: int = 0):
+        self.define_property("count", start)
+
+    @operation
+    def inc(self):
+        self.update_property("count", self.value("count") + 1)
+
+
+class Other(Artifact):
+    @operation
+    def inc(self): ...
+
+    @operation
+    def inc_any(self, *x: object): ...
+
+
+def test_main_is_there_with_its_default_artifacts(play):
+    async def scene(stage):
+        assert stage.environment.workspaces() == (stage.main,)
+        assert (stage.main.path, stage.main.name) == ("/main", "main")
+        assert [each.name for each in stage.main.artifacts()] == ["blackboard", "console"]
+        assert stage.main.lookup("console").creator is None
+
+    play(scene)
+
+
+def test_workspaces_form_a_tree(play):
+    async def scene(stage):
+        lab = stage.environment.create_workspace("/main/lab")
+        inner = stage.environment.create_workspace("/main/lab/inner")
+        assert (inner.path, inner.name) == ("/main/lab/inner", "inner")
+        assert stage.environment.workspace("/main/lab") is lab
+        assert [each.path for each in stage.environment.workspaces()] == [
+            "/main",
+            "/main/lab",
+            "/main/lab/inner",
+        ]
+        assert lab.lookup("console") is not stage.main.lookup("console")
+
+    play(scene)
+
+
+def test_a_workspace_that_is_there_or_hangs_in_the_air_is_refused(play):
+    async def scene(stage):
+        with pytest.raises(OperationFailed, match="there is a workspace /main already") as present:
+            stage.environment.create_workspace("/main")
+        assert present.value.reason == Structure("workspace_already_present", ("/main",))
+        with pytest.raises(UnknownWorkspace, match=r"no workspace /mian; did you mean /main\?") as unknown:
+            stage.environment.create_workspace("/mian/lab")
+        assert unknown.value.reason == Structure("unknown_workspace", ("/mian",))
+        with pytest.raises(UnknownWorkspace):
+            stage.environment.workspace("/main/lab")
+
+    play(scene)
+
+
+def test_each_workspace_has_names_of_its_own(play):
+    async def scene(stage):
+        lab = stage.environment.create_workspace("/main/lab")
+        here, there = await stage.make(Counter, 1), await lab.make_artifact("it", Counter, [100])
+        assert stage.main.lookup("it") is here
+        assert lab.lookup("it") is there
+        assert (here.path, there.path) == ("/main/it", "/main/lab/it")
+
+    play(scene)
+
+
+def test_ids_are_good_in_the_whole_environment(play):
+    async def scene(stage):
+        lab = stage.environment.create_workspace("/main/lab")
+        there = await lab.make_artifact("it", Counter)
+        watcher = stage.watch(there)
+        assert stage.call(there, "inc").ok
+        assert watcher.notes[-1] == "-count(0) +count(1)"
+        assert stage.main.observers(there) == (watcher,)
+
+    play(scene)
+
+
+def test_lookup_helps_with_the_spelling(play):
+    async def scene(stage):
+        await stage.make(Counter, name="battery")
+        with pytest.raises(UnknownArtifact, match=r"no artifact batery; did you mean battery\?") as caught:
+            stage.main.lookup("batery")
+        assert caught.value.reason == Structure("artifact_not_available", ("batery",))
+
+    play(scene)
+
+
+def test_providers_of_an_operation_are_found_in_the_order_of_creation(play):
+    async def scene(stage):
+        assert stage.main.providers("inc", 0) == ()
+        first, second = await stage.make(Counter, name="a"), await stage.make(Other, name="b")
+        assert stage.main.providers("inc", 0) == (first, second)
+        assert stage.main.providers("inc_any", 3) == (second,)
+        assert stage.main.providers("inc", 1) == ()
+        stage.main.dispose_artifact(first)
+        assert stage.main.providers("inc", 0) == (second,)
+
+    play(scene)
+
+
+def test_one_can_wait_until_an_artifact_is_there(play):
+    async def scene(stage):
+        console = await stage.main.available("console")
+        assert console is stage.main.lookup("console")
+        waiting = asyncio.ensure_future(stage.main.available("it"))
+        await stage.clock.sleep(1.0)
+        await stage.make(Counter, name="other")
+        assert not waiting.done()
+        counter = await stage.make(Counter)
+        assert await waiting is counter
+        dropped = asyncio.ensure_future(stage.main.available("never"))
+        await stage.clock.sleep(1.0)
+        dropped.cancel()
+        await stage.clock.sleep(1.0)
+        assert dropped.cancelled()
+
+    play(scene)
+
+
+def test_an_artifact_that_is_gone_before_the_waiter_runs_is_an_unknown_artifact(play):
+    async def scene(stage):
+        waiting = asyncio.ensure_future(stage.main.available("it"))
+        await stage.clock.sleep(1.0)
+        stage.main.dispose_artifact(await stage.make(Counter))
+        with pytest.raises(UnknownArtifact):
+            await waiting
+
+    play(scene)
+
+
+def test_coming_and_going_can_be_watched(play):
+    async def scene(stage):
+        seen = []
+        stop = stage.main.watch(lambda artifact, present: seen.append((artifact.name, present)))
+        counter = await stage.make(Counter)
+        stage.main.dispose_artifact(counter)
+        stop()
+        stop()
+        await stage.make(Counter)
+        assert seen == [("it", True), ("it", False)]
+
+    play(scene)
+
+
+def test_a_broken_watcher_is_reported(play):
+    async def scene(stage):
+        stop = stage.main.watch(lambda artifact, present: 1 / 0)
+        await stage.make(Counter)
+        stop()
+        assert [type(error) for error in stage.defects] == [ZeroDivisionError]
+
+    play(scene, expect_defects=True)
