@@ -1,9 +1,9 @@
 """Internal actions on the system of agents."""
 
 from jacaros import __version__
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import characters, elements, number, string, whole
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.text import text
 from jacaros.terms.values import FALSE, TRUE, String, Term, Var, arguments_of, atom, functor_of, make_list
 

@@ -7,9 +7,9 @@ when it is something else.  A change is not taken back when a search goes back b
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import members
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.text import text
 from jacaros.terms.values import Functor, Term, Var

@@ -1,8 +1,8 @@
 """Internal actions that take lists as sets: ``.union .intersection .difference``."""
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import internal_action
 from jacaros.bdi.stdlib.arguments import elements
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.order import compare, sorted_terms
 from jacaros.terms.values import Term, Var, make_list
 

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import characters, elements, members, number, whole
-from jacaros.bdi.stdlib.context import Context
+from jacaros.bdi.stdlib.beliefs import best
 from jacaros.bdi.stdlib.java_regex import replace_all
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.order import compare, sorted_terms
@@ -137,7 +138,8 @@ def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
     number              the element or character at this position (from 0)
     two numbers A, B    ``.delete(A, B, C, R)``: positions A to B-1
     string              from the text of *C*: every match of this regular expression (of Java)
-    any other term      from a list: every element that unifies with it
+    any other term      from a list: every element that unifies with it; variables keep the values that
+                        they have in the first one (``f(_)`` leaves ``f(3)`` behind ``f(1)`` in place)
     ==================  =====================================================================
 
     Nothing is left out of a list at a position that it does not have, nor of a string when a position is
@@ -158,17 +160,25 @@ def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
             return ctx.unify(result, String(replace_all(characters(collection), what, "")))
         except ValueError as error:
             raise ActionError(f".delete: {error}") from None
-    items = elements(collection, "the second argument of .delete")
-    kept = [item for item in items if not _fits(what, item)]
+    kept = _not_matching(what, elements(collection, "the second argument of .delete"))
     return ctx.unify(result, make_list(kept))
 
 
-def _fits(pattern: Term, item: Term) -> bool:
-    """Whether the two unify; nothing stays bound."""
+def _not_matching(pattern: Term, items: list[Term]) -> list[Term]:
+    """The items that the pattern, with the variables bound by its first match, does not unify with."""
+    kept: list[Term] = []
     trail = Trail()
-    fits = unify(pattern, item, trail)
+    matched = False
+    for item in items:
+        mark = len(trail)
+        fits = unify(pattern, item, trail)
+        if matched or not fits:
+            undo(trail, mark)
+        matched = matched or fits
+        if not fits:
+            kept.append(item)
     undo(trail, 0)
-    return fits
+    return kept
 
 
 def _delete_range(ctx: Context, start: int, end: int, collection: Term, result: Term) -> bool:
@@ -223,35 +233,45 @@ def shuffle(ctx: Context, collection: Term, result: Term) -> bool:
     return ctx.unify(result, make_list(items))
 
 
-@internal_action(".max", arity=2)
-def greatest(ctx: Context, collection: Term, result: Term) -> bool:
+@internal_action(".max", arity=(2, 3))
+def greatest(ctx: Context, *arguments: Term) -> bool:
     """``.max(L, X)``: *X* is the greatest element of a list in the standard order.  Fails for an empty list.
 
+    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*.  Fails without
+    answers.
+
     Raises:
         WrongArguments: *L* is no list.
     """
-    return _extreme(ctx, collection, result, 1, ".max")
+    return _extreme(ctx, arguments, 1, ".max")
 
 
-@internal_action(".min", arity=2)
-def least(ctx: Context, collection: Term, result: Term) -> bool:
+@internal_action(".min", arity=(2, 3))
+def least(ctx: Context, *arguments: Term) -> bool:
     """``.min(L, X)``: *X* is the smallest element of a list in the standard order.  Fails for an empty list.
 
+    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*.  Fails without
+    answers.
+
     Raises:
         WrongArguments: *L* is no list.
     """
-    return _extreme(ctx, collection, result, -1, ".min")
+    return _extreme(ctx, arguments, -1, ".min")
 
 
-def _extreme(ctx: Context, collection: Term, result: Term, sign: int, name: str) -> bool:
-    items = elements(collection, f"the first argument of {name}")
+def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) -> bool:
+    """*sign* is 1 for the greatest and -1 for the smallest; the first one among equals counts."""
+    if len(arguments) == 3:
+        found = best(ctx, arguments[0], arguments[1], sign)
+        return found is not None and ctx.unify(arguments[2], found)
+    items = elements(arguments[0], f"the first argument of {name}")
     if not items:
         return False
-    best = items[0]
+    extreme = items[0]
     for item in items[1:]:
-        if compare(item, best) * sign > 0:
-            best = item
-    return ctx.unify(result, best)
+        if sign * compare(item, extreme) > 0:
+            extreme = item
+    return ctx.unify(arguments[1], extreme)
 
 
 @internal_action(".range", arity=(3, 4), backtracks=True)

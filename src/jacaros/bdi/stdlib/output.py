@@ -2,10 +2,10 @@
 
 import re
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.intention import PLAN
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import characters, number, string
-from jacaros.bdi.stdlib.context import Context
 from jacaros.bdi.stdlib.java_format import java_format
 from jacaros.errors import JacarosError
 from jacaros.terms.text import display, text

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from itertools import count
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import elements, whole
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var, is_list
 

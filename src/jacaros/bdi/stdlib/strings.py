@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import ActionError, internal_action
 from jacaros.bdi.stdlib.arguments import characters, string, whole
-from jacaros.bdi.stdlib.context import Context
 from jacaros.bdi.stdlib.java_regex import replace_all
 from jacaros.errors import JacarosError
 from jacaros.terms.text import text

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import elements
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.text import text
 from jacaros.terms.values import CONS, NIL, String, Term, Var, deref, is_list, list_items, make_list
 

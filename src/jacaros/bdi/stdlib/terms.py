@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import internal_action
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN
 from jacaros.terms.unifier import rename

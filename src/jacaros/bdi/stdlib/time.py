@@ -5,8 +5,8 @@ Local time is not used: programs behave the same everywhere, and on a virtual cl
 
 from datetime import UTC, datetime
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import internal_action
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.values import Term, make_list
 
 

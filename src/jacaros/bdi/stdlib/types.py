@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Iterator
 
+from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import internal_action
-from jacaros.bdi.stdlib.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.plans import RULE, is_body
 from jacaros.terms.unifier import is_ground

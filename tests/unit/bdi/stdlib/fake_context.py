@@ -79,6 +79,7 @@ class FakeContext:
         self.trail = Trail()
         self.intention: object = None
         self.readable: dict[str, Term] = {}
+        self.facts: list[object] = []
 
     def unify(self, left: Term, right: Term) -> bool:
         mark = len(self.trail)
@@ -91,6 +92,14 @@ class FakeContext:
         if written not in self.readable:
             raise JacarosError(f"{written} is no term")
         return self.readable[written]
+
+    def answers(self, formula: Term) -> Iterator[None]:
+        """The facts that unify with a formula."""
+        for fact in self.facts:
+            mark = len(self.trail)
+            if self.unify(formula, term(fact)):
+                yield
+            undo(self.trail, mark)
 
     def run(self, name: str, *arguments: object) -> Iterator[None]:
         """The answers of an action; its bindings hold until the next one is asked for."""
@@ -108,7 +117,7 @@ class FakeContext:
         """Whether there is an answer; the bindings of the first one stay."""
         return any(True for _ in self.run(name, *arguments))
 
-    def answers(self, name: str, *arguments: object, of: object) -> list[str]:
+    def instances(self, name: str, *arguments: object, of: object) -> list[str]:
         """The instances of a template, as text."""
         template = term(of)
         return [text(template) for _ in self.run(name, *arguments)]

@@ -89,15 +89,15 @@ def test_a_map_keeps_one_value_for_each_key(mind: FakeContext) -> None:
 
 def test_a_map_gives_a_default_for_a_missing_key(mind: FakeContext) -> None:
     collection, value = created(mind, "map"), Var("V")
-    assert mind.answers(".map.get", collection, "z", value, "none", of=value) == ["none"]
+    assert mind.instances(".map.get", collection, "z", value, "none", of=value) == ["none"]
 
 
 def test_keys_and_values_come_in_the_order_of_the_keys(mind: FakeContext) -> None:
     collection, item = created(mind, "map"), Var("X")
     for key, value in (("b", 1), ("a", 2), ("c", 1)):
         mind.succeeds(".map.put", collection, key, value)
-    assert mind.answers(".map.key", collection, item, of=item) == ["a", "b", "c"]
-    assert mind.answers(".map.value", collection, item, of=item) == ["2", "1", "1"]
+    assert mind.instances(".map.key", collection, item, of=item) == ["a", "b", "c"]
+    assert mind.instances(".map.value", collection, item, of=item) == ["2", "1", "1"]
     assert mind.succeeds(".map.key", collection, "b")
     assert not mind.succeeds(".map.value", collection, 9)
 

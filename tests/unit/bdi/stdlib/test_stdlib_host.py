@@ -19,7 +19,7 @@ A_MOMENT = 1_700_000_123.456  # 2023-11-14 22:15:23.456 UTC
 def test_time_is_that_of_the_clock_in_utc(mind: FakeContext) -> None:
     mind.architecture.time = A_MOMENT
     parts = [Var("H"), Var("M"), Var("S"), Var("Ms")]
-    assert mind.answers(".time", *parts, of=list(parts)) == ["[22,15,23,456]"]
+    assert mind.instances(".time", *parts, of=list(parts)) == ["[22,15,23,456]"]
     assert mind.succeeds(".time", *parts[:3])
     assert text(term(parts[:3])) == "[22,15,23]"
 
@@ -32,7 +32,7 @@ def test_time_fails_for_another_time(mind: FakeContext) -> None:
 def test_date_counts_months_and_days_from_one(mind: FakeContext) -> None:
     mind.architecture.time = A_MOMENT
     parts = [Var("Y"), Var("M"), Var("D")]
-    assert mind.answers(".date", *parts, of=list(parts)) == ["[2023,11,14]"]
+    assert mind.instances(".date", *parts, of=list(parts)) == ["[2023,11,14]"]
     assert mind.succeeds(".date", 2023, 11, 14)
     assert not mind.succeeds(".date", 2023, 11, 15)
 
@@ -57,10 +57,10 @@ def test_random_draws_from_the_generator_of_the_agent(mind: FakeContext) -> None
 
 def test_random_gives_as_many_answers_as_are_asked_for(mind: FakeContext) -> None:
     variable = Var("X")
-    numbers = [float(n) for n in mind.answers(".random", variable, 5, of=variable)]
+    numbers = [float(n) for n in mind.instances(".random", variable, 5, of=variable)]
     assert len(set(numbers)) == 5
     assert all(0 <= n < 1 for n in numbers)
-    assert len(mind.answers(".random", ["a", "b"], variable, 3, of=variable)) == 3
+    assert len(mind.instances(".random", ["a", "b"], variable, 3, of=variable)) == 3
     assert len(list(islice(mind.run(".random", variable, 0), 100))) == 100
 
 

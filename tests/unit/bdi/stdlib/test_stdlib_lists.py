@@ -63,19 +63,19 @@ def test_empty_fails_for_all_else(mind: FakeContext, collection: object) -> None
 
 def test_member_gives_each_element_in_turn(mind: FakeContext) -> None:
     item = Var("X")
-    assert mind.answers(".member", item, ["c", "a", "b", "a"], of=item) == ["c", "a", "b", "a"]
-    assert mind.answers(".member", item, [], of=item) == []
+    assert mind.instances(".member", item, ["c", "a", "b", "a"], of=item) == ["c", "a", "b", "a"]
+    assert mind.instances(".member", item, [], of=item) == []
 
 
 def test_member_looks_for_elements_that_unify(mind: FakeContext) -> None:
     item = Var("X")
     collection = [("b", 1), ("c", 2), ("b", 3), ("b", 4, 5)]
-    assert mind.answers(".member", ("b", item), collection, of=item) == ["1", "3"]
+    assert mind.instances(".member", ("b", item), collection, of=item) == ["1", "3"]
 
 
 def test_member_forgets_what_a_failed_attempt_bound(mind: FakeContext) -> None:
     item = Var("X")
-    assert mind.answers(".member", ("p", item, "z"), [("p", 1, "a"), ("p", 2, "z")], of=item) == ["2"]
+    assert mind.instances(".member", ("p", item, "z"), [("p", 1, "a"), ("p", 2, "z")], of=item) == ["2"]
 
 
 def test_member_wants_the_annotations_of_the_pattern_in_the_element(mind: FakeContext) -> None:
@@ -85,13 +85,13 @@ def test_member_wants_the_annotations_of_the_pattern_in_the_element(mind: FakeCo
 
 def test_member_reads_sets_in_order_and_queues_as_they_are(mind: FakeContext) -> None:
     item = Var("X")
-    assert mind.answers(".member", item, set_of("b", "a"), of=item) == ["a", "b"]
-    assert mind.answers(".member", item, queue("b", "a", "b"), of=item) == ["b", "a", "b"]
+    assert mind.instances(".member", item, set_of("b", "a"), of=item) == ["a", "b"]
+    assert mind.instances(".member", item, queue("b", "a", "b"), of=item) == ["b", "a", "b"]
 
 
 def test_a_ground_member_of_a_set_or_queue_is_found_once(mind: FakeContext) -> None:
-    assert mind.answers(".member", "b", set_of("b"), of="yes") == ["yes"]
-    assert mind.answers(".member", "b", queue("b", "b"), of="yes") == ["yes"]
+    assert mind.instances(".member", "b", set_of("b"), of="yes") == ["yes"]
+    assert mind.instances(".member", "b", queue("b", "b"), of="yes") == ["yes"]
     assert not mind.succeeds(".member", "z", set_of("b"))
     assert not mind.succeeds(".member", "p", set_of(annotated("p", "a")))
 
@@ -113,14 +113,14 @@ def test_nth_counts_from_zero(mind: FakeContext) -> None:
 
 def test_nth_gives_all_positions_of_an_element(mind: FakeContext) -> None:
     index, item = Var("I"), Var("X")
-    assert mind.answers(".nth", index, ["x", "y", "x"], "x", of=index) == ["0", "2"]
-    assert mind.answers(".nth", index, ["x", "y"], item, of=["i", index, item]) == ["[i,0,x]", "[i,1,y]"]
-    assert mind.answers(".nth", index, ["x"], "z", of=index) == []
+    assert mind.instances(".nth", index, ["x", "y", "x"], "x", of=index) == ["0", "2"]
+    assert mind.instances(".nth", index, ["x", "y"], item, of=["i", index, item]) == ["[i,0,x]", "[i,1,y]"]
+    assert mind.instances(".nth", index, ["x"], "z", of=index) == []
 
 
 def test_nth_with_the_same_variable_twice(mind: FakeContext) -> None:
     both = Var("X")
-    assert mind.answers(".nth", both, ["a", 1, 5], both, of=both) == ["1"]
+    assert mind.instances(".nth", both, ["a", 1, 5], both, of=both) == ["1"]
 
 
 def test_nth_takes_strings_by_characters(mind: FakeContext) -> None:
@@ -179,7 +179,7 @@ def test_concat_refuses_a_list_with_something_else(mind: FakeContext) -> None:
     ("arguments", "rest"),
     [
         (("a", ["a", "b", "a", "c"]), "[b,c]"),
-        ((("f", Var("_")), [("f", 1), ("g", 2), ("f", 3)]), "[g(2)]"),
+        ((("f", Var("_")), [("f", 1), ("g", 2), ("f", 3), ("f", 1)]), "[g(2),f(3)]"),
         (("z", ["a"]), "[a]"),
         ((3, ["a", "b", "a", "c", "a"]), "[a,b,a,a]"),
         ((9, ["a"]), "[a]"),
@@ -192,7 +192,7 @@ def test_concat_refuses_a_list_with_something_else(mind: FakeContext) -> None:
         ((String("a"), String("banana")), '"bnn"'),
         ((String("[0-9]+"), String("a1b22")), '"ab"'),
         ((String("a"), ["a", "b"]), '"[,b]"'),
-        ((Var("Any"), ["a", 1]), "[]"),
+        ((Var("Any"), ["a", 1, "a"]), "[1]"),
     ],
 )
 def test_delete_leaves_out(mind: FakeContext, arguments: tuple[object, ...], rest: str) -> None:
@@ -201,7 +201,7 @@ def test_delete_leaves_out(mind: FakeContext, arguments: tuple[object, ...], res
 
 def test_delete_binds_nothing_in_its_pattern(mind: FakeContext) -> None:
     pattern = Var("X")
-    assert mind.result(".delete", ("f", pattern), [("f", 1), ("f", 2)]) == "[]"
+    assert mind.result(".delete", ("f", pattern), [("f", 1), ("f", 2)]) == "[f(2)]"
     assert text(pattern) == "X"
 
 
@@ -273,6 +273,17 @@ def test_max_and_min_use_the_standard_order(mind: FakeContext) -> None:
     assert not mind.succeeds(".min", [], Var("X"))
 
 
+def test_max_and_min_of_the_answers_of_a_formula(mind: FakeContext) -> None:
+    value = Var("V")
+    formula = ("b", value)
+    mind.facts = [("b", 2), ("b", 7), ("b", 5), ("c", 9)]
+    assert mind.result(".max", value, formula) == "7"
+    assert mind.result(".min", ("p", value), formula) == "p(2)"
+    assert mind.succeeds(".max", value, formula, 7)
+    assert not mind.succeeds(".max", value, ("d", value), Var("X"))
+    assert value.ref is None
+
+
 @pytest.mark.parametrize("action", [".max", ".min"])
 def test_max_and_min_need_a_list(mind: FakeContext, action: str) -> None:
     with pytest.raises(WrongArguments, match=f"first argument of {action} must be a list, not notalist"):
@@ -284,14 +295,14 @@ def test_max_and_min_need_a_list(mind: FakeContext, action: str) -> None:
 
 def test_range_counts_up_and_down_with_both_ends(mind: FakeContext) -> None:
     item = Var("X")
-    assert mind.answers(".range", item, 1, 4, of=item) == ["1", "2", "3", "4"]
-    assert mind.answers(".range", item, 1, 6, 2, of=item) == ["1", "3", "5"]
-    assert mind.answers(".range", item, 3, 1, -1, of=item) == ["3", "2", "1"]
-    assert mind.answers(".range", item, 3, 1, of=item) == []
+    assert mind.instances(".range", item, 1, 4, of=item) == ["1", "2", "3", "4"]
+    assert mind.instances(".range", item, 1, 6, 2, of=item) == ["1", "3", "5"]
+    assert mind.instances(".range", item, 3, 1, -1, of=item) == ["3", "2", "1"]
+    assert mind.instances(".range", item, 3, 1, of=item) == []
 
 
 def test_range_tests_a_number(mind: FakeContext) -> None:
-    assert mind.answers(".range", 3, 1, 5, of="in") == ["in"]
+    assert mind.instances(".range", 3, 1, 5, of="in") == ["in"]
     assert not mind.succeeds(".range", 6, 1, 5)
     assert mind.succeeds(".range", 2, 1, 5, 2)
 
@@ -340,23 +351,23 @@ def test_sets_made_of_lists_need_lists(mind: FakeContext, action: str, arguments
 def test_sublist_gives_all_contiguous_parts(mind: FakeContext) -> None:
     part = Var("S")
     expected = ["[a,b,c]", "[a,b]", "[a]", "[b,c]", "[b]", "[c]", "[]"]
-    assert mind.answers(".sublist", part, ["a", "b", "c"], of=part) == expected
-    assert mind.answers(".sublist", part, [], of=part) == ["[]"]
+    assert mind.instances(".sublist", part, ["a", "b", "c"], of=part) == expected
+    assert mind.instances(".sublist", part, [], of=part) == ["[]"]
 
 
 def test_sublist_finds_a_part_wherever_it_is(mind: FakeContext) -> None:
     item = Var("X")
-    assert mind.answers(".sublist", ["a", item], ["a", 1, "a", 2], of=item) == ["1", "2"]
-    assert mind.answers(".sublist", [], ["a"], of="yes") == ["yes"]
+    assert mind.instances(".sublist", ["a", item], ["a", 1, "a", 2], of=item) == ["1", "2"]
+    assert mind.instances(".sublist", [], ["a"], of="yes") == ["yes"]
     assert not mind.succeeds(".sublist", ["a", "c"], ["a", "b", "c"])
     rest = Var("T")
-    assert mind.answers(".sublist", make_list([atom("b")], rest), ["a", "b", "c"], of=rest) == ["[c]", "[]"]
+    assert mind.instances(".sublist", make_list([atom("b")], rest), ["a", "b", "c"], of=rest) == ["[c]", "[]"]
 
 
 def test_prefix_and_suffix_give_longer_parts_first(mind: FakeContext) -> None:
     part = Var("P")
-    assert mind.answers(".prefix", part, ["a", "b"], of=part) == ["[a,b]", "[a]", "[]"]
-    assert mind.answers(".suffix", part, ["a", "b"], of=part) == ["[a,b]", "[b]", "[]"]
+    assert mind.instances(".prefix", part, ["a", "b"], of=part) == ["[a,b]", "[a]", "[]"]
+    assert mind.instances(".suffix", part, ["a", "b"], of=part) == ["[a,b]", "[b]", "[]"]
     assert mind.succeeds(".prefix", ["a"], ["a", "b"])
     assert not mind.succeeds(".prefix", ["b"], ["a", "b"])
     assert mind.succeeds(".suffix", ["b"], ["a", "b"])
@@ -365,8 +376,8 @@ def test_prefix_and_suffix_give_longer_parts_first(mind: FakeContext) -> None:
 
 def test_prefix_and_suffix_take_strings(mind: FakeContext) -> None:
     part = Var("P")
-    assert mind.answers(".prefix", part, String("ab"), of=part) == ['"ab"', '"a"', '""']
-    assert mind.answers(".suffix", part, String("ab"), of=part) == ['"ab"', '"b"', '""']
+    assert mind.instances(".prefix", part, String("ab"), of=part) == ['"ab"', '"a"', '""']
+    assert mind.instances(".suffix", part, String("ab"), of=part) == ['"ab"', '"b"', '""']
     assert mind.succeeds(".prefix", String("ab"), String("abc"))
     assert not mind.succeeds(".suffix", String("ab"), String("abc"))
 

@@ -18,15 +18,17 @@ def test_substring_tests_for_a_part(mind: FakeContext) -> None:
 
 def test_substring_gives_the_place_of_each_occurrence(mind: FakeContext) -> None:
     first, last = Var("I"), Var("J")
-    assert mind.answers(".substring", String("a"), String("abbacca"), first, of=first) == ["0", "3", "6"]
-    assert mind.answers(".substring", ("a", 10), ("b", "t1", ("a", 10)), first, of=first) == ["5"]
-    assert mind.answers(".substring", String("an"), String("banana"), first, last, of=("p", first, last)) == [
+    assert mind.instances(".substring", String("a"), String("abbacca"), first, of=first) == ["0", "3", "6"]
+    assert mind.instances(".substring", ("a", 10), ("b", "t1", ("a", 10)), first, of=first) == ["5"]
+    assert mind.instances(
+        ".substring", String("an"), String("banana"), first, last, of=("p", first, last)
+    ) == [
         "p(1,2)",
         "p(3,4)",
     ]
-    assert mind.answers(".substring", String("aa"), String("aaa"), first, of=first) == ["0", "1"]
-    assert mind.answers(".substring", String("x"), String("abc"), first, of=first) == []
-    assert mind.answers(".substring", String(""), String("ab"), first, of=first) == ["0", "1"]
+    assert mind.instances(".substring", String("aa"), String("aaa"), first, of=first) == ["0", "1"]
+    assert mind.instances(".substring", String("x"), String("abc"), first, of=first) == []
+    assert mind.instances(".substring", String(""), String("ab"), first, of=first) == ["0", "1"]
 
 
 def test_substring_tests_a_given_place(mind: FakeContext) -> None:
@@ -37,11 +39,11 @@ def test_substring_tests_a_given_place(mind: FakeContext) -> None:
 
 def test_substring_cuts_out_a_part(mind: FakeContext) -> None:
     part = Var("X")
-    assert mind.answers(".substring", part, String("hello world"), 6, of=part) == ['"world"']
-    assert mind.answers(".substring", part, String("hello world"), 0, 5, of=part) == ['"hello"']
-    assert mind.answers(".substring", part, ("a", 10, 20), 5, 7, of=part) == ['"20"']
-    assert mind.answers(".substring", part, String("ab"), 2, of=part) == ['""']
-    assert mind.answers(".substring", String("hello"), part, 1, 3, of=part) == ['"el"']
+    assert mind.instances(".substring", part, String("hello world"), 6, of=part) == ['"world"']
+    assert mind.instances(".substring", part, String("hello world"), 0, 5, of=part) == ['"hello"']
+    assert mind.instances(".substring", part, ("a", 10, 20), 5, 7, of=part) == ['"20"']
+    assert mind.instances(".substring", part, String("ab"), 2, of=part) == ['""']
+    assert mind.instances(".substring", String("hello"), part, 1, 3, of=part) == ['"el"']
 
 
 @pytest.mark.parametrize("bounds", [(-1,), (4,), (2, 1), (0, 9)])
@@ -134,7 +136,7 @@ def test_term2string_writes_terms(mind: FakeContext) -> None:
 def test_term2string_reads_terms(mind: FakeContext) -> None:
     mind.readable = {"f(X)": structure("f", 5.0), "10": 10.0, "b": structure("b")}
     read = Var("T")
-    assert mind.answers(".term2string", read, String("10"), of=read) == ["10"]
+    assert mind.instances(".term2string", read, String("10"), of=read) == ["10"]
     assert mind.succeeds(".term2string", read, String("f(X)"))
     assert text(read) == "f(5)"
     other = Var("U")

@@ -54,7 +54,7 @@ EXAMPLES: list[tuple[Term, str]] = [
 @pytest.mark.parametrize(("value", "types"), EXAMPLES)
 def test_type_gives_every_type_in_order(mind: FakeContext, value: Term, types: str) -> None:
     kind = Var("T")
-    assert mind.answers(".type", value, kind, of=kind) == types.split()
+    assert mind.instances(".type", value, kind, of=kind) == types.split()
 
 
 @pytest.mark.parametrize(("value", "types"), EXAMPLES)
