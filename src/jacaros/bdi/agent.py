@@ -19,18 +19,18 @@ from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.speech_acts import answer
 from jacaros.bdi.waiting import Waiting
+from jacaros.compiler.bodies import BodyCompiler
+from jacaros.compiler.function import Frame as Slots
 from jacaros.compiler.lowering import fresh_names, lower, lower_value
 from jacaros.compiler.plan import Plan, label_of
 from jacaros.compiler.reflection import Reflection
-from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations, undo
+from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
 from jacaros.compiler.unit import CodeUnit
-from jacaros.compiler.bodies import BodyCompiler
-from jacaros.compiler.function import Frame as Slots
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.plans import PLAN, RULE, TRIGGER, is_body
-from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, unify
+from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, undo, unify
 from jacaros.terms.values import (
     BY_SELF,
     SELF,
@@ -100,10 +100,12 @@ class Agent(Circumstance):
             belief_update.add_rule(self, rule, head, last=False)
             return
         term = lower_value(node)
-        symbol, row, annotations = parts(term)
+        symbol, _, annotations = parts(term)
         assert symbol is not None
         if free_variables(term):
-            self.beliefs[symbol].add(OpenFact(bare(term), own_annotations(annotations)), own_annotations(annotations))
+            self.beliefs[symbol].add(
+                OpenFact(bare(term), own_annotations(annotations)), own_annotations(annotations)
+            )
         else:
             belief_update.tell(self, term)
 
@@ -112,7 +114,9 @@ class Agent(Circumstance):
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
             raise ActionError("a goal must be a literal")
-        self.post(Event((trigger("+", "!", symbol), *arguments), None, own_annotations(annotations), goal_cause))
+        self.post(
+            Event((trigger("+", "!", symbol), *arguments), None, own_annotations(annotations), goal_cause)
+        )
         self.architecture.ready()
 
     run = cycle.run
@@ -238,7 +242,16 @@ class Agent(Circumstance):
         term = settle(term)
         symbol = functor_of(term)
         if symbol is None or symbol.kind:
-            raise Failure((ERROR, atom("body_var_without_value" if term.__class__ not in ATOMIC and _is_free(term) else "body_var_not_literal")))
+            raise Failure(
+                (
+                    ERROR,
+                    atom(
+                        "body_var_without_value"
+                        if term.__class__ not in ATOMIC and _is_free(term)
+                        else "body_var_not_literal"
+                    ),
+                )
+            )
         goal = (trigger(operator, kind, symbol), *arguments_of(term))
         annotations = annotations_of(resolve(term))
         return Posted(goal, own_annotations(annotations)) if annotations else goal
@@ -261,7 +274,9 @@ class Agent(Circumstance):
         current = self.current
         self.post(Event((goal[0], *arguments), None, annotations, current.cause if current else None))
 
-    def begin_act(self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: Any) -> Any:
+    def begin_act(
+        self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: Any
+    ) -> Any:
         """Begin an external action; the intention waits for its completion."""
         intention = self.current
         assert intention is not None
@@ -342,7 +357,12 @@ class Agent(Circumstance):
 
     def fork(self, operator: str, frame: Frame, branches: tuple[Any, ...], next_step: Any) -> Any:
         """``|&|`` and ``|||``."""
-        raise Failure(*error_terms("not_supported", f"the operator |{'&' if operator == 'and' else '|'}| comes in a later version"))
+        raise Failure(
+            *error_terms(
+                "not_supported",
+                f"the operator |{'&' if operator == 'and' else '|'}| comes in a later version",
+            )
+        )
 
     # --- plans ---------------------------------------------------------------------------------------------
 
@@ -376,7 +396,11 @@ class Agent(Circumstance):
 
     def _add_node(self, node: nodes.Plan, source: Term, first: bool) -> None:
         for held in self.library.plans:
-            if (held.node.trigger, held.node.context, held.node.body) == (node.trigger, node.context, node.body):
+            if (held.node.trigger, held.node.context, held.node.body) == (
+                node.trigger,
+                node.context,
+                node.body,
+            ):
                 return
         self._labels += 1
         plan = Plan(node, label_of(node, self._labels))
@@ -393,7 +417,8 @@ class Agent(Circumstance):
                 (
                     p
                     for p in self.library.plans
-                    if (p.node.trigger, p.node.context, p.node.body) == (node.trigger, node.context, node.body)
+                    if (p.node.trigger, p.node.context, p.node.body)
+                    == (node.trigger, node.context, node.body)
                 ),
                 None,
             )
@@ -451,7 +476,9 @@ class Agent(Circumstance):
 class AnswerByPlan:
     """A question from another agent that a plan ``+?q`` of this one answers."""
 
-    def __init__(self, agent: Agent, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]) -> None:
+    def __init__(
+        self, agent: Agent, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]
+    ) -> None:
         self.agent, self.message = agent, message
         self.goal = (trigger("+", "?", symbol), *arguments)
 
@@ -494,5 +521,3 @@ _ANSWER = trigger("+", "", functor("answer", 0, namespace="jacaros"))
 
 def _is_free(term: Term) -> bool:
     return bool(free_variables(deref(term)))
-
-

@@ -202,7 +202,9 @@ def _is_key(term: Term) -> bool:
 
 
 def _has_annotations(term: Term) -> bool:
-    return term.__class__ is Annotated or (term.__class__ is tuple and any(_has_annotations(a) for a in term[1:]))
+    return term.__class__ is Annotated or (
+        term.__class__ is tuple and any(_has_annotations(a) for a in term[1:])
+    )
 
 
 class BeliefBase(dict[Functor, Table]):

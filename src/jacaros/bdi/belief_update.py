@@ -190,7 +190,11 @@ def change_mind(agent: Circumstance, operator: str, term: Term) -> Any:
 
 
 def _operand_error(term: Term) -> str:
-    return "body_var_without_value" if free_variables(term) and bare(term) is not None else "body_var_not_literal"
+    return (
+        "body_var_without_value"
+        if free_variables(term) and bare(term) is not None
+        else "body_var_not_literal"
+    )
 
 
 # --- from outside ------------------------------------------------------------------------------------------

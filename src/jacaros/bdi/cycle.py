@@ -31,7 +31,7 @@ def run(agent: Circumstance, fuel: int) -> bool:
         intention = _select_intention(agent)
         if intention is not None:
             fuel = _execute(agent, intention, fuel)
-        elif agent.events and agent.atomic is None or agent.inbox:
+        elif (agent.events and agent.atomic is None) or agent.inbox:
             fuel -= 1
         elif not (agent.percepts or agent.tasks):
             break
@@ -138,7 +138,7 @@ def select_plan(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) ->
         frame = select(agent, goal, annotations)
     except InternalError:
         raise
-    except Exception as fault:  # noqa: BLE001 - a context that cannot be evaluated does not hold
+    except Exception as fault:
         undo(agent.trail, 0)
         shown = text(literal_of(goal, ()))
         agent.architecture.log("warning", f"a context of the plans for {shown} cannot be evaluated: {fault}")
@@ -172,7 +172,12 @@ def _alone(agent: Circumstance) -> bool:
     if agent.atomic is not None:
         return True
     return not (
-        agent.events or agent.intentions or agent.inbox or agent.tasks or agent.percepts or agent.condition_waits
+        agent.events
+        or agent.intentions
+        or agent.inbox
+        or agent.tasks
+        or agent.percepts
+        or agent.condition_waits
     )
 
 
@@ -240,22 +245,29 @@ def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason)
     where = reason.where()
     place = f" ({where})" if where else ""
     agent.architecture.log(
-        "warning", f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
+        "warning",
+        f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}",
     )
 
 
-def _lost_in_handler(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> None:
+def _lost_in_handler(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+) -> None:
     if intention.on_failed is not None:
         intention.on_failed()
         finish(agent, intention)
         return
     shown = f"-{goal[0].kind}{text(literal_of(goal, ()))}"
-    told = f": {annotations.error()}, {annotations.message()}" if isinstance(annotations, FailureReason) else ""
-    agent.architecture.log("warning", f"no applicable plan for the failure event {shown}; the intention is dropped{told}")
+    told = (
+        f": {annotations.error()}, {annotations.message()}" if isinstance(annotations, FailureReason) else ""
+    )
+    agent.architecture.log(
+        "warning", f"no applicable plan for the failure event {shown}; the intention is dropped{told}"
+    )
     finish(agent, intention)
 
 
-def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
+def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - written out for speed
     """Rules ExecInt and ClrInt: steps of one intention while nothing else wants a cycle; gives the fuel left."""
     agent.current = intention
     frames = intention.frames
@@ -270,7 +282,7 @@ def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
                 goal = step(agent, frame)
             except InternalError:
                 raise
-            except Exception as fault:  # noqa: BLE001 - whatever a step raises fails that step only
+            except Exception as fault:
                 undo(trail, 0)
                 _report(agent, fault)
                 goal = fail_intention(agent, intention, failure.step_failure(frame, fault))

@@ -97,7 +97,9 @@ class _StepPlace:
         self.plan = frame[PLAN]
         self.code: Any = None
         slots = self.plan.slots
-        lookup = {name: frame[slot] for name, slot in slots.items() if slot < len(frame) and frame[slot] is not None}
+        lookup = {
+            name: frame[slot] for name, slot in slots.items() if slot < len(frame) and frame[slot] is not None
+        }
         self.code = (lookup, frame)
 
     def annotations(self) -> tuple[Term, ...]:
@@ -220,7 +222,9 @@ def _plain_failure(node: nodes.Node) -> tuple[str, str]:
     return error, {"test_goal_failed": "a test found no answer"}.get(error, error.replace("_", " "))
 
 
-def no_plan(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, caller: Frame | None) -> FailureReason:
+def no_plan(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, caller: Frame | None
+) -> FailureReason:
     """The reason of a goal that has no relevant or no applicable plan."""
     relevant = agent.selects[goal[0]] is not None
     shown = goal[0].kind + text(literal_of(goal, ()))
@@ -280,5 +284,3 @@ def is_error(term: Term, error: str) -> bool:
 def nowhere(*terms: Term) -> FailureReason:
     """A reason without a formula, as ``.fail_goal`` gives it."""
     return FailureReason(terms, _Nowhere())
-
-

@@ -88,7 +88,7 @@ def _anything(agent: Circumstance, pattern: Term, trail: Trail) -> Search:
         for entry, annotations in table.entries():
             if entry.__class__ is not tuple and not isinstance(entry, OpenFact):
                 continue
-            believed = literal(symbol, entry, annotations) if entry.__class__ is tuple else entry.head()
+            believed = entry.head() if isinstance(entry, OpenFact) else literal(symbol, entry, annotations)
             mark = len(trail)
             if unify(pattern, believed, trail):
                 yield ()
@@ -147,7 +147,9 @@ def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], t
     action = agent.actions.get(symbol.name)
     if action is None:
         return
-    if not action.minimum <= len(arguments) or (action.maximum is not None and len(arguments) > action.maximum):
+    if not action.minimum <= len(arguments) or (
+        action.maximum is not None and len(arguments) > action.maximum
+    ):
         wrong_arity(action, len(arguments))
     context = agent.context  # type: ignore[attr-defined]
     values = [resolve(a) for a in arguments]

@@ -27,7 +27,11 @@ def frame_of(agent: Circumstance, intention: Intention, goal: Term) -> int | Non
     """Index of the lowest frame that serves a goal matching *goal*; the variables of *goal* are not bound."""
     for index, frame in enumerate(intention.frames):
         trigger = frame[GOAL][0]
-        if trigger.kind == "!" and trigger.operator == "+" and _matches(agent, goal, literal_of(frame[GOAL], frame[2])):
+        if (
+            trigger.kind == "!"
+            and trigger.operator == "+"
+            and _matches(agent, goal, literal_of(frame[GOAL], frame[2]))
+        ):
             return index
     return None
 
@@ -53,13 +57,17 @@ def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
             found.append(intention)
             continue
         event = pending_event(agent, intention)
-        if event is not None and _is_goal(event) and _matches(agent, goal, literal_of(event.goal, event.annotations)):
+        if (
+            event is not None
+            and _is_goal(event)
+            and _matches(agent, goal, literal_of(event.goal, event.annotations))
+        ):
             found.append(intention)
     return found
 
 
 def _is_goal(event: Event) -> bool:
-    return event.goal[0].kind == "!" and event.goal[0].operator == "+"
+    return bool(event.goal[0].kind == "!" and event.goal[0].operator == "+")
 
 
 def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
@@ -271,10 +279,10 @@ def _post_failure(agent: Circumstance, intention: Intention) -> None:
         agent.architecture.ready()
 
 
-def describe(intention: Intention, current: bool) -> Any:
+def describe(intention: Intention) -> Any:
     """State of an intention, as ``.intention`` tells it: (name, reason)."""
     if intention.suspended is not None:
         return "suspended", None
     if intention.waiting is not None:
         return "waiting", intention.waiting.reason
-    return "running", None if current else None
+    return "running", None

@@ -34,7 +34,17 @@ class Intention:
         on_failed: called when it ends in failure, in place of the usual warning.
     """
 
-    __slots__ = ("cause", "dropped", "frames", "handlers", "id", "on_failed", "parked", "suspended", "waiting")
+    __slots__ = (
+        "cause",
+        "dropped",
+        "frames",
+        "handlers",
+        "id",
+        "on_failed",
+        "parked",
+        "suspended",
+        "waiting",
+    )
 
     def __init__(self, number: int, cause: Cause | None = None) -> None:
         self.id = number

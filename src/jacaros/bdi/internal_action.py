@@ -63,7 +63,11 @@ STANDARD: Registry = {}
 
 
 def internal_action(
-    name: str, *, arity: int | tuple[int, int | None] = (0, None), backtracks: bool = False, suspends: bool = False
+    name: str,
+    *,
+    arity: int | tuple[int, int | None] = (0, None),
+    backtracks: bool = False,
+    suspends: bool = False,
 ) -> Callable[[Function], Function]:
     """Register a standard internal action; *arity* is a number of arguments, or least and most (None: any)."""
     least, most = (arity, arity) if isinstance(arity, int) else arity

@@ -84,5 +84,9 @@ class Selects(dict[Trigger, Select | None]):
         head = plan.node.trigger
         functor = plan.trigger_functor()
         for trigger in list(self):
-            if trigger.operator == head.operator and trigger.kind == head.kind and functor in (None, trigger.functor):
+            if (
+                trigger.operator == head.operator
+                and trigger.kind == head.kind
+                and functor in (None, trigger.functor)
+            ):
                 del self[trigger]

@@ -57,7 +57,9 @@ def process(agent: Circumstance, message: SpeechAct) -> None:
         return
     action = _ACTIONS.get(performative)
     if action is None:
-        agent.architecture.log("warning", f"a message with unknown performative {performative} from {message.sender}")
+        agent.architecture.log(
+            "warning", f"a message with unknown performative {performative} from {message.sender}"
+        )
         return
     action(agent, message)
 
@@ -89,7 +91,8 @@ def from_sender(content: Term, sender: str) -> Term:
     """The content with ``source(sender)``; sources it had are nested inside."""
     content = resolve(content)
     inner = bare(content)
-    others, sources = [], []
+    others: list[Term] = []
+    sources: list[Term] = []
     for annotation in annotations_of(content):
         (sources if _is_source(annotation) else others).append(annotation)
     source: Term = (SOURCE, atom(sender))
@@ -145,7 +148,8 @@ def _signal(agent: Circumstance, message: SpeechAct) -> None:
 
 def _refuse(agent: Circumstance, message: SpeechAct) -> None:
     agent.architecture.log(
-        "warning", f"the content of a {message.performative} from {message.sender} is no literal: {text(message.content)}"
+        "warning",
+        f"the content of a {message.performative} from {message.sender} is no literal: {text(message.content)}",
     )
 
 

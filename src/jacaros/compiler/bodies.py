@@ -5,10 +5,12 @@ the next step.  It returns None, or one goal (a tuple that begins with its trigg
 `SUSPENDED`.  A failing formula raises `Fail` before ``frame[0]`` changes, so it is known which one failed.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.compiler.building import annotation_parts, build, tuple_of
+from jacaros.compiler.building import annotation_parts, build, functor_of_literal, tuple_of
 from jacaros.compiler.conditions import accepts, condition, question, resolved
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.triggers import trigger
@@ -77,7 +79,7 @@ def _head(name: str) -> str:
 
 
 def _goal_expression(fn: FunctionBuilder, operator: str, kind: str, literal: nodes.Literal) -> str:
-    symbol = functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)  # type: ignore[arg-type]
+    symbol = functor_of_literal(literal)
     arguments = [build(fn, a) for a in literal.arguments]
     return tuple_of([fn.constant(trigger(operator, kind, symbol)), *arguments])
 
@@ -136,7 +138,7 @@ def _test(compiler: BodyCompiler, step: nodes.Test, name: str, next_name: str) -
 
 def _test_goal(compiler: BodyCompiler, fn: FunctionBuilder, formula: nodes.Literal, next_name: str) -> None:
     """No answer in the belief base: a plan for the test goal may find one."""
-    symbol = functor(formula.functor, len(formula.arguments), formula.negated, formula.namespace)  # type: ignore[arg-type]
+    symbol = functor_of_literal(formula)
     fn.line(f"if agent.selects[{fn.constant(trigger('+', '?', symbol))}] is None: raise Fail")
     goal = _goal_expression(fn, "+", "?", formula)
     if formula.annotations is not None:
@@ -206,7 +208,9 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
             call = ", ".join(["agent.context", *arguments])
             if action.suspends:
                 fn.store(compiler.frame)
-                fn.line(f"return agent.finish_call({fn.constant(action.function)}({call}), frame, {next_name})")
+                fn.line(
+                    f"return agent.finish_call({fn.constant(action.function)}({call}), frame, {next_name})"
+                )
             else:
                 fn.line(f"if {fn.constant(action.function)}({call}) is False: raise Fail")
                 fn.store(compiler.frame)
@@ -233,7 +237,7 @@ def _belief_change(compiler: BodyCompiler, step: nodes.BeliefChange, name: str, 
 
 
 def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) -> None:
-    symbol = fn.constant(functor(operand.functor, len(operand.arguments), operand.negated, operand.namespace))  # type: ignore[arg-type]
+    symbol = fn.constant(functor_of_literal(operand))
     annotations = "BY_SELF"
     if operand.annotations is not None:
         items, tail = annotation_parts(fn, operand.annotations)
@@ -256,7 +260,7 @@ def _external(compiler: BodyCompiler, step: nodes.ExternalAction, name: str, nex
     with fn.writer.block(_head(name)):
         fn.load(compiler.frame, names_in(step))
         if isinstance(action, nodes.Literal):
-            symbol = fn.constant(functor(action.functor, len(action.arguments), action.negated, action.namespace))  # type: ignore[arg-type]
+            symbol = fn.constant(functor_of_literal(action))
             arguments = [resolved(fn, build(fn, a)) for a in action.arguments]
             annotations = "()"
             if action.annotations is not None:
@@ -310,7 +314,8 @@ def _forget(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.If) -> None
 def _joined(left: dict[str, str], right: dict[str, str]) -> dict[str, str]:
     """What is known after either of two branches."""
     return {
-        name: "set" if left.get(name) == right.get(name) == "set" else "maybe" for name in dict.fromkeys([*left, *right])
+        name: "set" if left.get(name) == right.get(name) == "set" else "maybe"
+        for name in dict.fromkeys([*left, *right])
     }
 
 
@@ -426,7 +431,7 @@ def _fork(compiler: BodyCompiler, step: nodes.Fork, name: str, next_name: str) -
     frame.states = joined
 
 
-_STEPS = {
+_STEPS: dict[type, Callable[[BodyCompiler, Any, str, str], None]] = {
     nodes.Achieve: _achieve,
     nodes.Test: _test,
     nodes.Constraint: _constraint,

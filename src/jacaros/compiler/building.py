@@ -1,13 +1,16 @@
 """Code that builds terms: an expression for the value of a piece of syntax."""
 
+from collections.abc import Callable
+
 from jacaros.asl import nodes
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.reflection import Constant
 from jacaros.compiler.variables import variables_in
+from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, NO_LABEL, PLAN, RULE, TRIGGER
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, atom, functor
+from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, Functor, atom, functor
 from jacaros.terms.values import PLAN as PLAN_KIND
 
 _STATIC = (nodes.Literal, nodes.ListTerm, nodes.String)
@@ -17,7 +20,11 @@ _LONG_LIST = 12
 def build(fn: FunctionBuilder, node: nodes.Node) -> str:
     """An expression (a name or a small literal) for the value of a term; variables without value get a `Var`."""
     if isinstance(node, nodes.Number):
-        return repr(node.value) if node.value == node.value and abs(node.value) != float("inf") else _const(fn, node)
+        return (
+            repr(node.value)
+            if node.value == node.value and abs(node.value) != float("inf")
+            else _const(fn, node)
+        )
     if isinstance(node, Constant):
         return fn.constant(node.value)
     if isinstance(node, nodes.Variable):
@@ -42,7 +49,9 @@ def _has_calls(node: object) -> bool:
     if isinstance(node, tuple):
         return any(_has_calls(item) for item in node)
     if isinstance(node, nodes.Literal):
-        return _has_calls(node.arguments) or (node.annotations is not None and _has_calls(node.annotations.items))
+        return _has_calls(node.arguments) or (
+            node.annotations is not None and _has_calls(node.annotations.items)
+        )
     if isinstance(node, nodes.ListTerm):
         return _has_calls(node.items) or (node.tail is not None and _has_calls(node.tail))
     return not isinstance(node, (nodes.Number, nodes.String))
@@ -69,6 +78,12 @@ def _variable(fn: FunctionBuilder, node: nodes.Variable) -> str:
     return _annotated(fn, value, node.annotations)
 
 
+def functor_of_literal(literal: nodes.Literal) -> Functor:
+    """The functor of a literal whose namespace is known when the plan is compiled."""
+    assert not isinstance(literal.namespace, nodes.Variable)
+    return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
 def namespace(fn: FunctionBuilder, value: str | nodes.Variable | None) -> str:
     """An expression for a namespace."""
     if isinstance(value, nodes.Variable):
@@ -88,16 +103,9 @@ def annotation_parts(fn: FunctionBuilder, annotations: nodes.Annotations) -> tup
     tail = "None" if annotations.tail is None else build(fn, annotations.tail)
     if all(is_static(item) for item in annotations.items):
         from_terms = tuple(resolve(lower(item, _no_variable)) for item in annotations.items)
-        return fn.constant(sorted_annotations(from_terms)), tail
+        return fn.constant(annotation_set(from_terms)), tail
     items = tuple_of([build(fn, item) for item in annotations.items])
     return (f"annotation_set({items})" if len(annotations.items) > 1 else items), tail
-
-
-def sorted_annotations(items: tuple[object, ...]) -> tuple[object, ...]:
-    """Annotations as they are kept."""
-    from jacaros.terms.order import annotation_set  # noqa: PLC0415
-
-    return annotation_set(items)
 
 
 def tuple_of(items: list[str]) -> str:
@@ -111,7 +119,7 @@ def _literal(fn: FunctionBuilder, node: nodes.Literal) -> str:
         parts = ", ".join([repr(node.functor), repr(node.negated), namespace(fn, node.namespace), *arguments])
         value = f"literal_in({parts})"
     else:
-        symbol = fn.constant(functor(node.functor, len(arguments), node.negated, node.namespace))
+        symbol = fn.constant(functor_of_literal(node))
         value = tuple_of([symbol, *arguments]) if arguments else symbol
     return _annotated(fn, value, node.annotations)
 
@@ -235,7 +243,7 @@ def _step(fn: FunctionBuilder, step: nodes.Node) -> str:
     return build(fn, step)
 
 
-_COMPOUND = {
+_COMPOUND: dict[type, Callable[..., str]] = {
     nodes.String: _const,
     nodes.Literal: _literal,
     nodes.ListTerm: _list,

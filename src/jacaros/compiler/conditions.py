@@ -14,15 +14,27 @@ Predicates with rules are searched by generators.  Two ways of running them:
 from collections.abc import Callable, Iterable
 
 from jacaros.asl import nodes
-from jacaros.compiler.building import annotation_parts, as_name, build, is_number, is_static, namespace, tuple_of
+from jacaros.compiler.building import (
+    annotation_parts,
+    as_name,
+    build,
+    functor_of_literal,
+    is_number,
+    is_static,
+    tuple_of,
+)
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.matching import Then, match, match_all, settle_fresh
 from jacaros.compiler.reflection import Constant
 from jacaros.compiler.variables import names_in
-from jacaros.terms.values import functor
 
 _MAX_LOOPS = 12
-_COMPARE = {"<": "less({0}, {1})", "<=": "at_most({0}, {1})", ">": "less({1}, {0})", ">=": "at_most({1}, {0})"}
+_COMPARE = {
+    "<": "less({0}, {1})",
+    "<=": "at_most({0}, {1})",
+    ">": "less({1}, {0})",
+    ">=": "at_most({1}, {0})",
+}
 _TRUE = ("true", "false")
 
 
@@ -145,19 +157,17 @@ def comparison(fn: FunctionBuilder, node: nodes.Relation) -> str:
 
 def _unification(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
     for side, other in ((node.left, node.right), (node.right, node.left)):
-        if _is_unbound(fn, side) and side.name not in names_in(other):  # type: ignore[attr-defined]
-            value = build(fn, other)
-            fn.bind(side.name, value)  # type: ignore[attr-defined]
+        if isinstance(side, nodes.Variable) and _is_unbound(fn, side) and side.name not in names_in(other):
+            fn.bind(side.name, build(fn, other))
             then()
             return
     left, right = build(fn, node.left), build(fn, node.right)
     _undoing(fn, f"unify({left}, {right}, t)", names_in(node), then)
 
 
-def _is_unbound(fn: FunctionBuilder, node: nodes.Node) -> bool:
+def _is_unbound(fn: FunctionBuilder, node: nodes.Variable) -> bool:
     return (
-        isinstance(node, nodes.Variable)
-        and not node.unnamed
+        not node.unnamed
         and node.annotations is None
         and node.namespace is None
         and not node.negated
@@ -198,11 +208,15 @@ def _literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
 def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
     """A loop over the rows of a predicate, by an index when arguments are known."""
     table = fn.local("b")
-    symbol = fn.constant(functor(node.functor, len(node.arguments), node.negated, node.namespace))  # type: ignore[arg-type]
+    symbol = fn.constant(functor_of_literal(node))
     fn.line(f"{table} = agent.beliefs[{symbol}]")
     arguments = _Arguments(fn, node.arguments)
     rows = arguments.fast_rows(table)
-    general = f"solve(agent, {table}, {tuple_of(arguments.terms)}, t)" if arguments.terms else f"solve(agent, {table}, (), t)"
+    general = (
+        f"solve(agent, {table}, {tuple_of(arguments.terms)}, t)"
+        if arguments.terms
+        else f"solve(agent, {table}, (), t)"
+    )
     test = " and ".join([f"{table}.plain", *arguments.tests])
     if fn.trampoline:
         _trampolined_rows(fn, arguments, rows, general, test, then)
@@ -267,7 +281,9 @@ class _Arguments:
 
     def _is_value(self, pattern: nodes.Node) -> bool:
         """Whether the pattern can be a key: structures with annotations or anonymous parts cannot."""
-        if isinstance(pattern, (nodes.Variable, nodes.Number, nodes.String, nodes.Arithmetic, nodes.FunctionCall)):
+        if isinstance(
+            pattern, (nodes.Variable, nodes.Number, nodes.String, nodes.Arithmetic, nodes.FunctionCall)
+        ):
             return not isinstance(pattern, nodes.Variable) or pattern.annotations is None
         return isinstance(pattern, nodes.Literal) and not pattern.arguments and pattern.annotations is None
 
@@ -298,7 +314,7 @@ class _Arguments:
 def _annotated_literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
     """A query that asks for annotations: every way to find them in those of a belief is an answer."""
     table = fn.local("b")
-    symbol = fn.constant(functor(node.functor, len(node.arguments), node.negated, node.namespace))  # type: ignore[arg-type]
+    symbol = fn.constant(functor_of_literal(node))
     fn.line(f"{table} = agent.beliefs[{symbol}]")
     names = names_in(node)
     arguments = tuple_of([build(fn, a) for a in node.arguments]) if node.arguments else "()"

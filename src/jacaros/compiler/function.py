@@ -1,15 +1,12 @@
 """One generated Python function: its text and what is known about variables at the point being written."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Protocol
+from typing import Any, Protocol
 
 from jacaros.asl import nodes
 from jacaros.compiler.writer import Writer
 from jacaros.terms.values import Term
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 FIRST_SLOT = 5
 """A frame is ``[next step, goal, annotations, serial, plan, variable, ...]``."""
@@ -18,18 +15,37 @@ FIRST_SLOT = 5
 class ActionInfo(Protocol):
     """What the compiler needs to know of an internal action."""
 
-    name: str
-    function: "Callable[..., object]"
-    backtracks: bool
-    suspends: bool
-    minimum: int
-    maximum: int | None
+    @property
+    def name(self) -> str:
+        """With the leading dot of the standard ones."""
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """Called with a context and the arguments."""
+
+    @property
+    def backtracks(self) -> bool:
+        """Whether it is a generator of answers."""
+
+    @property
+    def suspends(self) -> bool:
+        """Whether it may suspend the intention."""
+
+    @property
+    def minimum(self) -> int:
+        """Least number of arguments."""
+
+    @property
+    def maximum(self) -> int | None:
+        """Greatest number of arguments, None for any."""
 
 
 class Unit(Protocol):
     """The unit that the function becomes part of: constants, and further functions."""
 
-    actions: Mapping[str, ActionInfo]
+    @property
+    def actions(self) -> Mapping[str, ActionInfo]:
+        """The internal actions known at compile time."""
 
     def constant(self, value: Term) -> str:
         """A global name for a value."""

@@ -8,15 +8,17 @@ variable, annotations, arithmetic) goes to `unify`.
 from collections.abc import Callable, Sequence
 
 from jacaros.asl import nodes
-from jacaros.compiler.building import build, is_static, tuple_of
+from jacaros.compiler.building import build, functor_of_literal, is_static, tuple_of
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.variables import names_in
-from jacaros.terms.values import CONS, functor
+from jacaros.terms.values import CONS
 
 Then = Callable[[], None]
 
 
-def match(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool = True) -> None:
+def match(
+    fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool = True
+) -> None:
     """Match one pattern with the value of a local name."""
     if isinstance(pattern, nodes.Variable) and _is_plain(pattern):
         _match_variable(fn, pattern, value, then)
@@ -28,9 +30,13 @@ def match(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, patt
         _test(fn, f"{value} == {text} if {value}.__class__ is String else unify({text}, {value}, t)", then)
     elif isinstance(pattern, nodes.Literal) and not pattern.arguments and _is_plain(pattern):
         symbol = build(fn, pattern)
-        _test(fn, f"{value} is {symbol} or ({value}.__class__ is not Functor and unify({symbol}, {value}, t))", then)
+        _test(
+            fn,
+            f"{value} is {symbol} or ({value}.__class__ is not Functor and unify({symbol}, {value}, t))",
+            then,
+        )
     elif isinstance(pattern, nodes.Literal) and _is_plain(pattern) and not is_static(pattern):
-        symbol = fn.constant(functor(pattern.functor, len(pattern.arguments), pattern.negated, pattern.namespace))
+        symbol = fn.constant(functor_of_literal(pattern))
         _match_structure(fn, pattern, symbol, pattern.arguments, value, then)
     elif isinstance(pattern, nodes.ListTerm) and len(pattern.items) == 1 and pattern.tail is not None:
         _match_structure(fn, pattern, fn.constant(CONS), (pattern.items[0], pattern.tail), value, then)

@@ -81,5 +81,3 @@ def label_of(node: nodes.Plan, number: int) -> Term:
     if node.label is None or isinstance(node.label, nodes.Variable):
         return atom(f"p__{number}")
     return lower_value(node.label)
-
-

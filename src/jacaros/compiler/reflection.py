@@ -73,7 +73,9 @@ class Reflection:
         name = self._names.get(id(variable))
         if name is None:
             self._kept.append(variable)
-            name = self._names[id(variable)] = f"{variable.name.lstrip('_') or 'V'}_{len(self._names) + 1}".title()
+            name = self._names[id(variable)] = (
+                f"{variable.name.lstrip('_') or 'V'}_{len(self._names) + 1}".title()
+            )
         return nodes.Variable(name)
 
     def _literal(self, symbol: Functor, arguments: tuple[Term, ...]) -> nodes.Literal | nodes.InternalAction:

@@ -139,10 +139,7 @@ def solve_annotated(
 
 def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) -> bool:
     """Unify arguments pairwise."""
-    for a, b in zip(left, right, strict=True):
-        if a is not b and not unify(a, b, trail):
-            return False
-    return True
+    return all(a is b or unify(a, b, trail) for a, b in zip(left, right, strict=True))
 
 
 def answers_of(context: Any, trail: Trail, generator: Iterator[Any]) -> Iterator[None]:
@@ -172,7 +169,11 @@ def on_trail(context: Any, trail: Trail, function: Any, *arguments: Term) -> Any
 def wrong_arity(action: Any, count: int) -> Any:
     """An internal action was called with a number of arguments it does not take."""
     most = action.maximum
-    expected = str(action.minimum) if most == action.minimum else f"{action.minimum} to {most if most is not None else 'any'}"
+    expected = (
+        str(action.minimum)
+        if most == action.minimum
+        else f"{action.minimum} to {most if most is not None else 'any'}"
+    )
     message = f"{action.name} takes {expected} arguments, not {count}"
     raise Failure((functor("error", 1), atom("wrong_arguments")), (functor("error_msg", 1), String(message)))
 
@@ -193,9 +194,8 @@ def literal_of(goal: tuple[Any, ...], annotations: Any) -> Term:
 
 def annotations_of_event(annotations: Any) -> tuple[Term, ...]:
     """The annotations of an event; those of failure events are made when first asked for."""
-    if annotations.__class__ is tuple:
-        return annotations  # type: ignore[no-any-return]
-    return annotations.annotations()  # type: ignore[no-any-return]
+    found: tuple[Term, ...] = annotations if annotations.__class__ is tuple else annotations.annotations()
+    return found
 
 
 def positive(term: Term) -> Term:
@@ -213,7 +213,7 @@ def own_annotations(items: tuple[Term, ...], tail: Term = None) -> tuple[Term, .
     found = [resolve(i) for i in items]
     if tail is not None:
         found.extend(resolve(i) for i in list_items(tail))
-    if not any(a.__class__ is tuple and a[0] is SOURCE or _is_source(a) for a in found):
+    if not any((a.__class__ is tuple and a[0] is SOURCE) or _is_source(a) for a in found):
         found.append(SOURCE_SELF)
     return annotation_set(tuple(found))
 
@@ -275,13 +275,41 @@ def _construct(variable: Term, parts: list[Term], trail: Trail) -> bool:
 CLOSED = frozenset({float, String, Functor})
 """Values that never unify with a structure."""
 
-NAMES = {
-    name: value
-    for name, value in globals().items()
-    if not name.startswith("__") and name not in ("Any", "Generator", "Iterator", "NAMES")
-}
-NAMES["copy"] = rename
+_FUNCTIONS = (
+    *(
+        annotation_set,
+        annotations_of_event,
+        answers_of,
+        at_most,
+        binary,
+        deconstruct,
+        deref,
+        divide,
+        equal,
+        exists,
+    ),
+    *(
+        free_variables,
+        integer_divide,
+        less,
+        literal_in,
+        literal_of,
+        make_list,
+        namespace_name,
+        negate,
+        on_trail,
+    ),
+    *(own_annotations, positive, power, qualify, release, remainder, resolve, resolve_all, run, solve),
+    *(solve_annotated, undo, unify, unify_annotations, wrong_arity),
+)
+_CLASSES = (Annotated, Fail, Functor, String, Trail, Var)
 
-__all__ = ["BY_SELF", "NAMES", "SUSPENDED", "Fail", "Failure", "annotations_of_event", "deref", "run", "solve"]
-_USED = (ATOMIC, at_most, binary, divide, equal, free_variables, integer_divide, less, negate, power, qualify, remainder)
-_ALSO = (unify_annotations,)
+NAMES: dict[str, Any] = {
+    **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},
+    "ATOMIC": ATOMIC,
+    "BY_SELF": BY_SELF,
+    "CLOSED": CLOSED,
+    "CONS": CONS,
+    "copy": rename,
+}
+"""The global names of generated code."""

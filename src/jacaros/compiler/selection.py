@@ -15,7 +15,6 @@ from jacaros.compiler.matching import match_all, settle_fresh
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.variables import actions_in, names_in, occurrences
 
-
 _BY_NAME = (".term2string", ".puts", ".print_unifier")
 """Internal actions that reach variables by their names: all variables of the plan are kept for them."""
 
@@ -60,7 +59,9 @@ class SelectCompiler:
         used = [not (isinstance(a, nodes.Variable) and a.unnamed) for a in literal.arguments]
         if any(used):
             fn.line(f"_, {', '.join(parts)} = goal")
-        match_all(fn, list(literal.arguments), parts, lambda: self._annotations(fn, plan, literal.annotations))
+        match_all(
+            fn, list(literal.arguments), parts, lambda: self._annotations(fn, plan, literal.annotations)
+        )
 
     def _variable_trigger(self, fn: FunctionBuilder, plan: Plan, variable: nodes.Variable) -> None:
         if variable.unnamed:
@@ -81,7 +82,9 @@ class SelectCompiler:
             self._context(fn, plan)
             return
         items, tail = annotation_parts(fn, annotations)
-        with fn.writer.block(f"if unify_annotations({items}, {tail}, annotations_of_event(annotations), None, t):"):
+        with fn.writer.block(
+            f"if unify_annotations({items}, {tail}, annotations_of_event(annotations), None, t):"
+        ):
             settle_fresh(fn, names_in(annotations))
             self._context(fn, plan)
 

@@ -36,7 +36,7 @@ class CodeUnit:
 
     def constant(self, value: Term) -> str:
         """A global name for a value; equal values share it."""
-        key = value if value.__class__ in (Functor, Trigger) else (value.__class__, id(value))
+        key: Any = value if value.__class__ in (Functor, Trigger) else (value.__class__, id(value))
         if value.__class__ in (String, float):
             key = (value.__class__, value)
         name = self._constants.get(key)
@@ -58,7 +58,7 @@ class CodeUnit:
     def execute(self) -> None:
         """Make the functions: afterwards they are in `globals`."""
         for writer in self._writers:
-            exec(writer.compile(self.filename), self.globals)  # noqa: S102 - only ever from the syntax tree
+            exec(writer.compile(self.filename), self.globals)  # only ever made from the syntax tree
         self._writers.clear()
 
 

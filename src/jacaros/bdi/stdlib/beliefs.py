@@ -122,9 +122,6 @@ def namespace(ctx: Context, target: Term) -> Iterator[None]:
         if symbol is not None and symbol.namespace:
             names[symbol.namespace] = None
 
-
     for name in names:
         if ctx.unify(target, atom(name)):
             yield
-
-

@@ -10,7 +10,17 @@ from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.compiler.runtime import Failure
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import Annotated, String, Term, atom, bare, functor, functor_of, make_list, structure
+from jacaros.terms.values import (
+    Annotated,
+    String,
+    Term,
+    atom,
+    bare,
+    functor,
+    functor_of,
+    make_list,
+    structure,
+)
 
 ERROR, REASON = functor("error", 1), functor("reason", 1)
 
@@ -44,22 +54,24 @@ def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
 
 
 @internal_action(".intention", arity=(2, 4), backtracks=True)
-def intention(ctx: Context, number: Term, state: Term, stack: Term = None, which: Term = None) -> Iterator[None]:
+def intention(
+    ctx: Context, number: Term, state: Term, stack: Term = None, which: Term = None
+) -> Iterator[None]:
     """``.intention(Id, State [,Stack [,current]])``: each intention, its state and its stack."""
     only_current = which is not None and bare(which) is atom("current")
     for candidate in list(ctx.agent.alive.values()):
         running = candidate is ctx.agent.current
         if only_current and not running:
             continue
-        pairs = [(number, float(candidate.id)), (state, _state(candidate, running))]
+        pairs = [(number, float(candidate.id)), (state, _state(candidate))]
         if stack is not None:
             pairs.append((stack, make_list([_means(f) for f in reversed(candidate.frames)])))
         if ctx.unify_all(*pairs):
             yield
 
 
-def _state(candidate: Intention, running: bool) -> Term:
-    name, reason = goals.describe(candidate, running)
+def _state(candidate: Intention) -> Term:
+    name, reason = goals.describe(candidate)
     if name != "waiting":
         return atom(name)
     inner = bare(reason)

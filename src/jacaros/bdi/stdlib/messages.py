@@ -8,7 +8,18 @@ from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import rename
-from jacaros.terms.values import Functor, String, Term, Var, atom, bare, functor, is_list, list_items, make_list
+from jacaros.terms.values import (
+    Functor,
+    String,
+    Term,
+    Var,
+    atom,
+    bare,
+    functor,
+    is_list,
+    list_items,
+    make_list,
+)
 
 ERROR = functor("error", 1)
 QUESTIONS = ("askOne", "askAll", "askHow", "ask-one", "ask-all", "ask-how")
@@ -19,24 +30,28 @@ def _name(term: Term, what: str) -> str:
     if term.__class__ is String:
         return str(term)
     if term.__class__ is Functor:
-        return term.name.strip("'")  # type: ignore[no-any-return]
+        return term.name.strip("'")
     raise WrongArguments(f"{what} must be an atom or a string, not {text(term)}")
 
 
-def _deliver(ctx: Context, receiver: str, performative: str, content: Term, message_id: str, reply: str | None) -> None:
+def _deliver(
+    ctx: Context, receiver: str, performative: str, content: Term, message_id: str, reply: str | None
+) -> None:
     sender = ctx.agent.name
     target = sender if receiver == "self" else receiver
-    act = SpeechAct(performative, "self" if target == sender else sender, target, rename(content), message_id, reply)
+    act = SpeechAct(
+        performative, "self" if target == sender else sender, target, rename(content), message_id, reply
+    )
     if not ctx.architecture.send(act):
-        raise ActionError(
-            f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
-        )
+        raise ActionError(f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found")))
 
 
 class _Question:
     """A synchronous question to one or several agents."""
 
-    def __init__(self, ctx: Context, waiting: Waiting, target: Term, receivers: list[str], many: bool) -> None:
+    def __init__(
+        self, ctx: Context, waiting: Waiting, target: Term, receivers: list[str], many: bool
+    ) -> None:
         self.ctx, self.waiting, self.target, self.many = ctx, waiting, target, many
         self.missing = list(receivers)
         self.answers: list[Term] = []
@@ -52,7 +67,7 @@ class _Question:
             self._end(make_list(self.answers) if self.many else content)
 
     def _with_source(self, message: SpeechAct) -> Term:
-        from jacaros.bdi.speech_acts import from_sender  # noqa: PLC0415
+        from jacaros.bdi.speech_acts import from_sender
 
         content = message.content
         if is_list(content):
@@ -90,7 +105,11 @@ def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest:
         ActionError: ``receiver_not_found``.
     """
     act = _name(performative, "the performative")
-    receivers = [_name(r, "a receiver") for r in list_items(receiver)] if is_list(receiver) else [_name(receiver, "the receiver")]
+    receivers = (
+        [_name(r, "a receiver") for r in list_items(receiver)]
+        if is_list(receiver)
+        else [_name(receiver, "the receiver")]
+    )
     if act in QUESTIONS and rest:
         return _ask(ctx, receivers, act, content, rest, is_list(receiver))
     reply = _name(rest[0], "the message id") if rest and rest[0].__class__ is not Var else None
@@ -99,7 +118,9 @@ def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest:
     return None
 
 
-def _ask(ctx: Context, receivers: list[str], act: str, content: Term, rest: tuple[Term, ...], many: bool) -> Any:
+def _ask(
+    ctx: Context, receivers: list[str], act: str, content: Term, rest: tuple[Term, ...], many: bool
+) -> Any:
     waiting = ctx.suspend("ask")
     question = _Question(ctx, waiting, rest[0], receivers, many)
     waiting.on_drop = question.forget

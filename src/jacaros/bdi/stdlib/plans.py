@@ -36,7 +36,8 @@ def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> bool:
     """``.remove_plan(Label)``: also a list of labels, or a plan term; fails when there is none."""
     del source
     if is_list(wanted):
-        return all([ctx.agent.remove_plan(item) for item in list_items(wanted)])
+        removed = [ctx.agent.remove_plan(item) for item in list_items(wanted)]
+        return all(removed)
     return bool(ctx.agent.remove_plan(wanted))
 
 
@@ -55,9 +56,7 @@ def _relevant(ctx: Context, event: Term) -> list[Plan]:
     if found[0] is None:
         operator = found[2]
         return [
-            p
-            for p in ctx.agent.library.plans
-            if p.node.trigger.operator + p.node.trigger.kind == operator
+            p for p in ctx.agent.library.plans if p.node.trigger.operator + p.node.trigger.kind == operator
         ]
     return list(ctx.agent.library.relevant(found[0]))
 
@@ -84,5 +83,3 @@ def list_plans(ctx: Context, event: Term = None) -> None:
     """``.list_plans [({T})]``: print the plans."""
     for plan in ctx.agent.library.plans if event is None else _relevant(ctx, event):
         ctx.architecture.print(text(_term(plan)))
-
-
