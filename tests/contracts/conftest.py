@@ -1,6 +1,5 @@
 """The graphs that the one contract suite runs on."""
 
-import importlib.util
 import os
 import sys
 from collections.abc import Iterator
@@ -13,9 +12,9 @@ sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs,
 
 from graphs import InMemory, InProcesses
 from masters import Master
+from presence import is_wanted, need
 
 KINDS = ("memory", "ros1", "ros2")
-LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -32,32 +31,6 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Make the marker `only` known."""
     config.addinivalue_line("markers", "only(kinds): run a contract test on these kinds of graph alone")
-
-
-def missing(kind: str) -> str | None:
-    """Tell what a kind of graph lacks here."""
-    if kind == "memory":
-        return None
-    if importlib.util.find_spec(LIBRARIES[kind]) is None:
-        return f"no {LIBRARIES[kind]} in {sys.executable}; run tools/install_{kind}.sh and use its venv"
-    if kind == "ros1" and Master.program() is None:
-        return "no rosmaster; run tools/install_ros1.sh"
-    return None
-
-
-def is_wanted(kind: str, config: pytest.Config) -> bool:
-    """Whether to run tests on *kind*: `test_presence` tells once of one that is missing, not every test."""
-    return missing(kind) is None or config.getoption(f"--require-{kind}")
-
-
-def need(kind: str, config: pytest.Config) -> None:
-    """Skip the test where *kind* is missing, or fail where it is required."""
-    problem = missing(kind)
-    if problem is None:
-        return
-    if config.getoption(f"--require-{kind}"):
-        pytest.fail(f"{kind} is required, but there is {problem}")
-    pytest.skip(f"{kind.upper()} IS NOT TESTED: {problem}")
 
 
 @pytest.fixture(scope="session")

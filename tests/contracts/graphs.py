@@ -1,6 +1,7 @@
-"""Graphs in which contract tests run their peers: in this process, or real ones with a process for each node."""
+"""Graphs in which contract tests run their peers: in this process, or real ones with processes."""
 
 import asyncio
+import contextlib
 import json
 import os
 import queue
@@ -122,19 +123,20 @@ class ProcessPeer:
             self._note_shared_memory()
             try:
                 self._do("close", (), {})
-            except (AssertionError, BrokenPipeError):
+            except BaseException:
                 self._process.kill()
+                raise
         assert self._process.stdin is not None
-        try:
+        with contextlib.suppress(BrokenPipeError):
             self._process.stdin.close()
-        except BrokenPipeError:
-            pass
         try:
             self.wait()
         except subprocess.TimeoutExpired:
             self._process.kill()
             self.wait()
-            raise AssertionError("the peer does not end after it was closed:\n" + "".join(self.errors)) from None
+            raise AssertionError(
+                "the peer does not end after it was closed:\n" + "".join(self.errors)
+            ) from None
         assert self._process.stdout is not None
         assert self._process.stderr is not None
         self._process.stdout.close()
@@ -156,7 +158,8 @@ class ProcessPeer:
             if answer["id"] == self._number:
                 break
         if "error" in answer:
-            raise getattr(jacaros.ros.errors, answer["error"], ValueError)(answer["text"])
+            known = getattr(jacaros.ros.errors, answer["error"], None)
+            raise (known or AssertionError)(answer["text"] if known else f"{answer}")
         return answer["result"]
 
     def _read(self) -> None:
@@ -193,7 +196,9 @@ class InProcesses:
         self._peers: list[ProcessPeer] = []
         self._leftovers: set[str] = set()
 
-    def peer(self, name: str, namespace: str = "", start: bool = True, flags: str = "", **options: Any) -> Any:
+    def peer(
+        self, name: str, namespace: str = "", start: bool = True, flags: str = "", **options: Any
+    ) -> Any:
         environment = self.environment | ({"PYTHON_FLAGS": flags} if flags else {})
         made = ProcessPeer(self.kind, name, namespace, options, dict(environment))
         self._peers.append(made)

@@ -2,8 +2,8 @@
 
     python peer.py KIND NODE_NAME [NAMESPACE]
 
-As a program it reads commands as JSON lines from standard input and answers each with a line ``@{…}`` on standard
-output; anything else on standard output breaks the contract of `jacaros run` and fails the test.
+As a program it reads commands as JSON lines from standard input and answers each with a line ``@{…}`` on
+standard output; anything else on standard output breaks the contract of `jacaros run` and fails the test.
 """
 
 import asyncio
@@ -14,12 +14,10 @@ import sys
 import threading
 import time
 from collections import defaultdict
-from collections.abc import Callable
 from typing import Any
 
 from jacaros.clock import Clock, WallClock, run
 from jacaros.ros.backend import Sample
-from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import post
 from jacaros.ros.message import plain
 from jacaros.ros.open import open_backend
@@ -135,7 +133,9 @@ class Peer:
         return sorted(self._threads)
 
     def serve(self, name: str, behaviour: str = "add", type_name: str = ADD) -> str:
-        service = self._services[name] = self._backend.service(name, type_name, getattr(self, f"_{behaviour}"))
+        service = self._services[name] = self._backend.service(
+            name, type_name, getattr(self, f"_{behaviour}")
+        )
         return service.name
 
     def unserve(self, name: str) -> None:
@@ -200,7 +200,9 @@ class Peer:
         self._backend.tf_broadcast(transform, static)
 
     def ask_for(self, place: str) -> None:
-        getattr(self._backend, place)(*{"action_client": ("a", "b"), "action_server": ("a", "b", print)}.get(place, ()))
+        getattr(self._backend, place)(
+            *{"action_client": ("a", "b"), "action_server": ("a", "b", print)}.get(place, ())
+        )
 
     def look_up_transform(self) -> None:
         self._backend.tf_lookup("map", "base_link")
@@ -284,7 +286,7 @@ async def do(peer: Peer, command: dict[str, Any]) -> None:
         if inspect.isawaitable(result):
             result = await result
         reply({"id": command["id"], "result": result})
-    except (RosError, ValueError) as problem:
+    except Exception as problem:
         reply({"id": command["id"], "error": type(problem).__name__, "text": str(problem)})
 
 
@@ -309,5 +311,4 @@ async def main(kind: str, name: str, namespace: str = "") -> None:
 
 
 if __name__ == "__main__":
-    entry: Callable[[], Any] = lambda: main(*sys.argv[1:])
-    run(entry, WallClock())
+    run(lambda: main(*sys.argv[1:]), WallClock())

@@ -1,7 +1,7 @@
 """Says once, and loudly, which real graphs the contract suite does not run on."""
 
 import pytest
-from conftest import need
+from presence import need
 
 
 @pytest.mark.parametrize("kind", ["ros1", "ros2"])

@@ -54,8 +54,8 @@ class ExitHooks:
     def watch_thread(self) -> None:
         """Run the hooks also when the calling thread, which is the loop's, ends.
 
-        Client libraries start threads that the interpreter waits for before it calls what is registered with
-        `atexit`; so after an uncaught exception the process would never get there.
+        The interpreter calls what is registered with `atexit` only after all threads but daemons have
+        ended; a library with such a thread would keep a robot driving after an uncaught exception.
         """
         thread = threading.current_thread()
 

@@ -1,9 +1,11 @@
 """The one place where another thread hands work to the loop, and the loop hands work to another thread."""
 
 import asyncio
+import concurrent.futures
 import threading
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
@@ -71,6 +73,43 @@ def post(loop: asyncio.AbstractEventLoop, callback: Callable[..., None], *argume
     except RuntimeError:  # the loop is closed: the process is on its way out
         return False
     return True
+
+
+class LoopEnded(Exception):
+    """The loop was asked for something and ended before it answered."""
+
+
+def ask(
+    loop: asyncio.AbstractEventLoop,
+    question: Callable[[Callable[[T | None, Exception | None], None]], None],
+    ending: Callable[[], bool],
+) -> T:
+    """Have *question* called on *loop* and wait in this other thread for what it gives to its argument.
+
+    Args:
+        loop: whom to ask.
+        question: takes the function that it will tell the answer, or the problem.
+        ending: tells whether to give up waiting.
+
+    Raises:
+        LoopEnded: there will be no answer any more.
+        Exception: the problem that was told.
+    """
+    answer: concurrent.futures.Future[Any] = concurrent.futures.Future()
+
+    def tell(result: T | None, problem: Exception | None) -> None:
+        if problem is not None:
+            answer.set_exception(problem)
+        else:
+            answer.set_result(result)
+
+    alive = post(loop, question, tell)
+    while alive:
+        with suppress(concurrent.futures.TimeoutError):
+            result: T = answer.result(timeout=0.2)
+            return result
+        alive = not loop.is_closed() and not ending()
+    raise LoopEnded
 
 
 def in_thread(loop: asyncio.AbstractEventLoop, work: Callable[[], T], name: str) -> asyncio.Future[T]:

@@ -6,7 +6,6 @@ Nothing here waits on the loop: joining, registering and calling services happen
 """
 
 import asyncio
-import concurrent.futures
 import logging
 import os
 import sys
@@ -15,10 +14,12 @@ import time
 import warnings
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
+from functools import partial
 from typing import Any
 
+import rosgraph.xmlrpc  # type: ignore[import-not-found]
 import rospy  # type: ignore[import-not-found]
+import rospy.impl.masterslave  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import (
@@ -34,7 +35,7 @@ from jacaros.ros.backend import (
 from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, call_failure, stay_local
 from jacaros.ros.backends.ros1_types import GenpySchema
 from jacaros.ros.errors import CallFailed, MessageMismatch, RosError
-from jacaros.ros.handoff import Handoff, in_thread, post
+from jacaros.ros.handoff import Handoff, LoopEnded, ask, in_thread, post
 from jacaros.ros.names import message_type, request_type, service_type
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.qos import DEFAULT_QOS, QoS
@@ -179,6 +180,7 @@ class Ros1Subscription:
         )
         self._feed = node.feed(topic, type_name)
         self._feed.add(self)
+        self._closed = False
 
     @property
     def publisher_count(self) -> int:
@@ -188,8 +190,9 @@ class Ros1Subscription:
     def close(self) -> None:
         """Leave the topic."""
         self.queue.close()
-        if self._feed.remove(self):
+        if not self._closed and self._feed.remove(self):
             self._node.drop_feed(self.topic)
+        self._closed = True
 
 
 class Ros1Service:
@@ -217,20 +220,15 @@ class Ros1Service:
 
     def _serve(self, request: Any) -> Any:
         """Have the loop answer; on rospy's thread of this connection."""
-        answer: concurrent.futures.Future[Any] = concurrent.futures.Future()
-
-        def done(response: Any, problem: CallFailed | None) -> None:
-            if problem is not None:
-                answer.set_exception(rospy.ServiceException(str(problem)))
-            else:
-                answer.set_result(response)
-
-        alive = post(self._node.loop, self._responder.answer, request, done)
-        while alive:
-            with suppress(concurrent.futures.TimeoutError):
-                return answer.result(timeout=1.0)
-            alive = not self._node.loop.is_closed()
-        raise rospy.ServiceException(f"service {self.name}: the node is shutting down")
+        node = self._node
+        try:
+            return ask(
+                node.loop, lambda done: self._responder.answer(request, done), lambda: node.exit_hooks.ran
+            )
+        except CallFailed as problem:
+            raise rospy.ServiceException(str(problem)) from None
+        except LoopEnded:
+            raise rospy.ServiceException(f"service {self.name}: the node is shutting down") from None
 
 
 class Ros1Client:
@@ -370,9 +368,7 @@ class Ros1Backend(Node):
             f"{self.names.namespace}/unnamed"
         )  # where init_node takes its namespace from
         rospy.init_node(self.names.node_name, argv=[], disable_signals=True)
-        for handler in logging.getLogger("rosout").handlers:
-            if hasattr(handler, "_stdout"):
-                handler._stdout = sys.stderr  # standard output belongs to the agents
+        _leave_standard_output_alone()
         rospy.on_shutdown(self._note_shutdown)
 
     def _leave(self) -> None:
@@ -415,6 +411,15 @@ class Ros1Backend(Node):
             post(self.loop, self.log, f"node {self.node_name} was shut down from outside: is its name taken?")
             post(self.loop, self.set_connected, False)
             self.link.stop()
+
+
+def _leave_standard_output_alone() -> None:
+    """Turn rospy's reports to standard error: standard output belongs to the agents."""
+    for handler in logging.getLogger("rosout").handlers:
+        if hasattr(handler, "_stdout"):
+            handler._stdout = sys.stderr
+    for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
+        module.print = partial(print, file=sys.stderr)
 
 
 def _offers() -> Offers:

@@ -76,7 +76,7 @@ class RosidlSchema:
         if found is None:
             raise UnknownInterface(
                 f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "
-                f"install ros-<distribution>-{package.replace('_', '-')}, or build its package and source its "
+                f"install ros-<distribution>-{package.replace('_', '-')}, or build its package, source its "
                 "setup file"
             )
         return found

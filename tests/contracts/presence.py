@@ -1,0 +1,35 @@
+"""Which real graphs are there, and what becomes of tests on those that are not."""
+
+import importlib.util
+import sys
+
+import pytest
+from masters import Master
+
+LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
+
+
+def missing(kind: str) -> str | None:
+    """Tell what a kind of graph lacks here."""
+    if kind == "memory":
+        return None
+    if importlib.util.find_spec(LIBRARIES[kind]) is None:
+        return f"no {LIBRARIES[kind]} in {sys.executable}; run tools/install_{kind}.sh and use its venv"
+    if kind == "ros1" and Master.program() is None:
+        return "no rosmaster; run tools/install_ros1.sh"
+    return None
+
+
+def is_wanted(kind: str, config: pytest.Config) -> bool:
+    """Whether to run tests on *kind*: `test_presence` tells once of one that is missing, not every test."""
+    return missing(kind) is None or config.getoption(f"--require-{kind}")
+
+
+def need(kind: str, config: pytest.Config) -> None:
+    """Skip the test where *kind* is missing, or fail where it is required."""
+    problem = missing(kind)
+    if problem is None:
+        return
+    if config.getoption(f"--require-{kind}"):
+        pytest.fail(f"{kind} is required, but there is {problem}")
+    pytest.skip(f"{kind.upper()} IS NOT TESTED: {problem}")

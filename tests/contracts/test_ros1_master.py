@@ -1,0 +1,161 @@
+"""ROS 1 alone: a master that is late, goes away, and comes back without memory."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from graphs import InProcesses
+from masters import Master
+from presence import is_wanted
+
+pytestmark = [pytest.mark.ros1, pytest.mark.slow]
+
+
+@pytest.fixture(autouse=True)
+def _where_ros1_is(request: pytest.FixtureRequest) -> None:
+    if not is_wanted("ros1", request.config):
+        pytest.skip("no ROS 1 here; see test_presence")
+
+
+@pytest.fixture
+def ros1(master: Master) -> Iterator[InProcesses]:
+    """A graph around the test's own master."""
+    made = InProcesses("ros1", master.environment)
+    yield made
+    made.close()
+
+
+def exchange(ros1: InProcesses, left: Any, right: Any, value: int) -> None:
+    def arrives() -> bool:
+        left.publish("/before", {"data": value})
+        return {"data": value} in right.received("/before")
+
+    ros1.wait_until(arrives, f"{value} arrives")
+
+
+def test_a_restarted_master_learns_everything_again(master: Master, ros1: InProcesses) -> None:
+    master.start()
+    left, right = ros1.peer("left"), ros1.peer("right")
+    left.advertise("/before", "std_msgs/msg/Int32")
+    right.subscribe("/before", "std_msgs/msg/Int32")
+    right.serve("/add")
+    exchange(ros1, left, right, 1)
+    assert left.call("/add", {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+
+    master.kill()
+    ros1.wait_until(lambda: not left.connected() and not right.connected(), "both notice the loss")
+    exchange(ros1, left, right, 2)  # connections between nodes outlive the master
+    left.advertise("/during", "std_msgs/msg/Int32")  # neither blocks nor is it lost
+    right.subscribe("/during", "std_msgs/msg/Int32")
+    left.publish("/during", {"data": 5})
+
+    master.start()
+    ros1.wait_until(lambda: left.connected() and right.connected(), "both notice the return")
+    assert left.connection() == [True, False, True]
+    exchange(ros1, left, right, 3)
+    ros1.wait_until(lambda: left.ready("/add"), "the service is found again")
+    assert left.call("/add", {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+    ros1.wait_until(lambda: left.subscription_count("/during") == 1, "the topic made meanwhile is joined")
+
+    newcomer = ros1.peer("newcomer")
+    newcomer.subscribe("/before", "std_msgs/msg/Int32")
+    exchange(ros1, left, newcomer, 4)
+    assert newcomer.call("/add", {"a": 2, "b": 2}, timeout=20) == {"sum": 4}
+    assert any("had forgotten" in line and "/before" in line for line in left.log())
+
+
+def test_a_master_restarted_in_a_moment_learns_everything_again(master: Master, ros1: InProcesses) -> None:
+    master.start()
+    left = ros1.peer("left")
+    left.advertise("/before", "std_msgs/msg/Int32")
+    left.serve("/add")
+    ros1.wait_until(lambda: left.ready("/add"), "the service is registered")
+    master.kill()
+    master.start()
+    newcomer = ros1.peer("newcomer")
+    newcomer.subscribe("/before", "std_msgs/msg/Int32")
+    exchange(ros1, left, newcomer, 1)
+    assert newcomer.call("/add", {"a": 2, "b": 2}, timeout=20) == {"sum": 4}
+
+
+def test_a_late_master_is_awaited_without_blocking_the_loop(master: Master, ros1: InProcesses) -> None:
+    robot = ros1.peer("robot")  # start() returns though there is no master
+    robot.watch_loop()
+    assert robot.connected() is False
+    assert robot.log() == [f"waiting for the ROS master at {master.uri}"]
+    robot.advertise("/map", "std_msgs/msg/String", durability="transient_local", depth=1)
+    robot.publish("/map", {"data": "kitchen"})
+    robot.serve("/add")
+    ros1.wait_until(lambda: len(robot.log()) == 2, "the master is called missing")
+    assert "is missing; still trying. Start it with `roscore`" in robot.log()[1]
+    master.start()
+    ros1.wait_until(robot.connected, "the master is found")
+    assert robot.connection() == [True]
+    assert f"found the ROS master at {master.uri}" in robot.log()
+    visitor = ros1.peer("visitor")
+    visitor.subscribe("/map", "std_msgs/msg/String")
+    ros1.wait_until(lambda: visitor.received("/map") == [{"data": "kitchen"}], "the early message arrives")
+    assert visitor.call("/add", {"a": 1, "b": 2}, timeout=20) == {"sum": 3}
+    assert robot.longest_pause() < 2.0
+
+
+def test_a_call_without_a_master_is_unavailable(master: Master, ros1: InProcesses) -> None:
+    robot = ros1.peer("robot")
+    with pytest.raises(Exception, match="nobody offered service /add"):
+        robot.call("/add", {"a": 1, "b": 1}, timeout=0.5)
+
+
+def test_a_node_that_never_found_its_master_ends_cleanly(master: Master, ros1: InProcesses) -> None:
+    robot = ros1.peer("robot")
+    robot.advertise("/cmd_vel", "geometry_msgs/msg/Twist")
+    robot.hook("/cmd_vel", {})
+    getattr(robot, "return")()
+    assert robot.wait() == 0
+
+
+def test_a_second_node_of_the_same_name_is_reported(master: Master, ros1: InProcesses) -> None:
+    master.start()
+    first = ros1.peer("twin")
+    ros1.peer("twin")
+    ros1.wait_until(lambda: not first.connected(), "the first notices")
+    assert any("is its name taken" in line for line in first.log())
+
+
+def test_messages_arrive_with_warnings_as_errors(master: Master, ros1: InProcesses) -> None:
+    master.start()
+    flags = "-W error::DeprecationWarning"
+    left, right = ros1.peer("left", flags=flags), ros1.peer("right", flags=flags)
+    left.advertise("/before", "std_msgs/msg/Int32")
+    right.subscribe("/before", "std_msgs/msg/Int32")
+    exchange(ros1, left, right, 1)
+
+
+def test_a_process_has_one_node(master: Master) -> None:
+    master.start()
+    program = """
+import asyncio
+from jacaros.clock import WallClock, run
+from jacaros.ros.open import open_backend
+async def main():
+    one, two = open_backend("ros1", WallClock(), "one"), open_backend("ros1", WallClock(), "two")
+    await one.start()
+    try:
+        await two.start()
+    except Exception as problem:
+        print(type(problem).__name__, problem)
+    await one.close()
+run(main, WallClock())
+"""
+    answer = subprocess.run(
+        [sys.executable, "-c", program],
+        env=os.environ | master.environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert answer.stdout.startswith("RosError ROS 1 allows one node per process"), answer.stderr
+    assert answer.returncode == 0
