@@ -101,11 +101,11 @@ class BodyParser(TermParser):
     def _group(self) -> list[nodes.Step]:
         opener = self.advance()
         self.enter()
+        if self.token.kind == ")":
+            self.report("the brackets hold no step", self.span_of(opener))
         group = self.body()
         self.leave()
         self.close(opener)
-        if not group.steps:
-            self.report("the brackets hold no step", self.span_of(opener))
         return list(group.steps)
 
     def _brackets_hold_formula(self) -> bool:

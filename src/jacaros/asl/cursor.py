@@ -39,6 +39,7 @@ class Cursor:
         self.index = 0
         self.token = tokens[0]
         self._nesting = 0
+        self._clause_start = 0
         # One error for a place is enough; what follows from it would only confuse.
         self._blamed = {
             (diagnostic.span.line, diagnostic.span.column)
@@ -95,9 +96,10 @@ class Cursor:
         """Come back from one level."""
         self._nesting -= 1
 
-    def reset_nesting(self) -> None:
-        """Back to the outermost level, for the next clause."""
+    def begin_clause(self) -> None:
+        """A clause begins here, at the outermost level."""
         self._nesting = 0
+        self._clause_start = self.index
 
     # reports
 
@@ -170,7 +172,8 @@ class Cursor:
             self.report(
                 f"'{opener.kind}' is closed by '{token.kind}'", hint=f"{where}; close it with '{closer}'"
             )
-            self.advance()
+            if not self._closes_outer(opener) or self.peek().kind == token.kind:
+                self.advance()
             return
         found = "the end of the file" if token.kind == "end" else f"'{token.text}'"
         message, hint = self._explain(token)
@@ -178,6 +181,19 @@ class Cursor:
             message or f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
             hint=hint or where,
         )
+
+    def _closes_outer(self, opener: Token) -> bool:
+        """Whether the bracket here closes one that was opened before *opener* in this clause."""
+        wanted = _MATCHING[self.token.kind]
+        open_brackets: list[str] = []
+        for token in self.tokens[self._clause_start : self.index]:
+            if token is opener:
+                break
+            if token.kind in CLOSERS:
+                open_brackets.append(token.kind)
+            elif token.kind in _MATCHING and open_brackets:
+                open_brackets.pop()
+        return wanted in open_brackets
 
     # looking ahead
 

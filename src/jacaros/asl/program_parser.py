@@ -85,7 +85,7 @@ class ProgramParser(PlanParser):
     def _recovering(self, read: Callable[[Section], None], section: Section) -> None:
         """Read one clause; after an error go on with the next one."""
         start = self.index
-        self.reset_nesting()
+        self.begin_clause()
         try:
             read(section)
         except SyntaxPanic:

@@ -16,7 +16,7 @@ def sequenced(call: PatternCall, section: Section) -> Section:
     trigger, context = _trigger(call), _context(call)
     goal = call.literal(2, "the goal")
     key = nodes.Number(float(call.number), span=call.span)
-    any_goal = nodes.Variable("_goal", span=call.span)
+    any_goal = nodes.Variable("_0", span=call.span)
     busy = nodes.Literal("p__busy", (key,), span=call.span)
     serve = nodes.Literal("p__serve", (key, any_goal), span=call.span)
     queued = nodes.Literal("p__queue", (key, any_goal), span=call.span)

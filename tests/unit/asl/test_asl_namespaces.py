@@ -1,0 +1,157 @@
+"""Namespaces, includes and functions."""
+
+import pytest
+from asl_lab import belief_texts, errors, places, plan_texts, program
+
+from jacaros.asl import nodes
+from jacaros.asl.loader import load_program
+
+
+def block(clauses: str) -> str:
+    return f"{{ begin namespace(m) }} {clauses} {{ end }}"
+
+
+def test_beliefs_goals_and_rules_of_a_block_get_its_namespace():
+    read = program(block("p(a). r(X) :- p(X) & not q(X) & X > 1. !g(b)."))
+    assert belief_texts(block("p(a). r(X) :- p(X) & not q(X) & X > 1.")) == [
+        "m::p(a)",
+        "m::r(X) :- (m::p(X) & (not (m::q(X)) & (X > 1)))",
+    ]
+    assert read.goals == (nodes.Literal("g", (nodes.Literal("b"),), namespace="m"),)
+
+
+def test_plans_of_a_block_get_its_namespace_but_not_their_arguments():
+    (plan,) = plan_texts(
+        block(
+            """@l +!g(a)[source(self)] : c(d)
+               <- !h(e); ?i(j); +k(l); act(m); if (n) { -o }; .findall(X, p(X), L)."""
+        )
+    )
+    head, body = plan.split(" <- ")
+    assert head == "@m::l +!m::g(a)[source(self)] : m::c(d)"
+    assert body == "!m::h(e); ?m::i(j); +m::k(l); act(m); if (m::n) { -m::o }; .findall(X,p(X),L)."
+
+
+def test_operands_of_relations_stay_in_the_default_namespace():
+    assert plan_texts(block("+b : p(X) = q(X) & m::c = Y <- Z = d.")) == [
+        "+m::b : (p(X) = q(X)) & (m::c = Y) <- (Z = d)."
+    ]
+
+
+def test_the_default_namespace_is_reached_by_name():
+    assert plan_texts(block("+!g : default::a & ::b & this_ns::c <- !other::d.")) == [
+        "+!m::g : a & (b & m::c) <- !other::d."
+    ]
+
+
+def test_keywords_stay_in_the_default_namespace():
+    assert belief_texts(block("percept. source(x).")) == ["percept", "source(x)"]
+
+
+def test_a_namespace_directive_holds_for_the_rest_of_the_file_only():
+    files = {"part.asl": "a. { namespace(n) } b."}
+    assert belief_texts('{ include("part.asl") } c.', files) == ["a", "n::b", "c"]
+
+
+def test_a_block_ends_its_namespace_and_blocks_can_be_nested():
+    text = "{ begin namespace(m) } a. { begin namespace(n) } b. { end } c. { end } d."
+    assert belief_texts(text) == ["m::a", "n::b", "m::c", "d"]
+
+
+def test_a_local_namespace_cannot_be_named_from_outside():
+    files = {"part.asl": "{ namespace(private, local) } a. +!g : private::a <- b."}
+    read = program('{ include("part.asl") } private::c.', files)
+    inside, outside = read.beliefs
+    assert isinstance(inside, nodes.Literal)
+    assert isinstance(outside, nodes.Literal)
+    assert inside.namespace != outside.namespace == "private"
+    assert read.plans[0].context == inside
+
+
+def test_an_include_can_move_a_file_to_a_namespace():
+    files = {"part.asl": "a. !g."}
+    read = program('{ include("part.asl", m) } { include("part.asl", X) }', files)
+    assert isinstance(read.beliefs[0], nodes.Literal)
+    assert read.beliefs[0].namespace == "m"
+    first, second = read.goals
+    assert first.namespace == "m"
+    assert isinstance(second.namespace, str)
+    assert second.namespace not in ("m", "X")
+
+
+def test_an_include_stands_at_its_place():
+    files = {"part.asl": "b. !h."}
+    read = program('a. !g. { include("part.asl") } c. !i.', files)
+    assert [goal.functor for goal in read.goals] == ["g", "h", "i"]
+    assert belief_texts('a. { include("part.asl") } c.', files) == ["a", "b", "c"]
+
+
+def test_an_included_file_is_read_with_the_name_of_the_including_one():
+    asked = []
+
+    def read(path: str, including: str) -> tuple[str, str]:
+        asked.append((path, including))
+        return f"lib/{path}", '{ include("two.asl") }' if path == "one.asl" else "p."
+
+    load_program("main.asl", '{ include("one.asl") }', read)
+    assert asked == [("one.asl", "main.asl"), ("two.asl", "lib/one.asl")]
+
+
+def test_libraries_of_the_platform_give_nothing():
+    read, warnings = load_program(
+        "main.asl",
+        """{ include("$jacamo/templates/common-cartago.asl") }
+           { include("$jacamoJar/templates/common-moise.asl") } p.""",
+    )
+    assert len(read.beliefs) == 1
+    assert warnings == []
+
+
+def test_an_unknown_library_file_gives_a_warning():
+    _, warnings = load_program("main.asl", '{ include("$jacamo/templates/mine.asl") }')
+    assert [warning.message for warning in warnings] == [
+        "the library '$jacamo/templates/mine.asl' is not known; nothing is included"
+    ]
+
+
+def test_missing_and_circular_includes_are_errors_at_the_directive():
+    assert places('p.\n{ include("no.asl") }') == [(2, "the included file 'no.asl' is not found")]
+    files = {"one.asl": 'p.\n{ include("one.asl") }'}
+    assert places('{ include("one.asl") }', files) == [(2, "'one.asl' includes itself")]
+
+
+def test_errors_of_included_files_name_their_file():
+    files = {"one.asl": "p(1.\n"}
+    (error,) = errors('q.\nr.\n{ include("one.asl") }', files)
+    assert error.place() == "one.asl:1:4: "
+
+
+def test_a_rule_can_be_registered_as_a_function():
+    read = program(
+        """{ register_function("my.double", 1, "double") }
+           double(X, X*2). +!g : my.double(2) > 3 <- Y = my.double(X)+1."""
+    )
+    assert read.functions == (nodes.RegisteredFunction("my.double", 1, "double"),)
+    context = read.plans[0].context
+    assert isinstance(context, nodes.Relation)
+    assert isinstance(context.left, nodes.FunctionCall)
+
+
+@pytest.mark.parametrize(
+    "directive",
+    [
+        "include(file)",
+        "include",
+        "namespace",
+        "namespace(X)",
+        "namespace(a, b)",
+        'register_function("x", 1, "y")',
+        'register_function(".x", 1, "y")',
+        "register_function(1)",
+        "nothing(1)",
+        "dg(x)",
+        "begin",
+    ],
+)
+def test_wrong_directives_are_refused(directive: str):
+    assert len(places(f"{{ {directive} }}")) == 1

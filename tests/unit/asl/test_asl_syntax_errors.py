@@ -1,0 +1,207 @@
+"""What people see when a program is wrong: place, excerpt, hint, and all errors at once."""
+
+from textwrap import dedent
+
+import pytest
+from asl_lab import errors, places
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import load_program
+
+
+def report(text: str) -> str:
+    with pytest.raises(AslError) as refused:
+        load_program("robot.asl", dedent(text))
+    return str(refused.value)
+
+
+def test_a_missing_final_dot_is_reported_where_the_next_plan_begins():
+    assert report(
+        """\
+        !start.
+        +!start <- .print(a); .stopMAS
+        +!other <- .print(b).
+        """
+    ) == dedent(
+        """\
+        robot.asl:3:1: error: the plan before has no final '.'; the next plan begins here
+          3 | +!other <- .print(b).
+            | ^
+        hint: put a '.' behind line 2"""
+    )
+
+
+def test_all_errors_of_a_file_are_reported_at_once_in_order():
+    assert report(
+        """\
+        battery(60
+        !patrol.
+        +!patrol : battery(B) : B > 20
+           <- !go(lab)
+              .print("here);
+              !patrol.
+        +!go(R) <- .
+        +!charge -> dock.
+        """
+    ) == dedent(
+        """\
+        robot.asl:2:1: error: '(' is not closed: ')' is expected before '!'
+          2 | !patrol.
+            | ^
+        hint: it was opened at line 1, column 8
+
+        robot.asl:3:23: error: a plan has only one context
+          3 | +!patrol : battery(B) : B > 20
+            |                       ^
+        hint: join the conditions with &
+
+        robot.asl:5:7: error: a ';' is missing before this step
+          5 |       .print("here);
+            |       ^^^^^^
+        hint: steps are separated by ';', the last one is followed by '.'
+
+        robot.asl:5:14: error: the string does not end on its line
+          5 |       .print("here);
+            |              ^^^^^^^
+        hint: close it: "text"; a line break inside is \\n
+
+        robot.asl:7:9: error: the body behind '<-' is missing
+          7 | +!go(R) <- .
+            |         ^^
+        hint: write the steps, or leave out '<-' if there is nothing to do
+
+        robot.asl:8:10: error: there is no '->'
+          8 | +!charge -> dock.
+            |          ^
+        hint: the body of a plan begins with <-"""
+    )
+
+
+def test_carets_stand_under_the_mistake_also_behind_tabs():
+    assert report("+!g\n\t<-\t.print(a) b.\n").splitlines()[1:3] == [
+        "  2 | \t<-\t.print(a) b.",
+        "    | \t  \t          ^",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message", "hint"),
+    [
+        (
+            "+!g\n<- X = else.",
+            2,
+            "'else' is a reserved word and cannot be used here",
+            "as an atom it is written",
+        ),
+        ("\ngröße(3).", 2, "'größe' holds the letter 'ö'; names are made of", "rename it, or put it between"),
+        (
+            "+!g <- X = [1,2).",
+            1,
+            "'[' is closed by ')'",
+            "it was opened at line 1, column 12; close it with ']'",
+        ),
+        (
+            "+!g <- .print(a;\n .print(b).",
+            1,
+            "'(' is not closed: ')' is expected before ';'",
+            "it was opened",
+        ),
+        ("+!g <- for (x) { a; b .", 1, "'{' is not closed: '}' is expected before '.'", "it was opened"),
+        ("p(1)\nq(2).", 2, "the belief before has no final '.'; the next belief begins here", "put a '.'"),
+        ("!g\n!h.", 2, "the goal before has no final '.'; a goal begins here", "put a '.' behind line 1"),
+        ("+!g <- a; b", 1, "the plan has no final '.'", "the file ends here"),
+        ("start <- .print(a).", 1, "a plan begins with its trigger", "put +! before it"),
+        ("+!g :- a.", 1, "':-' belongs to rules", "a plan is written +!goal : condition <- steps."),
+        ("+!g <- a, b.", 1, "steps are separated by ';', not by ','", None),
+        ("+!g : a, b <- c.", 1, "conditions are not joined by ','", "write & for 'and'"),
+        ("p(1), q(2).", 1, "a belief ends with '.', not with ','", "write p(1). p(2)."),
+        ("+!g : a && b.", 1, "there is no '&&'", "'and' is &, 'or' is |"),
+        ("+!g : a || b.", 1, "there is no '||'", "'and' is &, 'or' is |"),
+        ("+!g : X != 1.", 1, "there is no '!='", r"'not equal' is written \=="),
+        ("+!g : X =< 1.", 1, "there is no '=<'", "write <="),
+        (r"+!g : X \= 1.", 1, r"'\' does not begin anything", r"'not equal' is written \=="),
+        ("+!g : 1 < X < 5.", 1, "relations cannot be chained", "join two of them with &"),
+        ("+!g : <- a.", 1, "the context behind ':' is missing", None),
+        ("+!g <- a <- b.", 1, "a plan has only one '<-'", "is the final '.'"),
+        ("+!g <- +!h.", 1, "'+!' begins a plan and is no step of a body", "a goal is posted by !g"),
+        ("+!g <- if (a) { b } else if (c) { d }.", 1, "'else if' is written elif", "elif (condition)"),
+        (
+            "+!g <- if (a) { b }; else { c }.",
+            1,
+            "'else' without an 'if' before it",
+            "'if' and 'else' are not",
+        ),
+        ("+!g <- while x { b }.", 1, "'(' and the condition of 'while' is expected, not 'x'", None),
+        ("+!g <- a; ; b.", 1, "there is no step between the two ';'", None),
+        ("+!g <- { a; b }.", 1, "this is a term and no step of a body", "group steps with round brackets"),
+        ("+!g <- X = foo + 1.", 1, "'+' needs numbers", "a belief gives its value through a variable"),
+        ('+!g <- X = "a" + "b".', 1, "'+' needs numbers", "strings and lists are joined by .concat"),
+        ("+!g <- X = math.flor(1) + 1.", 1, "'math.flor' with 1 arguments is not a function", "did you mean"),
+        ("+!g <- .print(a)[b].", 1, "'.print' is an internal action, which cannot have annotations", None),
+        ("+!g : .send(a,tell,b) <- c.", 1, "'.send' acts and cannot stand in a context", "do it in the body"),
+        (".print(a).", 1, "'.print' cannot stand outside a plan", "is it a step of the plan before"),
+        ("!!g.", 1, "an initial goal has one '!'", "write !goal."),
+        ("p().", 1, "the brackets are empty", "without arguments leave them out"),
+        ("p(a).q(b).", 1, "'.q' is read as one word", "put a blank or a line end after the final"),
+        ("@X +!g.", 1, "a label is an atom, with annotations if need be", "as in @stop[atomic]"),
+        ("/* never closed\n p.", 1, "the comment is not closed", "end it with */"),
+        ("+!g <- a. }", 1, "a belief, a goal or a plan is expected, not '}'", None),
+        ("+!g <- a }.", 1, "nothing is open that this '}' closes", None),
+        ("p(#).", 1, "the character '#' does not belong to the language", None),
+        ("[a].", 1, "a belief, a goal or a plan is expected, not '['", None),
+        ("X.", 1, "a belief is a literal", None),
+        ("p([a|b]).", 1, "the tail of a list is a variable or a list", "as in [H|T]"),
+        ("p[a|b].", 1, "the tail of annotations is a variable", "as in"),
+    ],
+)
+def test_common_mistakes(text: str, line: int, message: str, hint: str | None):
+    first = errors(text)[0]
+    assert first.span is not None
+    assert first.span.line == line
+    assert first.message.startswith(message)
+    if hint is not None:
+        assert first.hint is not None
+        assert first.hint.startswith(hint)
+
+
+def test_one_mistake_gives_one_error():
+    for text in (
+        "+!a <- foo(.\n+!b <- c.",
+        "p(q(1, 2.\nr(3).",
+        '+!g <- .print("a); b.\n+!h <- c.',
+        "+!g <- x(1))).\n+!h <- c.",
+        "gröse(3).",
+        "+!g <- if (a { b } else { c }; d.\n+!h.",
+        "+!g <- a. { +!i <- b( . +!j <- c. }\n+!h.",
+        "+!g(X : a <- b.\n+!h.",
+        "+!g <- X = { +!i <- ( }; a.\n+!h.",
+    ):
+        assert len(places(text)) == 1, text
+
+
+def test_the_rest_of_the_file_is_read_behind_every_error():
+    text = "".join(f"+!g{number} <- a(;{' b' * (number % 3)}.\n" for number in range(40))
+    assert [line for line, _ in places(text)] == list(range(1, 41))
+
+
+def test_two_plans_with_one_label_are_an_error_that_names_both():
+    (error,) = errors("@one +!a.\n@two +!b.\n\n@one +!c.")
+    assert error.span is not None
+    assert error.span.line == 4
+    assert error.message == "two different plans have one label, @one; the first one is at line 1"
+
+
+def test_two_plans_with_one_label_in_two_files_are_an_error_that_names_both():
+    (error,) = errors('@one +!a.\n{ include("x.asl") }', {"x.asl": "\n@one +!b."})
+    assert error.place() == "x.asl:2:2: "
+    assert error.message.endswith("the first one is at main.asl, line 1")
+
+
+def test_labels_of_subplans_are_apart_from_those_of_the_program():
+    load_program("x", "@one +!a. { @one +e. @two +f. } @two +!b.")
+    assert len(errors("@one +!a. { @two +e. @two +f. }")) == 1
+
+
+def test_warnings_come_with_the_errors_in_the_order_of_the_text():
+    found = errors("+!g <- not a.\n+!h <- b(.\n+!i <- not c.")
+    assert [diagnostic.severity for diagnostic in found] == ["warning", "error", "warning"]
