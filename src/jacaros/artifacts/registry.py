@@ -1,0 +1,121 @@
+"""From the type name in ``makeArtifact`` to the Python class."""
+
+import importlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType, ModuleType
+
+from jacaros.artifacts.project_modules import load_project_modules
+from jacaros.artifacts.ros.battery import ArtSimBattery
+from jacaros.artifacts.ros.cleaning import ArtCleaning
+from jacaros.artifacts.ros.laser import ArtBaseScan, ArtScan
+from jacaros.artifacts.ros.map import ArtSlamData
+from jacaros.artifacts.ros.odometry import ArtOdometry, ArtOdometryOnDemand
+from jacaros.artifacts.ros.tutorial import ArtTutorial
+from jacaros.artifacts.ros.velocity import (
+    ArtCmdVel,
+    ArtCmdVelAndOdometry,
+    ArtCmdVelMux,
+    ArtCmdVelMuxAndOdometry,
+)
+from jacaros.env import Artifact, UnknownArtifactType
+
+BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
+    {
+        cls.__name__: cls
+        for cls in (
+            ArtBaseScan,
+            ArtCleaning,
+            ArtCmdVel,
+            ArtCmdVelAndOdometry,
+            ArtCmdVelMux,
+            ArtCmdVelMuxAndOdometry,
+            ArtOdometry,
+            ArtOdometryOnDemand,
+            ArtScan,
+            ArtSimBattery,
+            ArtSlamData,
+            ArtTutorial,
+        )
+    }
+)
+"""The artifacts of jacaros by their bare names."""
+
+ALIASES = ("jason.architecture.", "jacaros.")
+"""Package names under which the thesis's programs ask for the built-in artifacts."""
+
+
+def type_finder(folder: Path | str | None) -> Callable[[str], type[Artifact]]:
+    """Make the look-up for the project in *folder*, with its own artifacts loaded once; None: no project.
+
+    Raises:
+        ArtifactsUnreadable: the project's artifact file has a mistake.
+    """
+    modules = load_project_modules(folder) if folder is not None else ()
+    return lambda name: find_type(name, modules)
+
+
+def find_type(
+    name: str,
+    search_modules: Sequence[ModuleType] = (),
+    built_in: Mapping[str, type[Artifact]] = BUILT_IN,
+) -> type[Artifact]:
+    """Find the artifact type called *name*.
+
+    In this order: a dotted Python path (``my_robot.gripper.Gripper``); a class of the project's own
+    modules, where a package in front of the name (``tools.Counter``, as Java programs write) is ignored;
+    a built-in by its bare name; a built-in by the thesis's name (``jason.architecture.ArtOdometry``).
+
+    Raises:
+        UnknownArtifactType: there is none.
+    """
+    found = (
+        _by_path(name)
+        or _of_modules(name.rpartition(".")[2], search_modules)
+        or built_in.get(name)
+        or _by_alias(name, built_in)
+    )
+    if found is None:
+        raise UnknownArtifactType(name, _candidates(name, search_modules, built_in))
+    return found
+
+
+def _by_path(name: str) -> type[Artifact] | None:
+    path, _, last = name.rpartition(".")
+    if not path or not all(part.isidentifier() for part in path.split(".")):
+        return None
+    try:
+        module = importlib.import_module(path)
+    except ModuleNotFoundError as error:
+        if error.name is not None and f"{path}.".startswith(f"{error.name}."):
+            return None
+        raise
+    return _artifact_type(getattr(module, last, None))
+
+
+def _of_modules(name: str, modules: Iterable[ModuleType]) -> type[Artifact] | None:
+    for module in modules:
+        if (found := _artifact_type(vars(module).get(name))) is not None:
+            return found
+    return None
+
+
+def _by_alias(name: str, built_in: Mapping[str, type[Artifact]]) -> type[Artifact] | None:
+    for package in ALIASES:
+        if name.startswith(package) and (found := built_in.get(name.removeprefix(package))) is not None:
+            return found
+    return None
+
+
+def _artifact_type(candidate: object) -> type[Artifact] | None:
+    if isinstance(candidate, type) and issubclass(candidate, Artifact) and candidate is not Artifact:
+        return candidate
+    return None
+
+
+def _candidates(name: str, modules: Iterable[ModuleType], built_in: Mapping[str, object]) -> list[str]:
+    """Names that may have been meant, written as *name* is: with its package in front."""
+    own = {key for module in modules for key, value in vars(module).items() if _artifact_type(value)}
+    known = sorted(own | set(built_in))
+    package = name.rpartition(".")[0]
+    return known + [f"{package}.{each}" for each in known if package]

@@ -1,0 +1,188 @@
+"""``ArtSimBattery``: a battery that a timer drains, as in the thesis, or the robot's own battery."""
+
+import math
+from typing import ClassVar
+
+from jacaros.artifacts.ros.options import not_negative, number, one_of, positive, text
+from jacaros.artifacts.ros.reading import Reading, ReadingPolicy
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.env.artifact import Out, internal_operation, operation
+from jacaros.ros.backend import Sample
+from jacaros.ros.message import constant
+from jacaros.ros.qos import SENSOR_DATA
+
+FULL, MEDIUM, LOW = 100, 50, 20
+"""Percent: charged; from here on down medium; from here on down low."""
+
+CHARGE_STEP, CHARGE_PERIOD = 10, 0.5
+"""A timer battery gains so many percent, each so many seconds, as in the thesis."""
+
+UNKNOWN = -1
+"""Percent before the robot told its battery."""
+
+
+def diagnosis(percent: float) -> str:
+    """The thesis's words for a charge: "Low Battery" up to 20 %, "Medium Battery" up to 50 %."""
+    if percent <= LOW:
+        return "Low Battery"
+    return "Medium Battery" if percent <= MEDIUM else "Full Battery"
+
+
+class ArtSimBattery(RosArtifact):
+    """Shows how full the battery is.
+
+    Made without arguments it is the thesis's simulation: a timer drains one percent a second, recharging
+    adds ten percent each half second wherever the robot is.  Made with a robot's name or one of the options
+    ``source(robot)``, ``topic(T)`` and ``namespace(N)`` it follows that robot's ``/battery_state``, and
+    charges only in a dock.
+
+    Options:
+        drain(P): percent a second of the timer (1); 0: it never drains.
+        level(N): percent at the beginning (100), of the timer.
+        source(S): ``timer`` or ``robot``.
+        topic(T): another topic than ``battery_state``.
+        dock_timeout(S): how long `operation_recharge` waits for the dock's current (5 s).
+
+    Properties:
+        battery(N): whole percent, 0 to 100.
+        diagnostics(Text): "Full Battery", "Medium Battery" (50 % and less) or "Low Battery" (20 % and less).
+            A robot's battery is unknown until its first message: then neither is there.
+    """
+
+    known_options: ClassVar = {
+        "drain": not_negative,
+        "level": number,
+        "source": one_of("timer", "robot"),
+        "topic": text,
+        "dock_timeout": positive,
+    }
+
+    def open(self) -> None:
+        """Start the timer, or listen to the robot."""
+        self._level: int = UNKNOWN
+        self._charging = False
+        self._draining = False
+        self._share = math.inf
+        self._fed_at = -math.inf
+        self._full_since = math.inf
+        self._told = Reading(ReadingPolicy(on_demand=True), self.clock, lambda values, cause: None)
+        self.follows_robot = self._follows_robot()
+        if self.follows_robot:
+            topic = str(self.options.get("topic", "battery_state"))
+            self.subscription(topic, "sensor_msgs/msg/BatteryState", self._take, SENSOR_DATA)
+        else:
+            self._show(max(0, min(FULL, round(self._option("level", FULL)))))
+            self._drain_on()
+
+    def _follows_robot(self) -> bool:
+        source = self.options.get("source")
+        if source is not None:
+            return source == "robot"
+        return bool(self.robot) or "topic" in self.options or "namespace" in self.options
+
+    def _option(self, name: str, default: float) -> float:
+        value = self.options.get(name, default)
+        assert isinstance(value, int | float)
+        return value
+
+    def _show(self, level: int) -> None:
+        """Show a charge; the diagnosis only when it changes."""
+        if self._level == UNKNOWN:
+            self.define_property("battery", level)
+            self.define_property("diagnostics", diagnosis(level))
+        elif level != self._level:
+            self.update_property("battery", level)
+            if diagnosis(level) != self.value("diagnostics"):
+                self.update_property("diagnostics", diagnosis(level))
+        self._level = level
+
+    # The timer.
+
+    def _drain_on(self) -> None:
+        if not self._draining and self._level > 0 and self._option("drain", 1.0) > 0:
+            self._draining = True
+            self.start(self.drain)
+
+    @internal_operation
+    async def drain(self) -> None:
+        """Lose one percent after the other until the battery is empty; not while it is charged."""
+        try:
+            while self._level > 0:
+                await self.sleep(1.0 / self._option("drain", 1.0))
+                if not self._charging:
+                    self._show(self._level - 1)
+        finally:
+            self._draining = False
+
+    async def _charge_by_timer(self) -> None:
+        if self._charging:
+            await self.until(lambda: not self._charging)
+        self._charging = True
+        try:
+            while self._level < FULL:
+                self._show(min(FULL, self._level + CHARGE_STEP))
+                await self.sleep(CHARGE_PERIOD)
+        finally:
+            self._charging = False
+            self._drain_on()
+
+    # The robot.
+
+    def _take(self, sample: Sample) -> None:
+        state = sample.message
+        status = int(state.power_supply_status)
+        charging = status == constant(state, "POWER_SUPPLY_STATUS_CHARGING")
+        full = status == constant(state, "POWER_SUPPLY_STATUS_FULL")
+        share = float(state.percentage)
+        # Many drivers know no status: there, a charge that rises tells of the current.
+        if charging or full or share > self._share:
+            self._fed_at = sample.stamp
+        self._share = share
+        if math.isfinite(share):
+            level = FULL if full else min(FULL, max(0, round(100.0 * share)))
+            if level < FULL:
+                self._full_since = math.inf
+            elif self._full_since == math.inf:
+                self._full_since = sample.stamp
+            self.start(self.show_battery, level, charging, cause=sample.cause)
+            self._told.take((level,))
+
+    @internal_operation
+    def show_battery(self, level: int, charging: bool) -> None:
+        """Show what the robot says of its battery."""
+        self._charging = charging
+        self._show(level)
+
+    async def _charge_in_dock(self) -> None:
+        patience = self._option("dock_timeout", 5.0)
+        begin = self.clock.now()
+        while not self._is_full(patience):
+            if self._level < FULL and self.clock.now() - max(begin, self._fed_at) > patience:
+                self.fail("the robot's battery gets no current: it does not stand in a dock", "not_docked")
+            await self.sleep(CHARGE_PERIOD)
+
+    def _is_full(self, patience: float) -> bool:
+        """Whether the robot stopped to charge at 100 %, or goes on charging there for long."""
+        if self._level < FULL:
+            return False
+        return not self._charging or self.clock.now() - self._full_since > patience
+
+    # Operations.
+
+    @operation(name="operationRecharge")
+    async def operation_recharge(self) -> None:
+        """Charge the battery and wait until it is full.
+
+        Following a robot it fails with ``not_docked`` when the battery gets no current for `dock_timeout`.
+        """
+        if self.follows_robot:
+            await self._charge_in_dock()
+        else:
+            await self._charge_by_timer()
+
+    @operation(name="getCurrentBattery")
+    async def get_current_battery(self, level: Out) -> None:
+        """Give the charge in percent; ``no_battery(5)`` when a robot does not tell it within 5 s."""
+        if self._level == UNKNOWN:
+            await self.newest(self._told, "no_battery")
+        level.set(self._level)

@@ -1,0 +1,208 @@
+"""Journeys: maneuvers towards places and headings of the odometry frame, put together of lines and turns.
+
+Their goals are absolute, so after a rest they simply go on from wherever the robot is.
+"""
+
+import math
+
+from jacaros.artifacts.ros.control import (
+    STANDSTILL,
+    Limits,
+    Pose,
+    Velocity,
+    bearing,
+    distance,
+    unwrapped,
+)
+from jacaros.artifacts.ros.maneuver import PERIOD, Maneuver, Straight, Turn
+
+ARRIVED = 0.015
+"""`DriveTo` is at its point within so many metres."""
+
+AIMED = math.radians(2.0)
+"""Within so many radians `DriveTo` corrects its heading on the way, instead of turning first."""
+
+
+class TurnTo:
+    """Turn the short way round to an absolute heading; after a rest, from wherever the robot looks."""
+
+    activity = "turning"
+    period = PERIOD
+    needs_odometry = True
+
+    def __init__(self, heading: float) -> None:
+        self._goal = heading
+        self._turn = Turn(0.0)
+        self._before = 0.0
+
+    @property
+    def covered(self) -> float:
+        """Degrees turned."""
+        return self._before + self._turn.covered
+
+    def seconds(self, limits: Limits) -> float:
+        """As `Turn`."""
+        return self._turn.seconds(limits)
+
+    def progress(self, pose: Pose) -> float:
+        """Radians still to turn."""
+        return self._turn.progress(pose)
+
+    def begin(self, pose: Pose) -> None:
+        """Choose the shorter side."""
+        self._turn = Turn(unwrapped(self._goal - pose.heading))
+        self._turn.begin(pose)
+
+    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+        """As `Turn`."""
+        return self._turn.command(pose, before, limits, period)
+
+    def hold(self, pose: Pose) -> Velocity:
+        """As `Turn`."""
+        return self._turn.hold(pose)
+
+    def rest(self, pose: Pose) -> None:
+        """Note the angle turned so far."""
+        self._turn.rest(pose)
+        self._before += self._turn.covered
+
+    def go_on(self, pose: Pose) -> None:
+        """Begin again from the present heading."""
+        self.begin(pose)
+
+
+class DriveTo:
+    """Turn towards a point and drive there; after a rest, from wherever the robot is."""
+
+    period = PERIOD
+    needs_odometry = True
+
+    def __init__(self, x: float, y: float) -> None:
+        self._goal = Pose(x, y, 0.0)
+        self._part: Straight | Turn | None = None
+        self._driven = 0.0
+        self._nominal = 0.0
+        self._way = 0.0
+
+    @property
+    def activity(self) -> str:
+        """``turning`` towards the point or ``driving`` to it."""
+        return "driving" if self._part is None else self._part.activity
+
+    @property
+    def covered(self) -> float:
+        """Metres driven."""
+        return self._driven + (self._part.covered if isinstance(self._part, Straight) else 0.0)
+
+    def seconds(self, limits: Limits) -> float:
+        """Half a turn and the straight way."""
+        return Straight(self._way).seconds(limits) + Turn(math.pi).seconds(limits)
+
+    def progress(self, pose: Pose) -> float:
+        """Of the present part; 0 between two parts."""
+        return 0.0 if self._part is None else self._part.progress(pose)
+
+    def begin(self, pose: Pose) -> None:
+        """Measure the way."""
+        self._way = distance(pose, self._goal)
+
+    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+        """The command of the present part; a part at its end makes way for the next."""
+        if self._part is None:
+            return self._next_part(pose, limits, period)
+        command = self._part.command(pose, before, limits, period)
+        if command is None:
+            self._finish_part()
+            return None if distance(pose, self._goal) <= ARRIVED else STANDSTILL
+        return command
+
+    def hold(self, pose: Pose) -> Velocity:
+        """Stand: any way to drive would begin with a turn."""
+        return STANDSTILL
+
+    def _next_part(self, pose: Pose, limits: Limits, period: float) -> Velocity | None:
+        way = distance(pose, self._goal)
+        if way <= ARRIVED:
+            return None
+        aside = unwrapped(bearing(pose, self._goal.x, self._goal.y) - pose.heading)
+        # What would end half a centimetre aside is as good as straight ahead.
+        aimed = abs(aside) <= AIMED or abs(aside) * way <= 0.005
+        self._part = Straight(way, pose.heading + aside) if aimed else Turn(aside)
+        self._part.begin(pose)
+        return self._part.command(pose, STANDSTILL, limits, period) or STANDSTILL
+
+    def _finish_part(self) -> None:
+        self._driven = self.covered
+        self._part = None
+
+    def rest(self, pose: Pose) -> None:
+        """Forget the present part; the next one is chosen when the robot goes on."""
+        if self._part is not None:
+            self._part.rest(pose)
+            self._finish_part()
+
+    def go_on(self, pose: Pose) -> None:
+        """Nothing: the next command starts from where the robot is."""
+
+
+class Sequence:
+    """One maneuver after the other."""
+
+    period = PERIOD
+    needs_odometry = True
+
+    def __init__(self, *parts: Maneuver) -> None:
+        self._parts = parts
+        self._index = 0
+
+    @property
+    def _part(self) -> Maneuver:
+        return self._parts[self._index]
+
+    @property
+    def activity(self) -> str:
+        """That of the present part."""
+        return self._part.activity
+
+    @property
+    def covered(self) -> float:
+        """That of the first part: the drive of a drive-and-turn."""
+        return self._parts[0].covered
+
+    def seconds(self, limits: Limits) -> float:
+        """All parts together."""
+        return sum(part.seconds(limits) for part in self._parts)
+
+    def progress(self, pose: Pose) -> float:
+        """Of the present part."""
+        return self._part.progress(pose)
+
+    def begin(self, pose: Pose) -> None:
+        """Begin the first part."""
+        self._part.begin(pose)
+
+    def command(self, pose: Pose, before: Velocity, limits: Limits, period: float) -> Velocity | None:
+        """The command of the present part; None after the last."""
+        command = self._part.command(pose, before, limits, period)
+        if command is None and self._index + 1 < len(self._parts):
+            self._index += 1
+            self._part.begin(pose)
+            return STANDSTILL
+        return command
+
+    def hold(self, pose: Pose) -> Velocity:
+        """As the last part."""
+        return self._part.hold(pose)
+
+    def rest(self, pose: Pose) -> None:
+        """Rest the present part."""
+        self._part.rest(pose)
+
+    def go_on(self, pose: Pose) -> None:
+        """Go on with the present part."""
+        self._part.go_on(pose)
+
+
+def go_to(x: float, y: float, heading: float) -> Maneuver:
+    """Drive to a point, then turn to a heading."""
+    return Sequence(DriveTo(x, y), TurnTo(heading))

@@ -1,0 +1,100 @@
+"""The lane of a robot: its wheels obey one motion at a time, whichever artifact asks.
+
+Artifacts that drive the same robot share its lane.  Motions pass in the order of their requests; one that
+is suspended leaves the lane, and queues again when its agent resumes it.
+"""
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from weakref import WeakKeyDictionary
+
+from jacaros.clock import Clock
+from jacaros.ros.backend import Backend
+
+
+class Ticket:
+    """One motion's claim to the lane.
+
+    Args:
+        stop: commands zero velocity at once.
+
+    Attributes:
+        aborted: somebody wants this motion to end.
+    """
+
+    def __init__(self, stop: Callable[[], None]) -> None:
+        self.stop = stop
+        self.aborted = False
+        self._waiting: asyncio.Future[None] | None = None
+        self._woken = False
+
+    def abort(self) -> None:
+        """End the motion: the robot is stopped here and now, the operation fails as soon as it runs."""
+        self.aborted = True
+        self.stop()
+        self.wake()
+
+    def wake(self) -> None:
+        """End the present wait, or the next one if there is none."""
+        if self._waiting is None:
+            self._woken = True
+        elif not self._waiting.done():
+            self._waiting.set_result(None)
+
+    async def wait(self, clock: Clock, seconds: float | None) -> None:
+        """Wait until somebody wakes this motion, or the time is over."""
+        if self._woken:
+            self._woken = False
+            return
+        waiting = self._waiting = asyncio.get_running_loop().create_future()
+        timer = None if seconds is None else clock.call_later(seconds, self.wake)
+        try:
+            await waiting
+        finally:
+            self._waiting = None
+            if timer is not None:
+                timer.cancel()
+
+
+class Lane:
+    """Who drives, and who waits to drive."""
+
+    def __init__(self) -> None:
+        self._holder: Ticket | None = None
+        self._queue: deque[Ticket] = deque()
+
+    def holds(self, ticket: Ticket) -> bool:
+        """Whether the motion of *ticket* may drive."""
+        return self._holder is ticket
+
+    def enter(self, ticket: Ticket) -> bool:
+        """Ask for the lane; False: wait (`Ticket.wait`) until `holds` says yes."""
+        if self._holder is None:
+            self._holder = ticket
+        elif self._holder is not ticket and ticket not in self._queue:
+            self._queue.append(ticket)
+        return self._holder is ticket
+
+    def leave(self, ticket: Ticket) -> None:
+        """Give the lane, or the place in its queue, back."""
+        if ticket in self._queue:
+            self._queue.remove(ticket)
+        if self._holder is ticket:
+            self._holder = self._queue.popleft() if self._queue else None
+            if self._holder is not None:
+                self._holder.wake()
+
+    def abort(self) -> None:
+        """Abort the motion that drives and all that wait; those that left the lane are not concerned."""
+        concerned = [*self._queue] if self._holder is None else [self._holder, *self._queue]
+        for ticket in concerned:
+            ticket.abort()
+
+
+_lanes: WeakKeyDictionary[Backend, dict[str, Lane]] = WeakKeyDictionary()
+
+
+def lane_of(backend: Backend, robot: str) -> Lane:
+    """The lane of the robot with the topic prefix *robot*: always the same for the same backend."""
+    return _lanes.setdefault(backend, {}).setdefault(robot, Lane())

@@ -1,0 +1,74 @@
+"""``ArtBaseScan``: five ranges of a laser scan."""
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar
+
+from jacaros.artifacts.ros.options import positive, text
+from jacaros.artifacts.ros.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.env.artifact import Out, operation
+from jacaros.ros.backend import Sample
+from jacaros.ros.qos import SENSOR_DATA
+
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Where in the scan the ranges are sampled: from its first beam to its last."""
+
+
+class ArtBaseScan(RosArtifact):
+    """Shows five ranges of ``/scan``, evenly spread from the first beam to the last.
+
+    The number of beams may be any.  A beam without an echo (NaN, infinite, or beyond the sensor's range) has
+    the sensor's greatest range.
+
+    Options:
+        mode, rate, dead_band: see `ReadingPolicy`.
+        topic(T): another topic, such as ``base_scan``.
+        max(R): range of a beam without an echo, in metres, and greatest range shown.
+
+    Properties:
+        laserrange(R0, R25, R50, R75, R100): metres; all 0 before the first scan.
+    """
+
+    known_options: ClassVar = {**READING_OPTIONS, "topic": text, "max": positive}
+
+    _ranges: Reading
+
+    def open(self) -> None:
+        """Define the property and listen."""
+        self.define_property("laserrange", 0, 0, 0, 0, 0)
+        self._ranges = self.reading("laserrange", ReadingPolicy.from_options(self.options))
+        topic = str(self.options.get("topic", "scan"))
+        self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take, SENSOR_DATA)
+
+    def _take(self, sample: Sample) -> None:
+        scan = sample.message
+        longest = self.options.get("max", float(scan.range_max))
+        assert isinstance(longest, float)
+        if len(scan.ranges):
+            self._ranges.take(sampled(scan.ranges, longest), sample.cause)
+
+    @operation(name="getCurrentBaseScan")
+    async def get_current_base_scan(self) -> None:
+        """Give the property the newest ranges; ``no_scan(5)`` when there is none for 5 s."""
+        await self.refresh("laserrange", self._ranges, "no_scan")
+
+    @operation(name="getCurrentBaseScan")
+    async def give_current_base_scan(self, a: Out, b: Out, c: Out, d: Out, e: Out) -> None:
+        """Give the newest five ranges to the caller."""
+        for out, value in zip((a, b, c, d, e), await self.newest(self._ranges, "no_scan"), strict=True):
+            out.set(value)
+
+
+class ArtScan(ArtBaseScan):
+    """The same under the name that the thesis's architecture chapter uses."""
+
+
+def sampled(ranges: Sequence[float], longest: float) -> tuple[float, ...]:
+    """Five ranges, evenly spread over the scan; what is no range becomes *longest*."""
+    last = len(ranges) - 1
+    return tuple(_echo(float(ranges[round(share * last)]), longest) for share in SHARES)
+
+
+def _echo(distance: float, longest: float) -> float:
+    return distance if math.isfinite(distance) and distance < longest else longest

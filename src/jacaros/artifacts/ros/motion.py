@@ -1,0 +1,285 @@
+"""One motion operation from its request to its end: the loop around a maneuver.
+
+Every end publishes zero velocity: done, failed, dropped, suspended, odometry lost, artifact disposed.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from jacaros.artifacts.ros.control import STANDSTILL, Limits, Pose, Velocity
+from jacaros.artifacts.ros.lane import Lane, Ticket
+from jacaros.artifacts.ros.maneuver import Maneuver
+from jacaros.artifacts.ros.odometer import Odometer
+
+STALE = 0.5
+"""Seconds after which the newest odometry is too old to drive by; the robot stands until more comes."""
+
+SETTLED = 3
+"""So many odometry messages in a row must say "at the goal" before a motion is done."""
+
+STUCK = 2.0
+"""A motion that is commanded but does not get on for so many seconds is blocked."""
+
+LEAST_PROGRESS = 0.01
+"""Metres or radians that count as getting on."""
+
+LONGEST_BRAKING = 3.0
+"""Seconds after which a robot that should stand is taken for standing: its twist may only be noise."""
+
+UNKNOWN_POSE = Pose(0.0, 0.0, 0.0)
+
+
+class MotionFailed(Exception):
+    """A motion came to an early end.
+
+    Attributes:
+        functor, argument: the failure reason, such as ``aborted(0.42)``.
+    """
+
+    def __init__(self, message: str, functor: str, argument: float) -> None:
+        super().__init__(message)
+        self.functor, self.argument = functor, argument
+
+
+@dataclass(frozen=True, slots=True)
+class MotionSettings:
+    """How a robot is driven.
+
+    Attributes:
+        limits: cruise speeds and accelerations of closed loops.
+        odometry_timeout: seconds without odometry until a motion fails.
+        timeout: seconds of driving until a motion fails; None: four times what it needs, and half a minute.
+    """
+
+    limits: Limits
+    odometry_timeout: float
+    timeout: float | None
+
+
+class Wheels(Protocol):
+    """The artifact that drives, as a motion sees it."""
+
+    clock: Any
+    lane: Lane
+    odometer: Odometer
+    settings: MotionSettings
+
+    @property
+    def current(self) -> Any:
+        """The running operation."""
+
+    def command(self, velocity: Velocity) -> None:
+        """Publish a velocity command."""
+
+    def show(self, motion: "Motion", state: str | None) -> None:
+        """Tell observers what the motion does; None: it is over."""
+
+    async def step(self, awaitable: Any) -> Any:
+        """Leave the artifact while waiting."""
+
+
+class Motion:
+    """The life of one motion operation.
+
+    Args:
+        wheels: the artifact whose operation it is.
+        maneuver: what to do.
+    """
+
+    def __init__(self, wheels: Wheels, maneuver: Maneuver) -> None:
+        self._wheels = wheels
+        self._maneuver = maneuver
+        self._execution = wheels.current
+        self._ticket = Ticket(self.halt)
+        self._before = STANDSTILL
+        self._begun = False
+        self._active = 0.0
+        self._blind_since: float | None = None
+        self._progress = Progress()
+
+    def halt(self) -> None:
+        """Command zero velocity here and now, if it is this motion that drives."""
+        self._before = STANDSTILL
+        if self._wheels.lane.holds(self._ticket):
+            self._wheels.command(STANDSTILL)
+
+    def end(self) -> None:
+        """Stop, and let the next motion have the robot; again is harmless."""
+        self.halt()
+        self._wheels.lane.leave(self._ticket)
+        self._wheels.show(self, None)
+
+    async def run(self) -> None:
+        """Drive the maneuver to its end.
+
+        Raises:
+            MotionFailed: ``aborted``, ``no_odometry``, ``blocked`` or ``timeout``.
+        """
+        self._execution.on_pause(self._on_pause)
+        try:
+            await self._enter_lane()
+            await self._drive()
+        finally:
+            self.end()
+
+    def _on_pause(self) -> None:
+        self.halt()
+        self._ticket.wake()
+
+    async def _drive(self) -> None:
+        ended = False
+        while not ended:
+            await self._get_ready()
+            if self._begun:
+                self._maneuver.go_on(self._pose())
+            else:
+                self._maneuver.begin(self._pose())
+            self._begun = True
+            self._before = STANDSTILL
+            self._progress.reset()
+            ended = await self._follow()
+
+    async def _get_ready(self) -> None:
+        """Have the robot to ourselves and standing: it may still roll from before."""
+        ready = False
+        while not ready:
+            await self._enter_lane()
+            ready = await self._stand()
+
+    async def _enter_lane(self) -> None:
+        lane, ticket = self._wheels.lane, self._ticket
+        while self._execution.paused or not lane.enter(ticket):
+            if self._execution.paused:
+                lane.leave(ticket)
+                self._wheels.show(self, "paused")
+                await self._wheels.step(self._execution.resumed())
+            else:
+                self._wheels.show(self, "waiting")
+                await self._wait(None)
+
+    async def _stand(self) -> bool:
+        """Bring the robot to a stand; False when the agent suspends the motion meanwhile."""
+        braking = 0.0
+        while not self._execution.paused:
+            seen = not self._maneuver.needs_odometry or self._has_odometry()
+            if seen and (self._stands() or braking >= LONGEST_BRAKING):
+                return True
+            await self._command(STANDSTILL)
+            braking += self._maneuver.period
+        return False
+
+    async def _follow(self) -> bool:
+        """Follow the maneuver: True at its end, False when the agent suspended it and the robot stands."""
+        maneuver, odometer = self._maneuver, self._wheels.odometer
+        blind = not maneuver.needs_odometry
+        settled = 0
+        while settled < SETTLED:
+            if self._execution.paused:
+                if await self._brake():
+                    maneuver.rest(self._pose())
+                    return False
+                continue
+            seen = odometer.count
+            if not blind and not self._has_odometry():
+                await self._command(STANDSTILL)
+                continue
+            command = maneuver.command(
+                self._pose(), self._before, self._wheels.settings.limits, maneuver.period
+            )
+            self._check(command)
+            if blind and command is None:
+                return True
+            await self._command(command or maneuver.hold(self._pose()))
+            if command is not None:
+                settled = 0
+            elif odometer.count > seen:
+                settled += 1
+        return True
+
+    async def _command(self, velocity: Velocity) -> None:
+        """Give one command and wait for the next moment to give one."""
+        self._wheels.show(self, self._maneuver.activity)
+        self._wheels.command(velocity)
+        self._before = velocity
+        await self._wait(self._maneuver.period)
+        self._active += self._maneuver.period
+
+    async def _wait(self, seconds: float | None) -> None:
+        await self._wheels.step(self._ticket.wait(self._wheels.clock, seconds))
+        if self._ticket.aborted:
+            if self._begun:
+                self._maneuver.rest(self._pose())
+            raise MotionFailed("the motion was aborted", "aborted", self._maneuver.covered)
+
+    async def _brake(self) -> bool:
+        """Stand before somebody else may drive: braking is a part of the way, and counts.
+
+        False when the agent resumes the motion before the robot stands.
+        """
+        self._wheels.show(self, "paused")
+        odometer = self._wheels.odometer
+        seen, braking = odometer.count, 0.0
+        while self._execution.paused:
+            # The newest message may be from before the command that moved the robot.
+            if (self._stands() and odometer.count >= seen + 2) or braking >= LONGEST_BRAKING:
+                return True
+            self._wheels.command(STANDSTILL)
+            await self._wait(self._maneuver.period)
+            braking += self._maneuver.period
+        return False
+
+    def _pose(self) -> Pose:
+        newest = self._wheels.odometer.newest
+        return UNKNOWN_POSE if newest is None else newest.pose
+
+    def _stands(self) -> bool:
+        newest = self._wheels.odometer.newest
+        return newest is None or newest.standing
+
+    def _has_odometry(self) -> bool:
+        """Whether there is odometry to drive by; fails when there was none for too long."""
+        age = self._wheels.odometer.age(self._wheels.clock.now())
+        if age is not None and age <= STALE:
+            self._blind_since = None
+            return True
+        if self._blind_since is None:
+            self._blind_since = self._active
+        limit = self._wheels.settings.odometry_timeout
+        if self._active - self._blind_since >= limit:
+            raise MotionFailed(f"no odometry came for {limit:g} s", "no_odometry", limit)
+        return False
+
+    def _check(self, command: Velocity | None) -> None:
+        """Fail when the motion takes too long or does not get on."""
+        settings, maneuver = self._wheels.settings, self._maneuver
+        allowed = settings.timeout or 30.0 + 4.0 * maneuver.seconds(settings.limits)
+        if self._active >= allowed:
+            raise MotionFailed(f"the motion took longer than {allowed:g} s", "timeout", allowed)
+        if command is None or command == STANDSTILL:
+            self._progress.reset()
+        elif self._progress.is_stuck(maneuver.progress(self._pose()), self._active, self._patience()):
+            raise MotionFailed("the robot does not get on", "blocked", maneuver.covered)
+
+    def _patience(self) -> float:
+        """Seconds without progress that are too long; slow cruising needs more of them."""
+        limits = self._wheels.settings.limits
+        return max(STUCK, 4.0 * LEAST_PROGRESS / min(limits.speed, limits.turn_speed))
+
+
+class Progress:
+    """Notices a motion that does not get on."""
+
+    def __init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew: the robot is not meant to move, or moves to another end."""
+        self._least = math.inf
+        self._since = 0.0
+
+    def is_stuck(self, remaining: float, now: float, patience: float) -> bool:
+        """Take note of what remains at *now* (seconds of driving); True when it fell too little for too long."""
+        if remaining < self._least - LEAST_PROGRESS:
+            self._least, self._since = remaining, now
+        return now - self._since >= patience

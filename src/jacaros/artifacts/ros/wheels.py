@@ -1,0 +1,159 @@
+"""Artifacts that drive wheels: options, topics and the state that all motion operations share."""
+
+import math
+from typing import ClassVar
+
+from jacaros.artifacts.ros.control import STANDSTILL, Limits, Velocity
+from jacaros.artifacts.ros.lane import Lane, lane_of
+from jacaros.artifacts.ros.maneuver import Maneuver
+from jacaros.artifacts.ros.motion import Motion, MotionFailed, MotionSettings
+from jacaros.artifacts.ros.odometer import ODOMETRY, Odometer, Odometry
+from jacaros.artifacts.ros.odometry import pose_values
+from jacaros.artifacts.ros.options import positive, text
+from jacaros.artifacts.ros.reading import Reading, ReadingPolicy
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.env.values import Atom
+from jacaros.ros.qos import SENSOR_DATA
+
+TWIST = "geometry_msgs/msg/Twist"
+
+TURTLEBOT = Limits()
+
+STATES = ("driving", "turning", "waiting", "paused")
+"""What a motion does, the most important first: the property ``moving`` shows one of them."""
+
+
+class WheeledArtifact(RosArtifact):
+    """An artifact whose operations drive a robot by `perform`.
+
+    Options:
+        speed(V), turn_speed(D): cruise speeds, metres and degrees per second (1 m/s and 57 degrees/s as in
+            the thesis, cut to what the robot can do).
+        max_speed(V), max_turn_speed(D), acceleration(A), turn_acceleration(D): what the robot can do; a
+            TurtleBot by default.
+        timeout(S): longest time of driving for one motion; four times the time needed plus half a minute by
+            default.
+        odometry_timeout(S): how long a motion stands and waits for odometry before it fails (5 s).
+        command_topic(T), odometry_topic(T): other topics.
+
+    Properties:
+        moving(State): ``stopped``, ``driving``, ``turning``, ``waiting`` or ``paused``.
+
+    Attributes:
+        lane: who drives the robot; shared with all artifacts of the same robot.
+        odometer: the newest odometry.
+        settings: speeds and time-outs.
+        newest_pose: x, y and heading in degrees, for operations that give them.
+    """
+
+    known_options: ClassVar = {
+        "speed": positive,
+        "turn_speed": positive,
+        "max_speed": positive,
+        "max_turn_speed": positive,
+        "acceleration": positive,
+        "turn_acceleration": positive,
+        "timeout": positive,
+        "odometry_timeout": positive,
+        "command_topic": text,
+        "odometry_topic": text,
+    }
+    robot_in_properties = True
+    command_topic: ClassVar[str] = "cmd_vel"
+
+    lane: Lane
+    odometer: Odometer
+    settings: MotionSettings
+    newest_pose: Reading
+
+    def open(self) -> None:
+        """Open the command topic and odometry; nothing is published before the first motion."""
+        self.settings = self._settings()
+        self._motions: dict[Motion, str] = {}
+        self.define_property(self.robot_property("moving"), Atom("stopped"))
+        self.lane = lane_of(self.ros, self.robot_prefix)
+        self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock, lambda values, cause: None)
+        self.odometer = Odometer(self.on_odometry)
+        self._commands = self.publisher(str(self.options.get("command_topic", self.command_topic)), TWIST)
+        topic = str(self.options.get("odometry_topic", "odom"))
+        self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
+        self._over = False
+        self.at_dispose(self.ros.add_exit_hook(self._halt_for_good))
+        self.at_dispose(self._halt)
+
+    def on_odometry(self, odometry: Odometry) -> None:
+        """Take every odometry message."""
+        self.newest_pose.take(pose_values(odometry))
+
+    def _option(self, name: str, default: float) -> float:
+        value = self.options.get(name, default)
+        assert isinstance(value, float)
+        return value
+
+    def _limits(self) -> Limits:
+        return Limits(
+            self._option("max_speed", TURTLEBOT.speed),
+            math.radians(self._option("max_turn_speed", math.degrees(TURTLEBOT.turn_speed))),
+            self._option("acceleration", TURTLEBOT.acceleration),
+            math.radians(self._option("turn_acceleration", math.degrees(TURTLEBOT.turn_acceleration))),
+        )
+
+    def _settings(self) -> MotionSettings:
+        can = self._limits()
+        cruise = can.clip(
+            Velocity(self._option("speed", 1.0), math.radians(self._option("turn_speed", math.degrees(1.0))))
+        )
+        timeout = self._option("timeout", math.inf)
+        return MotionSettings(
+            Limits(cruise.linear, cruise.angular, can.acceleration, can.turn_acceleration),
+            self._option("odometry_timeout", 5.0),
+            None if timeout == math.inf else timeout,
+        )
+
+    # What a motion needs of its artifact.
+
+    def command(self, velocity: Velocity) -> None:
+        """Publish one velocity command; nothing but zero when the process is about to end."""
+        if self._over:
+            velocity = STANDSTILL
+        self._commands.publish(
+            self._commands.message(linear={"x": velocity.linear}, angular={"z": velocity.angular})
+        )
+
+    def show(self, motion: Motion, state: str | None) -> None:
+        """Show in ``moving`` what *motion* does; None: it is over."""
+        if state is None:
+            self._motions.pop(motion, None)
+        else:
+            self._motions[motion] = state
+        states = self._motions.values()
+        shown = next((each for each in STATES if each in states), "stopped")
+        name = self.robot_property("moving")
+        if shown != self.value(name):
+            self.update_property(name, Atom(shown))
+
+    def _halt(self) -> None:
+        for motion in list(self._motions):
+            motion.halt()
+
+    def _halt_for_good(self) -> None:
+        """Stop as the process ends; in a thread of its own, perhaps, so it only publishes."""
+        self._over = True
+        self._halt()
+
+    async def perform(self, maneuver: Maneuver) -> None:
+        """Drive *maneuver* to its end; for operations marked as pausable.
+
+        Raises:
+            OperationFailed: ``aborted(Covered)``, ``blocked(Covered)``, ``no_odometry(Seconds)`` or
+                ``timeout(Seconds)``.
+        """
+        motion = Motion(self, maneuver)
+        try:
+            await motion.run()
+        except MotionFailed as failed:
+            self.commit()  # that the robot stands is true although the operation failed
+            self.fail(str(failed), failed.functor, failed.argument)
+        except Exception:
+            self.commit()
+            raise

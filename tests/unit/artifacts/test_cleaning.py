@@ -1,0 +1,119 @@
+"""ArtCleaning: the tasks of each room, in the thesis's words and times."""
+
+from typing import Any
+
+import pytest
+from robot_lab import Lab, in_lab
+
+from jacaros.artifacts.ros.cleaning import ArtCleaning
+from jacaros.clock import VirtualClock, run
+from jacaros.env import Environment, Out, Structure
+
+
+def heard(lab: Lab, topic: str = "/cleaning/task") -> list[str]:
+    texts: list[str] = []
+    lab.backend.subscription(topic, "std_msgs/msg/String", lambda sample: texts.append(sample.message.data))
+    return texts
+
+
+def test_each_room_has_its_tasks_and_takes_its_time() -> None:
+    async def body(lab: Lab) -> None:
+        tasks = heard(lab)
+        cleaner = await lab.make(ArtCleaning)
+        watcher = lab.watch(cleaner)
+        times = []
+        for room in range(4):
+            begin = lab.clock.elapsed
+            await lab.do(cleaner, "clean", room)
+            times.append(round(lab.clock.elapsed - begin, 6))
+        assert times == [2.5, 2.5, 2.5, 3.5]
+        assert watcher.changes[4:] == [
+            ("vacuum", ("Carpet", "living Room")),
+            ("mop", ("Floor", "kitchen")),
+            ("scrub", ("Tub", "bathroom")),
+            ("mop", ("Floor", "bathroom")),
+        ]
+        assert tasks == [
+            "vacuum carpet living_room",
+            "mop floor kitchen",
+            "scrub tub bathroom",
+            "mop floor bathroom",
+        ]
+        assert watcher.signals == []
+
+    in_lab(body, None)
+
+
+def test_the_world_logs_each_task_with_the_true_place() -> None:
+    async def body(lab: Lab) -> None:
+        assert lab.world is not None
+        cleaner = await lab.make(ArtCleaning)
+        await lab.do(cleaner, "clean", 2)
+        (event,) = [event for event in lab.world.log if event.kind == "task"]
+        assert event.data == {"task": "mop floor kitchen", "room": "hallway"}
+
+    in_lab(body, "house")
+
+
+def test_rooms_follow_each_other_and_one_can_ask_where_one_is() -> None:
+    """Defect 9: programs removed atRoom themselves, without effect; here an update is enough."""
+
+    async def body(lab: Lab) -> None:
+        cleaner = await lab.make(ArtCleaning)
+        watcher = lab.watch(cleaner)
+        for _ in range(5):
+            await lab.do(cleaner, "updateWhereAmI")
+        assert watcher.values("atRoom") == [(0,), (1,), (2,), (3,), (0,), (1,)]
+        assert watcher.holds("atRoom") == [(1,)]
+        await lab.do(cleaner, "whereAmI")
+        assert watcher.values("atRoom")[-2:] == [(1,), (1,)]
+        room, name = Out(), Out()
+        await lab.do(cleaner, "whereAmI", room, name)
+        assert (room.value, name.value) == (1, "living Room")
+
+    in_lab(body, None)
+
+
+def test_a_room_that_is_not_there_is_refused() -> None:
+    async def body(lab: Lab) -> None:
+        cleaner = await lab.make(ArtCleaning)
+        assert (await lab.call(cleaner, "clean", 4)).reason == "unknown_room(4)"
+        assert lab.clock.elapsed == 0
+
+    in_lab(body, None)
+
+
+def test_other_operations_are_served_while_a_room_is_cleaned() -> None:
+    async def body(lab: Lab) -> None:
+        cleaner = await lab.make(ArtCleaning)
+        watcher = lab.watch(cleaner)
+        cleaning = lab.begin(cleaner, "clean", 3)
+        await lab.sleep(0.5)
+        await lab.do(cleaner, "updateWhereAmI")
+        assert lab.clock.elapsed == 0.5
+        assert watcher.holds("scrub") == [("Tub", "bathroom")]
+        cleaning.execution.cancel()
+        await lab.sleep(5)
+        assert watcher.holds("mop") == [("", "")], "a dropped cleaning goes on with nothing"
+
+    in_lab(body, None)
+
+
+@pytest.mark.parametrize("argument", ["robot_0", Structure("namespace", ("robot_0",))])
+def test_tasks_go_to_the_topic_of_the_robot(argument: Any) -> None:
+    async def body(lab: Lab) -> None:
+        tasks = heard(lab, "/robot_0/cleaning/task")
+        await lab.do(await lab.make(ArtCleaning, argument), "clean", 1)
+        assert tasks == ["vacuum carpet living_room"]
+
+    in_lab(body, None)
+
+
+def test_it_works_without_ros() -> None:
+    async def main() -> None:
+        workspace = Environment(clock).workspace("/main")
+        artifact = await workspace.make_artifact("c", ArtCleaning)
+        assert {p.name for p in workspace.properties(artifact)} == {"atRoom", "vacuum", "mop", "scrub"}
+
+    clock = VirtualClock()
+    run(main, clock)

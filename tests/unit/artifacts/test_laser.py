@@ -1,0 +1,74 @@
+"""ArtBaseScan: five ranges of a scan of any size."""
+
+import math
+
+import pytest
+from robot_lab import Lab, in_lab
+
+from jacaros.artifacts.ros.laser import ArtBaseScan, ArtScan, sampled
+from jacaros.env import Out, Structure
+
+
+def scan(lab: Lab, ranges: list[float], topic: str = "/scan", longest: float = 8.0) -> None:
+    publisher = lab.backend.publisher(topic, "sensor_msgs/msg/LaserScan")
+    publisher.publish(publisher.message(ranges=ranges, range_min=0.1, range_max=longest))
+
+
+def test_five_ranges_are_spread_from_the_first_beam_to_the_last() -> None:
+    assert sampled([float(i) for i in range(1081)], 5000) == (0, 270, 540, 810, 1080)
+    assert sampled([float(i) for i in range(360)], 5000) == (0, 90, 180, 269, 359)
+    assert sampled([3.0], 10) == (3, 3, 3, 3, 3)
+
+
+def test_no_echo_is_the_greatest_range() -> None:
+    assert sampled([math.inf, math.nan, 1.0, 9.0, -math.inf], 8.0) == (8, 8, 1, 8, 8)
+
+
+def test_scans_of_any_size_are_shown() -> None:
+    """The original took 1081 beams for granted, and 50000 for no echo."""
+
+    async def body(lab: Lab) -> None:
+        watcher = lab.watch(await lab.make(ArtBaseScan))
+        assert watcher.holds("laserrange") == [(0, 0, 0, 0, 0)]
+        scan(lab, [1, 2, math.inf, 4, 5])
+        await lab.sleep(0.1)
+        assert watcher.holds("laserrange") == [(1, 2, 8, 4, 5)]
+        scan(lab, [])
+        scan(lab, [1, 2, math.inf, 4, 5])
+        await lab.sleep(0.1)
+        assert len(watcher.values("laserrange")) == 2
+
+    in_lab(body, None)
+
+
+def test_the_range_of_no_echo_is_an_option() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtScan, Structure("max", (50000,)), {"topic": "base_scan"})
+        watcher = lab.watch(artifact)
+        scan(lab, [math.nan] * 5, "/base_scan")
+        await lab.sleep(0.1)
+        assert watcher.holds("laserrange") == [(50000,) * 5]
+
+    in_lab(body, None)
+
+
+def test_the_scan_of_the_world_is_seen_and_given_on_request() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtBaseScan, Structure("mode", ("on_demand",)))
+        watcher = lab.watch(artifact)
+        outs = [Out() for _ in range(5)]
+        await lab.do(artifact, "getCurrentBaseScan", *outs)
+        assert all(0.1 < float(str(out.value)) <= 10 for out in outs)
+        assert len(watcher.changes) == 1
+        await lab.do(artifact, "getCurrentBaseScan")
+        assert watcher.holds("laserrange") == [pytest.approx(tuple(out.value for out in outs))]
+
+    in_lab(body, "house")
+
+
+def test_no_scan_is_no_scan() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtBaseScan)
+        assert (await lab.call(artifact, "getCurrentBaseScan")).reason == "no_scan(5)"
+
+    in_lab(body, None)

@@ -1,0 +1,181 @@
+"""ArtSlamData: labels, range of view, routes."""
+
+import math
+import random
+from collections import deque
+from itertools import pairwise
+
+import pytest
+from robot_lab import Lab, in_lab
+
+from jacaros.artifacts.ros.grid import Cell, route
+from jacaros.artifacts.ros.map import ArtSlamData
+from jacaros.env import ArtifactId, Atom, Out, Structure
+
+
+def cell(*arguments: object) -> Structure:
+    return Structure("cell", arguments)
+
+
+async def label(lab: Lab, artifact: ArtifactId, rows: list[str]) -> None:
+    """Write a map: the first row is y = 0; # obstacle, . free, G goal, blank unknown."""
+    words = {"#": "obstacle", ".": "free", "G": "goal"}
+    for y, row in enumerate(rows):
+        for x, sign in enumerate(row):
+            if sign != " ":
+                await lab.do(artifact, "updateSlamData", x, y, words[sign])
+
+
+def test_a_range_of_view_tells_all_its_cells() -> None:
+    """Defect 10: one property took all cells in turn, so a belief base ended with the last one alone."""
+
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, ["...", ".#.", " .G"])
+        await lab.do(artifact, "getVisionRange", 0, 0, 1)
+        seen = [(0, 0, "free"), (0, 1, "free"), (1, 0, "free"), (1, 1, "obstacle")]
+        assert watcher.holds("cell") == seen
+        assert watcher.holds("currentRange") == [([cell(*each) for each in seen],)]
+        assert watcher.signals == []
+
+    in_lab(body, None)
+
+
+def test_the_next_range_replaces_the_cells_and_tells_only_what_is_new() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, ["....."])
+        await lab.do(artifact, "getVisionRange", 1, 0, 1)
+        told = len(watcher.values("cell"))
+        await lab.do(artifact, "updateSlamData", 1, 0, "home")
+        await lab.do(artifact, "getVisionRange", 2, 0, 1)
+        assert sorted(watcher.holds("cell")) == [(1, 0, "home"), (2, 0, "free"), (3, 0, "free")]
+        assert watcher.values("cell")[told:] == [(1, 0, "home"), (3, 0, "free")]
+        await lab.do(artifact, "getVisionRange", 50, 50, 1)
+        assert watcher.holds("cell") == []
+        await lab.do(artifact, "getVisionRange", 2, 0, 99)
+        assert len(watcher.holds("cell")) == 5
+
+    in_lab(body, None)
+
+
+def test_nothing_is_written_by_looking() -> None:
+    """Defect 10: the original overwrote the cell 0, 0 with test data at each look."""
+
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        await lab.do(artifact, "getVisionRange", 0, 0, 3)
+        out = Out()
+        await lab.do(artifact, "getSlamData", 0, 0, out)
+        assert out.value == Atom("unknown")
+        await lab.do(artifact, "updateSlamData", 0, 0, "home")
+        await lab.do(artifact, "getSlamData", 0, 0, out)
+        assert out.value == "home"
+
+    in_lab(body, None)
+
+
+def test_the_agents_cell_is_shown_and_the_map_can_be_forgotten() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, ["..G"])
+        await lab.do(artifact, "updatePos", 1, 0)
+        await lab.do(artifact, "getVisionRange", 1, 0, 1)
+        await lab.do(artifact, "getRoute")
+        assert watcher.holds("pos2d") == [(1, 0)]
+        await lab.do(artifact, "clear")
+        assert watcher.holds("cell") == []
+        assert watcher.holds("route") == [([],)]
+        assert (await lab.call(artifact, "getRoute")).reason == "no_goal"
+
+    in_lab(body, None)
+
+
+def test_a_route_leads_round_obstacles_to_the_goal_and_tells_the_direction() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, ["...", "##.", "G.."])
+        out = Out()
+        await lab.do(artifact, "getRoute", out)
+        way = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2)]
+        assert out.value == [cell(*each) for each in way]
+        assert watcher.holds("route") == [(out.value,)]
+        assert watcher.holds("degrees") == [(0,)]
+        await lab.do(artifact, "updatePos", 2, 0)
+        await lab.do(artifact, "getRoute", 2, 2)
+        assert watcher.holds("degrees") == [(90,)]
+        await lab.do(artifact, "getRoute", 2, 1, out)
+        assert out.value == [cell(2, 0), cell(2, 1)]
+
+    in_lab(body, None)
+
+
+def test_a_goal_that_cannot_be_reached_fails_and_leaves_the_route() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData)
+        watcher = lab.watch(artifact)
+        await label(lab, artifact, [".#G"])
+        assert (await lab.call(artifact, "getRoute")).reason == "no_route(2,0)"
+        assert (await lab.call(artifact, "getRoute", 1, 0)).reason == "no_route(1,0)"
+        assert (await lab.call(artifact, "getRoute", 7, 7)).reason == "no_route(7,7)"
+        assert watcher.holds("route") == [([],)]
+
+    in_lab(body, None)
+
+
+def test_the_word_for_obstacles_is_an_option() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSlamData, Structure("obstacle", ("wall",)))
+        for x, word in enumerate(["free", "wall", "goal"]):
+            await lab.do(artifact, "updateSlamData", x, 0, word)
+        assert (await lab.call(artifact, "getRoute")).reason == "no_route(2,0)"
+
+    in_lab(body, None)
+
+
+# The search.
+
+
+def test_a_diagonal_step_does_not_cut_a_corner() -> None:
+    free = {(0, 0), (1, 0), (1, 1), (2, 1)}
+    assert route(free, (0, 0), (1, 1)) == [(0, 0), (1, 0), (1, 1)]
+    assert route(free | {(0, 1)}, (0, 0), (1, 1)) == [(0, 0), (1, 1)]
+
+
+def test_a_route_to_where_one_is_is_that_cell() -> None:
+    assert route(set(), (3, 3), (3, 3)) == [(3, 3)]
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_routes_are_as_short_as_those_of_an_exhaustive_search(seed: int) -> None:
+    chance = random.Random(seed)
+    free = {(x, y) for x in range(10) for y in range(10) if chance.random() < 0.7}
+    found = route(free, (0, 0), (9, 9))
+    shortest = relaxed(free | {(0, 0), (9, 9)}, (0, 0)).get((9, 9))
+    if found is None:
+        assert shortest is None
+        return
+    assert found[0] == (0, 0)
+    length = sum(math.dist(a, b) for a, b in pairwise(found))
+    assert length == pytest.approx(shortest)
+
+
+def relaxed(free: set[Cell], start: Cell) -> dict[Cell, float]:
+    """Costs of all cells, found by relaxing until nothing changes."""
+    costs = {start: 0.0}
+    waiting = deque([start])
+    while waiting:
+        x, y = waiting.popleft()
+        for dx in (-1, 0, 1):
+            for dy in (-1, 0, 1):
+                there = (x + dx, y + dy)
+                if there in free and {(x + dx, y), (x, y + dy)} <= free:
+                    cost = costs[(x, y)] + math.hypot(dx, dy)
+                    if cost < costs.get(there, math.inf) - 1e-9:
+                        costs[there] = cost
+                        waiting.append(there)
+    return costs
