@@ -133,6 +133,8 @@ class _JcmReader(JcmValues):
                 cursor.fail("'{' is not closed", cursor.span_of(opener))
             if cursor.token.text in SECTIONS and cursor.token.first and not cursor.at_key():
                 cursor.fail("'{' is not closed", cursor.span_of(opener), "put a '}' before the next section")
+            if cursor.token.kind == "word" and not cursor.at_key():
+                cursor.fail(f"a ':' is missing behind '{cursor.token.text}'")
             if not cursor.at_key():
                 cursor.fail(f"'key:' is expected, not '{cursor.token.text}'")
             key = cursor.advance()

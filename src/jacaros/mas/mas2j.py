@@ -1,7 +1,7 @@
 """`.mas2j` project files."""
 
 from contextlib import suppress
-from typing import Final
+from typing import Final, NoReturn
 
 from jacaros.mas.project_cursor import ProjectCursor, ProjectPanic, Token, text_of
 from jacaros.mas.project_parts import AgentPart, ProjectPart
@@ -49,10 +49,7 @@ class _Mas2jReader:
     def section(self) -> None:
         cursor = self.cursor
         if not cursor.at_key() or cursor.token.text not in _SECTIONS:
-            what = cursor.token.text
-            cursor.fail(
-                f"'{what}' is no section of a .mas2j file", hint=f"the sections are {', '.join(_SECTIONS)}"
-            )
+            self.no_section()
         key = cursor.advance()
         cursor.advance()
         match key.text:
@@ -71,6 +68,11 @@ class _Mas2jReader:
                 span = cursor.span_of(key)
                 cursor.raw(self.at_section_or_end)
                 cursor.warn(f"'{key.text}' is about Java code and has no effect", span)
+
+    def no_section(self) -> NoReturn:
+        what = self.cursor.token.text
+        hint = f"the sections are {', '.join(_SECTIONS)}"
+        self.cursor.fail(f"'{what}' is no section of a .mas2j file", hint=hint)
 
     def to_next_section(self) -> None:
         """After an error: to the next section or the end."""
@@ -127,6 +129,8 @@ class _Mas2jReader:
 
     def agent(self) -> None:
         cursor = self.cursor
+        if cursor.at_key():
+            self.no_section()
         name = cursor.lower_name("the name of an agent")
         agent = AgentPart(name.text, cursor.span_of(name))
         if cursor.token.kind in ("word", "string") and cursor.token.text not in _AGENT_KEYS:

@@ -43,6 +43,7 @@ def load_deployment(path: str | Path) -> Deployment:
     diagnostics: list[Diagnostic] = []
     part = _read(path, diagnostics, [])
     deployment = _Resolver(path, part, diagnostics).deployment()
+    diagnostics.sort(key=_place)
     if any(diagnostic.severity == "error" for diagnostic in diagnostics):
         raise ProjectError(diagnostics)
     return replace(deployment, ignored=tuple(diagnostics))
@@ -284,6 +285,11 @@ class _Resolver:
                 f"write {candidates[0]}.{wanted.artifact}",
             )
         return FocusSpec(wanted.artifact, candidates[0], wanted.namespace)
+
+
+def _place(diagnostic: Diagnostic) -> tuple[str, int, int]:
+    span = diagnostic.span
+    return ("", 0, 0) if span is None else (span.file.name, span.line, span.column)
 
 
 def _meant(name: str, known: set[str]) -> str | None:

@@ -123,16 +123,18 @@ class ProjectCursor:
 
     def raw(self, ends: Callable[[], bool]) -> str:
         """The text up to where *ends* holds outside brackets, or a bracket closes that was opened before."""
-        start, depth, stop = self.token.start, 0, self.token.start
+        start = stop = self.token.start
+        closers: list[str] = []
         while self.token.kind != "end":
-            if depth == 0 and (ends() or self.token.kind in OPENERS.values()):
+            kind = self.token.kind
+            if kind in OPENERS.values():
+                if not closers or closers.pop() != kind:
+                    break
+            elif not closers and ends():
                 break
-            token = self.advance()
-            stop = token.stop
-            if token.kind in OPENERS:
-                depth += 1
-            elif token.kind in OPENERS.values():
-                depth -= 1
+            elif kind in OPENERS:
+                closers.append(OPENERS[kind])
+            stop = self.advance().stop
         return self.file.text[start:stop]
 
     def skip_block(self) -> None:
