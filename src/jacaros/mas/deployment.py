@@ -10,7 +10,7 @@ from jacaros.asl.source import Span
 from jacaros.errors import JacarosError
 
 CARTAGO_ENVIRONMENTS = frozenset(
-    {"jaca.CartagoEnvironment", "c4jason.CartagoEnvironment", "CartagoEnvironment"}
+    {"jaca.CartagoEnvironment", "c4jason.CartagoEnvironment", "CartagoEnvironment", "jacaros.Environment"}
 )
 """Class names of `.mas2j` files that mean: agents with an artifact environment."""
 
