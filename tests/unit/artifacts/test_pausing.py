@@ -82,13 +82,14 @@ def test_a_motion_by_time_goes_on_with_the_remaining_time() -> None:
     in_lab(body)
 
 
-@pytest.mark.parametrize("when", [0.6, 2.0, 4.0, 5.5, 6.5])
+@pytest.mark.parametrize("when", [0.6, 2.0, 4.0, 5.5, 6.5, 7.5, 8.0, 8.5])
 def test_a_drive_to_a_pose_goes_on_to_the_pose_from_wherever_the_robot_is(when: float) -> None:
     async def body(lab: Lab) -> None:
         artifact = await lab.make(ArtCmdVelMuxAndOdometry)
         other = await lab.make(ArtCmdVelMux)
         going = lab.begin(artifact, "goTo", -1.5, 1, 90)
         await lab.sleep(when)
+        assert not going.done.done()
         going.execution.pause()
         await lab.do(other, "goTo", 1, 1, 0)
         assert_at(lab, 1, 1, 0, metres=0.02)

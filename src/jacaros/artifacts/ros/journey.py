@@ -146,7 +146,7 @@ class DriveTo:
 
 
 class Sequence:
-    """One maneuver after the other."""
+    """One maneuver after the other; all have absolute goals, so that after a rest they can be done again."""
 
     period = PERIOD
     needs_odometry = True
@@ -199,7 +199,8 @@ class Sequence:
         self._part.rest(pose)
 
     def go_on(self, pose: Pose) -> None:
-        """Go on with the present part."""
+        """Begin with the first part again: a part that is done already is over at once."""
+        self._index = 0
         self._part.go_on(pose)
 
 

@@ -116,9 +116,9 @@ class WheeledArtifact(RosArtifact):
         """Publish one velocity command; nothing but zero when the process is about to end."""
         if self._over:
             velocity = STANDSTILL
-        self._commands.publish(
-            self._commands.message(linear={"x": velocity.linear}, angular={"z": velocity.angular})
-        )
+        twist = self._commands.message()
+        twist.linear.x, twist.angular.z = velocity.linear, velocity.angular
+        self._commands.publish(twist)
 
     def show(self, motion: Motion, state: str | None) -> None:
         """Show in ``moving`` what *motion* does; None: it is over."""
