@@ -21,7 +21,7 @@ def missing(kind: str) -> str | None:
 
 
 def is_wanted(kind: str, config: pytest.Config) -> bool:
-    """Whether to run tests on *kind*: `test_presence` tells once of one that is missing, not every test."""
+    """Whether to run tests on *kind*: `test_contract_presence` tells once of one that is missing, not every test."""
     return missing(kind) is None or config.getoption(f"--require-{kind}")
 
 

@@ -22,6 +22,9 @@ LONGEST_WAIT = 2.0
 class ExitHooks:
     """The hooks of one backend.
 
+    Signal handlers that were there before are called after the hooks.  Whoever installs one later takes the
+    signal over and then closes the backend, which runs the hooks as well.
+
     Args:
         log: takes one line about a hook that failed.
         finish: blocks until the messages published so far are sent, and lets go of whatever else would keep
@@ -85,6 +88,10 @@ class ExitHooks:
         finally:
             self._running.release()
             _process.unwatch(self)
+
+    def stop_watching(self) -> None:
+        """Give the signals back; on the main thread, after `run`, which may have been on another."""
+        _process.unwatch(self)
 
     def run_at_signal(self) -> None:
         """Run the hooks now, without waiting for locks that the interrupted thread may hold."""

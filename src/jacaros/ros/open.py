@@ -1,6 +1,7 @@
 """Opening a backend by its name."""
 
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from jacaros.clock import Clock
@@ -11,6 +12,7 @@ from jacaros.ros.node import NodeSettings
 
 KINDS = ("memory", "ros1", "ros2")
 
+_OPTIONS: dict[str, set[str]] = {"memory": {"graph"}, "ros1": set(), "ros2": {"domain_id"}}
 _LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
 _CURES = {
     "ros1": (
@@ -37,7 +39,7 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
             a `jacaros.ros.backends.memory.MemoryGraph` to share; for ``ros2`` also ``domain_id``.
 
     Raises:
-        UsageError: unknown kind, or the virtual clock with a real ROS graph.
+        UsageError: unknown kind or option, or the virtual clock with a real ROS graph.
         BackendUnavailable: the client library is not installed.
         NameInvalid: the node's name or a namespace breaks the rules of ROS.
     """
@@ -48,14 +50,13 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
             f"the virtual clock cannot run with a real ROS graph ({kind}): its nodes live in real time. "
             "Use the real clock (--clock real)"
         )
-    names = ("remap", "log", "interface_paths")
-    settings = NodeSettings(
-        clock,
-        node_name,
-        namespace,
-        **{name: options.pop(name) for name in names if options.get(name) is not None},
-    )
     options = {name: value for name, value in options.items() if value is not None}
+    common = {name: options.pop(name) for name in ("remap", "log") if name in options}
+    folders = tuple(Path(folder) for folder in options.pop("interface_paths", ()))
+    unknown = set(options) - _OPTIONS[kind]
+    if unknown:
+        raise UsageError(f"the {kind} backend has no option {', '.join(sorted(unknown))}")
+    settings = NodeSettings(clock, node_name, namespace, interface_paths=folders, **common)
     backend: Backend = _backend_class(kind)(settings, **options)
     return backend
 

@@ -320,6 +320,7 @@ class Ros1Backend(Node):
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
         await in_thread(self.loop, self.exit_hooks.run, "closing")
+        self.exit_hooks.stop_watching()
         for member in self._members:
             member.close()
         self._members.clear()

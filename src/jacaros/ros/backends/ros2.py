@@ -241,6 +241,7 @@ class Ros2Backend(Node):
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
         await in_thread(self.loop, self.exit_hooks.run, "closing")
+        self.exit_hooks.stop_watching()
         self._members.clear()
         self.set_connected(False)
 

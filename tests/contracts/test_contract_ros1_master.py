@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.ros1, pytest.mark.slow]
 @pytest.fixture(autouse=True)
 def _where_ros1_is(request: pytest.FixtureRequest) -> None:
     if not is_wanted("ros1", request.config):
-        pytest.skip("no ROS 1 here; see test_presence")
+        pytest.skip("no ROS 1 here; see test_contract_presence")
 
 
 @pytest.fixture
