@@ -157,6 +157,28 @@ def test_a_cancelled_sleeper_leaves_no_timer_that_time_would_jump_to():
     assert not clock.advance()
 
 
+def test_a_sleeper_cancelled_at_the_moment_of_its_waking_is_cancelled():
+    clock = VirtualClock()
+
+    async def main():
+        sleeper = asyncio.create_task(clock.sleep(1.0))
+        clock.call_later(1.0, sleeper.cancel)  # rings first: the task has not begun to sleep yet
+        await clock.sleep(2.0)
+        return sleeper.cancelled()
+
+    assert run(main, clock)
+
+
+def test_timers_cancelled_in_the_past_of_a_busy_jump_are_skipped():
+    clock = VirtualClock()
+    rung = []
+    clock.call_later(0.0001, lambda: rung.append("kept"))
+    clock.call_later(0.0002, lambda: rung.append("dropped")).cancel()
+    clock.busy(10_000)
+    assert rung == ["kept"]
+    assert clock.elapsed == 0.001
+
+
 def test_real_input_is_served_before_time_jumps():
     clock = VirtualClock()
     order = []

@@ -98,7 +98,7 @@ class Artifact:
                 )
         cls.interface = interface_of(cls)
 
-    def attach(self, steps: Steps, host: Host) -> None:
+    def _join(self, steps: Steps, host: Host) -> None:
         """Be joined with the kernel; called once, before ``init``."""
         self.name, self.id, self.workspace = steps.id.name, steps.id, host
         self.clock, self.resources = steps.setting.clock, steps.setting.resources
@@ -129,7 +129,7 @@ class Artifact:
             values: made plain values (see `plain`).
             annotations: further annotations of the belief, atoms and structures.
         """
-        self._steps.current(f"defining property {name}")
+        self._steps.current("defining property", name)
         self._steps.publication.properties.define(name, values, annotations)
 
     def update_property(
@@ -145,7 +145,7 @@ class Artifact:
         Raises:
             UnknownProperty: there is none.
         """
-        self._steps.current(f"updating property {name}")
+        self._steps.current("updating property", name)
         self._steps.publication.properties.update(name, values, annotations)
 
     def remove_property(self, name: str, *values: object) -> None:
@@ -158,7 +158,7 @@ class Artifact:
         Raises:
             UnknownProperty: there is none.
         """
-        self._steps.current(f"removing property {name}")
+        self._steps.current("removing property", name)
         self._steps.publication.properties.remove(name, values)
 
     def has_property(self, name: str, *values: object) -> bool:
@@ -350,8 +350,8 @@ class Artifact:
 
 _RESERVED = frozenset(
     name
-    for name in (*vars(Artifact), "name", "id", "workspace", "clock", "resources", "_steps")
-    if not name.startswith("__") and name not in ("ports", "dispose", "interface")
+    for name in (*vars(Artifact), "interface", "name", "id", "workspace", "clock", "resources", "_steps")
+    if not name.startswith("__") and name not in ("ports", "dispose")
 )
 
 Artifact.interface = interface_of(Artifact)

@@ -65,7 +65,7 @@ def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, s
         setting.log_error(artifact_id.name, f"the constructor of {artifact_type.__qualname__} failed:", error)
         raise init_failed(artifact_id, f"{type(error).__name__}: {error}") from error
     steps = Steps(artifact_id, artifact, artifact_type.interface, tuple(artifact_type.ports), setting)
-    artifact.attach(steps, host)
+    artifact._join(steps, host)
     return steps
 
 

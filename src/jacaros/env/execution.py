@@ -108,10 +108,8 @@ class OperationExecution:
         """Let it go on after `pause`."""
         for each in self.linked:
             each.resume()
-        if self._pause is None or not self.paused or self._turns is None:
-            return
-        self._pause.end()
-        self._turns.reconsider()
+        if self._pause is not None and self._turns is not None and self._pause.end():
+            self._turns.reconsider()
 
     @property
     def pausable(self) -> bool:
@@ -165,15 +163,17 @@ class Pause:
         self._spent = 0.0
         self._waiting: list[asyncio.Future[None]] = []
 
-    def end(self) -> None:
-        """End the present pause and wake who waits for that."""
-        if self.since is not None:
-            self._spent += self._clock.now() - self.since
-            self.since = None
+    def end(self) -> bool:
+        """End the present pause and wake who waits for that; False when there is none."""
+        if self.since is None:
+            return False
+        self._spent += self._clock.now() - self.since
+        self.since = None
         waiting, self._waiting = self._waiting, []
         for future in waiting:
             if not future.done():
                 future.set_result(None)
+        return True
 
     async def wait(self) -> None:
         """Wait for the end of the present pause."""

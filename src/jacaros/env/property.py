@@ -34,6 +34,7 @@ class PropertyChanges(NamedTuple):
     removed: tuple[ObservableProperty, ...]
 
 
+_NONE: dict[int, ObservableProperty] = {}
 NO_CHANGES = PropertyChanges((), (), ())
 
 
@@ -49,6 +50,11 @@ class PropertyStore:
         self._by_name: dict[str, dict[int, ObservableProperty]] = {}
         self._before: dict[int, tuple[str, ObservableProperty | None]] = {}
         self._last_key = 0
+
+    @property
+    def changing(self) -> bool:
+        """True when the step in progress has touched a property."""
+        return bool(self._before)
 
     def define(self, name: str, values: tuple[object, ...], annotations: tuple[object, ...] | None) -> None:
         """Add a property.
@@ -92,7 +98,7 @@ class PropertyStore:
         Raises:
             UnknownProperty: there is none.
         """
-        for found in self._by_name.get(name, {}).values():
+        for found in self._by_name.get(name, _NONE).values():
             if not template or _fits(template, found.values):
                 return found
         names = [each for each, properties in self._by_name.items() if properties]
@@ -102,7 +108,7 @@ class PropertyStore:
 
     def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
         """True when there is a property called *name* whose values fit *template*."""
-        return any(not template or _fits(template, p.values) for p in self._by_name.get(name, {}).values())
+        return any(not template or _fits(template, p.values) for p in self._by_name.get(name, _NONE).values())
 
     def committed(self) -> tuple[ObservableProperty, ...]:
         """The properties as observers know them, in the order of their definition."""
@@ -118,7 +124,9 @@ class PropertyStore:
         """End the step: forget how it was before and tell what is different now."""
         if not self._before:
             return NO_CHANGES
-        changed, added, removed = [], [], []
+        changed: list[Change] = []
+        added: list[ObservableProperty] = []
+        removed: list[ObservableProperty] = []
         for key, (name, before) in self._before.items():
             now = self._by_name[name].get(key)
             if before is None:

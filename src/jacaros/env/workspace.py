@@ -18,6 +18,7 @@ from jacaros.env.observation import Observer
 from jacaros.env.operation import LINK, OPERATION, SUCCEEDED, OperationOutcome, OperationRequest
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Structure
+from jacaros.trace import Cause
 
 Made = Callable[[ArtifactId | None, OperationOutcome], None]
 """Told what came of making an artifact: its id, or None and why not."""
@@ -92,6 +93,7 @@ class Workspace:
         args: Sequence[object] = (),
         creator: str | None = None,
         on_done: Made = _nobody_waits,
+        cause: Cause | None = None,
     ) -> OperationExecution:
         """Make an artifact like `make_artifact`, and tell *on_done*.
 
@@ -99,7 +101,9 @@ class Workspace:
         ends the making, and nothing is left behind.
         """
         name = str.__str__(name)
-        request = OperationRequest(self._new_id(name, type_name, creator), "init", tuple(args), creator)
+        request = OperationRequest(
+            self._new_id(name, type_name, creator), "init", tuple(args), creator, cause
+        )
         try:
             artifact_type, steps = self._prepare(request.artifact, type_name)
             declared = init_of(artifact_type, request)
@@ -128,9 +132,10 @@ class Workspace:
 
     def _made(self, steps: Steps, on_done: Made, outcome: OperationOutcome) -> None:
         name = steps.id.name
-        del self._making[name]
+        if self._making.get(name) is steps:
+            del self._making[name]
         if not outcome.ok:
-            steps.dispose()
+            self._registry.dispose(steps)
             failure = init_failed(steps.id, outcome.message or "")
             on_done(None, OperationOutcome(False, failure.message, failure.reason))
             return
@@ -148,9 +153,7 @@ class Workspace:
         Raises:
             UnknownArtifact: it is gone already.
         """
-        steps = self._steps_of(artifact_id)
-        self._registry.remove(artifact_id)
-        steps.dispose()
+        self._registry.dispose(self._steps_of(artifact_id))
 
     def _forget(self, artifact_id: ArtifactId) -> None:
         del self._artifacts[artifact_id.name]
@@ -158,14 +161,11 @@ class Workspace:
 
     async def close(self) -> None:
         """Dispose all artifacts, the last one made first, and wait until they have given back everything."""
-        ending = list(self._making.values())
-        for steps in ending:
-            steps.dispose()
+        for steps in tuple(self._making.values()):
+            self._registry.dispose(steps)
         for artifact_id in reversed(self.artifacts()):
-            ending.append(self._steps_of(artifact_id))
             self.dispose_artifact(artifact_id)
-        for steps in ending:
-            await steps.closed()
+        await self._registry.ended()
 
     # ---- artifacts are found
 
@@ -246,6 +246,14 @@ class Workspace:
             UnknownArtifact: it is gone.
         """
         return self._steps_of(artifact_id).publication.observers
+
+    def pending(self, artifact_id: ArtifactId) -> tuple[OperationExecution, ...]:
+        """The operations of an artifact that run (its internal ones included) or wait to begin.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        return self._steps_of(artifact_id).pending()
 
     # ---- artifacts are used
 

@@ -338,3 +338,53 @@ def test_observers_that_drop_an_operation_while_they_are_told(play):
         assert state(stage, robot) == (False, 1)
 
     play(scene)
+
+
+def test_a_plain_operation_that_drops_itself_comes_to_its_end_untold(play):
+    class Plain(Artifact):
+        def init(self):
+            self.define_property("n", 0)
+
+        @operation
+        def drop_me(self):
+            self.current.cancel()
+            self.update_property("n", 1)
+
+    async def scene(stage):
+        plain = await stage.make(Plain)
+        call = stage.call(plain, "drop_me")
+        assert (call.outcome, call.execution.ended) == (None, True)
+        assert stage.property(plain, "n") == (1,)
+
+    play(scene)
+
+
+def test_one_of_several_that_wait_is_dropped(play):
+    async def scene(stage):
+        robot = await robot_of(stage)
+        stage.call(robot, "hold", 1.0)
+        first, second, third = (stage.call(robot, "ping") for _ in range(3))
+        assert stage.main.pending(robot)[1:] == (first.execution, second.execution, third.execution)
+        second.execution.cancel()
+        await third.wait()
+        assert (first.ok, second.outcome) == (True, None)
+        assert stage.main.pending(robot) == ()
+
+    play(scene)
+
+
+def test_a_coroutine_that_is_thrown_away_does_not_wait_for_its_turn(play):
+    async def scene(stage):
+        robot = await robot_of(stage)
+        move = stage.call(robot, "move", 1)
+        await stage.clock.sleep(0.5)
+        stage.main.dispose_artifact(robot)
+        move.execution.task.get_coro().close()
+        move.execution.task.cancel()
+        await stage.clock.sleep(1.0)
+        assert commands(stage) == ["go", "stop"]
+
+    try:
+        play(scene)
+    except asyncio.CancelledError:
+        raise AssertionError("the end of a coroutine must not reach others") from None

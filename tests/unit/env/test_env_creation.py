@@ -14,6 +14,7 @@ from jacaros.env import (
     operation,
 )
 from jacaros.errors import InternalError
+from jacaros.trace import cause
 
 
 class Counter(Artifact):
@@ -269,6 +270,69 @@ def test_create_tells_a_plain_init_at_once(play):
         assert refusal.reason == Structure("makeArtifactFailure", ("artifact_already_present", "c"))
         assert stage.main.create("d", Counter).ended
         assert stage.main.create("d", Counter).ended, "a failure that nobody waits for"
+
+    play(scene)
+
+
+def test_the_cause_of_the_making_is_that_of_its_processes(play):
+    class Alive(Artifact):
+        def init(self):
+            self.start(self.beat)
+
+        @internal_operation
+        async def beat(self):
+            await self.sleep(1.0)
+            self.signal("beat")
+
+    async def scene(stage):
+        why, made = cause("act", "make"), []
+        stage.main.create("it", Alive, on_done=lambda artifact, _: made.append(artifact), cause=why)
+        watcher = stage.watch(made[0])
+        await stage.clock.sleep(2.0)
+        assert watcher.observations[0].cause == why
+
+    play(scene)
+
+
+def test_a_name_can_be_used_again_while_a_dropped_making_comes_to_its_end(play):
+    class Lingering(Artifact):
+        async def init(self):
+            try:
+                await self.sleep(100.0)
+            finally:
+                await self.sleep(1.0)
+
+    async def scene(stage):
+        first = stage.main.create("it", Lingering)
+        await stage.clock.sleep(0.5)
+        first.cancel()
+        await stage.clock.sleep(0.1)
+        assert (await why(stage.make(Counter)))[0] == "artifact_already_present"
+        await stage.clock.sleep(2.0)
+        await stage.make(Counter)
+
+    play(scene)
+
+
+def test_a_making_that_is_ended_from_two_sides_ends_once(play):
+    class Lingering(Artifact):
+        async def init(self):
+            try:
+                await self.sleep(100.0)
+            finally:
+                await self.sleep(1.0)
+
+    async def scene(stage):
+        making = asyncio.ensure_future(stage.make(Lingering))
+        await stage.clock.sleep(0.5)
+        closing = asyncio.ensure_future(stage.environment.close())
+        await stage.clock.sleep(0.1)
+        making.cancel()
+        counter = await stage.make(Counter)
+        await closing
+        assert making.cancelled()
+        assert stage.elapsed == 1.5
+        assert stage.main.lookup("it") is counter
 
     play(scene)
 

@@ -118,6 +118,12 @@ def test_names_of_the_artifact_interface_cannot_be_taken():
         class TakenToo(Artifact):
             name = "mine"
 
+    with pytest.raises(InvalidArtifact, match="interface would replace"):
+
+        class TakenThree(Artifact):
+            @operation
+            def interface(self): ...
+
 
 def test_init_dispose_and_ports_are_the_authors():
     class Fine(Artifact):

@@ -1,5 +1,7 @@
 """The end of an artifact: observers, pending operations, hooks, and closing the environment."""
 
+import asyncio
+
 import pytest
 
 from jacaros.env import (
@@ -323,6 +325,52 @@ def test_closing_the_environment_ends_everything_and_waits_for_it(play):
                 "last registered",
                 "first registered",
             ]
+
+    play(scene)
+
+
+def test_closing_waits_for_artifacts_that_are_ending_already(play):
+    async def scene(stage):
+        thing = await thing_of(stage)
+        stage.call(thing, "run_long")
+        await stage.clock.sleep(1.0)
+        stage.main.dispose_artifact(thing)
+        other = await stage.make(Thing, name="other")
+        stage.call(other, "ping")
+        await stage.clock.sleep(0.5)
+        await asyncio.gather(stage.environment.close(), stage.environment.close())
+        assert stage.elapsed == 2.0
+        assert "dispose" in stage.thing.events
+
+    play(scene)
+
+
+def test_one_who_stops_waiting_for_the_end_does_not_disturb_the_others(play):
+    async def scene(stage):
+        thing = await thing_of(stage)
+        stage.call(thing, "run_long")
+        await stage.clock.sleep(1.0)
+        first, second = (asyncio.ensure_future(stage.environment.close()) for _ in range(2))
+        await stage.clock.sleep(0.5)
+        first.cancel()
+        await second
+        assert stage.elapsed == 2.0
+
+    play(scene)
+
+
+def test_processes_started_after_the_end_do_not_begin(play):
+    class Late(Thing):
+        @operation
+        def end(self):
+            self.workspace.dispose_artifact(self.id)
+            self.start(self.process)
+
+    async def scene(stage):
+        late = await stage.make(Late)
+        assert stage.call(late, "end").ok
+        await stage.clock.sleep(1.0)
+        assert stage.main.artifacts()[-1].name == "console"
 
     play(scene)
 

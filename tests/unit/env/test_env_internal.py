@@ -68,6 +68,10 @@ class Clock(Artifact):
     def wrong(self):
         self.start("no_such")
 
+    @operation(name="wrongMethod")
+    def wrong_method(self):
+        self.start(self.has_ticks)
+
     @operation
     async def early(self):
         self.start(self.count)
@@ -192,6 +196,8 @@ def test_an_unknown_process_is_a_mistake_in_the_artifact(play):
         clock = await stage.make(Clock)
         call = stage.call(clock, "wrong")
         assert "no internal operation no_such with 0 arguments" in call.outcome.message
+        call = stage.call(clock, "wrongMethod")
+        assert "no internal operation has_ticks with 0 arguments" in call.outcome.message
 
     play(scene)
 

@@ -310,6 +310,26 @@ def test_links_reach_other_workspaces(play):
     play(scene)
 
 
+def test_a_target_that_goes_away_during_the_call_is_not_available(play):
+    class Jealous(Artifact):
+        @link
+        def greet(self):
+            for rival in self.workspace.linked(self.workspace.lookup("switch"), "out"):
+                if rival is not self.id:
+                    self.workspace.dispose_artifact(rival)
+
+    async def scene(stage):
+        switch = await stage.make(Switch, name="switch")
+        first, second = await stage.make(Jealous, name="first"), await stage.make(Jealous, name="second")
+        stage.main.link(switch, "out", first)
+        stage.main.link(switch, "out", second)
+        call = stage.call(switch, "forward", "greet")
+        await call.wait()
+        assert call.reason == Structure("artifact_not_available", ("second",))
+
+    play(scene)
+
+
 def test_a_link_to_itself_does_not_block(play):
     class Self(Artifact):
         ports = ("me",)

@@ -334,6 +334,9 @@ def test_properties_cannot_be_changed_outside_of_operations(play):
             with pytest.raises(InvalidArtifact, match=r"within an operation.*self\.start"):
                 misuse()
         assert leaky.value("p") == 1, "reading is allowed"
+        assert leaky.values("p") == (1,)
+        assert leaky.has_property("p", 1)
+        assert not leaky.has_property("p", 2)
         assert leaky.caller is None
 
     play(scene)

@@ -29,6 +29,10 @@ class Robot(Artifact):
                 self._motion = None
 
     @operation
+    def mark(self):
+        self.update_property("units", self.value("units") + 100)
+
+    @operation
     async def deaf(self):
         await self.sleep(1.0)
         assert not self.current.paused
@@ -62,6 +66,11 @@ class Robot(Artifact):
 
 class Boss(Artifact):
     ports = ("robot",)
+
+    @operation(pausable=True)
+    async def send_later(self, units: int):
+        await self.sleep(1.0)
+        await self.call_linked("robot", "drive", units)
 
     @operation
     async def send(self, units: int):
@@ -271,5 +280,79 @@ def test_a_pause_goes_through_links(play):
         send.execution.resume()
         await send.wait()
         assert send.ended_at == 11.5
+
+    play(scene)
+
+
+def test_a_linked_operation_called_while_paused_is_paused_from_the_beginning(play):
+    async def scene(stage):
+        robot = await robot_of(stage)
+        boss = await stage.make(Boss, name="boss")
+        stage.main.link(boss, "robot", robot)
+        send = stage.call(boss, "send_later", 1)
+        await stage.clock.sleep(0.5)
+        send.execution.pause()
+        await stage.clock.sleep(10.0)
+        assert units(stage, robot) == 0
+        send.execution.resume()
+        await send.wait()
+        assert send.ended_at == 11.5
+
+    play(scene)
+
+
+def test_a_cancelled_waiter_does_not_disturb_the_resume(play):
+    async def scene(stage):
+        robot = await robot_of(stage)
+        call = stage.call(robot, "waits_itself")
+        await stage.clock.sleep(0.5)
+        call.execution.pause()
+        await stage.clock.sleep(2.0)
+        call.execution.task.cancel()
+        call.execution.resume()
+        await stage.clock.sleep(1.0)
+        assert (stage.robot.commands, call.outcome) == ([], None)
+
+    play(scene)
+
+
+def test_observers_may_pause_an_operation_while_they_are_told(play):
+    async def scene(stage):
+        robot = await robot_of(stage)
+        move = stage.call(robot, "move", 3)
+        await stage.clock.sleep(0.5)
+
+        class Pauser:
+            agent = "x"
+
+            def observe(self, observation):
+                if observation.changed:
+                    move.execution.pause()
+
+        stage.main.focus(robot, Pauser())
+        stage.call(robot, "mark")
+        await stage.clock.sleep(5.0)
+        assert units(stage, robot) == 101, "the mark, and the move up to its next pause point"
+        stage.main.stop_focus(robot, stage.main.observers(robot)[0])
+        move.execution.resume()
+        await move.wait()
+        assert units(stage, robot) == 103
+
+    play(scene)
+
+
+def test_a_refused_request_can_be_treated_like_any_other(play):
+    async def scene(stage):
+        refused = stage.call(await robot_of(stage), "no_such").execution
+        refused.pause()
+        refused.on_pause(lambda: None)
+        refused.resume()
+        refused.cancel()
+        assert (refused.ended, refused.paused, refused.pausable, refused.take_paused_time()) == (
+            True,
+            False,
+            False,
+            0.0,
+        )
 
     play(scene)

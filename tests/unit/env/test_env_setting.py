@@ -6,6 +6,7 @@ from jacaros.clock import VirtualClock
 from jacaros.env import Artifact, Environment, OperationRequest, operation
 from jacaros.env.kernel.setting import Setting
 from jacaros.errors import InternalError
+from jacaros.trace import cause
 
 
 class Thing(Artifact):
@@ -33,6 +34,11 @@ def test_an_error_that_has_no_trace_is_logged_too():
     lines = []
     Setting(VirtualClock(), log=lines.append).log_error("it", "went wrong:", ValueError("x"))
     assert lines == ["[it] went wrong:", "[it]   ValueError: x"]
+
+
+def test_without_a_tracer_the_parent_stays_the_cause():
+    parent = cause("act", "x")
+    assert Setting(VirtualClock()).trace("operation", "y", parent) is parent
 
 
 def test_without_anybody_to_be_told_a_defect_is_raised():

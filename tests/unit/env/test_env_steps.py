@@ -284,6 +284,8 @@ def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn(play):
             kept[0].update_property("p", 1)
         with pytest.raises(InvalidArtifact, match=r"self\.start"):
             await kept[0].sleep(1.0)
+        with pytest.raises(InvalidArtifact, match=r"self\.start"):
+            await kept[0].step(asyncio.get_running_loop().create_future())
 
     play(scene)
 

@@ -102,6 +102,7 @@ def test_providers_of_an_operation_are_found_in_the_order_of_creation(play):
         assert stage.main.providers("inc", 0) == ()
         first, second = await stage.make(Counter, name="a"), await stage.make(Other, name="b")
         assert stage.main.providers("inc", 0) == (first, second)
+        assert stage.main.providers("inc", 0) == (first, second)
         assert stage.main.providers("inc_any", 3) == (second,)
         assert stage.main.providers("inc", 1) == ()
         stage.main.dispose_artifact(first)

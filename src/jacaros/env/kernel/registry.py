@@ -12,6 +12,7 @@ class Registry:
     def __init__(self) -> None:
         self._steps: dict[ArtifactId, Steps] = {}
         self._forget: dict[ArtifactId, Callable[[ArtifactId], None]] = {}
+        self._ending: list[Steps] = []
         self._links: dict[tuple[ArtifactId, str], list[ArtifactId]] = {}
         self._last_number = 0
 
@@ -29,8 +30,19 @@ class Registry:
         """The artifact with that id, None when it is gone."""
         return self._steps.get(artifact_id)
 
-    def remove(self, artifact_id: ArtifactId) -> None:
-        """Forget an artifact and the links from and to it."""
+    def dispose(self, steps: Steps) -> None:
+        """Forget an artifact and the links from and to it, and end its operations."""
+        if steps.id in self._steps:
+            self._remove(steps.id)
+        steps.dispose()
+        self._ending = [each for each in (*self._ending, steps) if not each.over]
+
+    async def ended(self) -> None:
+        """Wait until all disposed artifacts have given back everything."""
+        for steps in self._ending:
+            await steps.closed()
+
+    def _remove(self, artifact_id: ArtifactId) -> None:
         del self._steps[artifact_id]
         for key, targets in tuple(self._links.items()):
             kept = [target for target in targets if target is not artifact_id]

@@ -48,10 +48,11 @@ class Signature:
         fewest: least number of arguments.
     """
 
-    __slots__ = ("fewest", "parameters", "rest")
+    __slots__ = ("_accepts", "fewest", "parameters", "rest")
 
     def __init__(self, parameters: tuple[Parameter, ...], rest: Parameter | None) -> None:
         self.parameters, self.rest = parameters, rest
+        self._accepts = tuple(parameter.accept for parameter in parameters)
         self.fewest = sum(not parameter.optional for parameter in parameters)
 
     @property
@@ -69,12 +70,18 @@ class Signature:
         Raises:
             WrongArguments: one is not of the kind that is wanted.
         """
-        bound = []
-        position = 0
+        if not arguments:
+            return arguments
+        bound: list[object] = []
         try:
-            for position, argument in enumerate(arguments):
-                bound.append(self._parameter(position).accept(argument))
+            if self.rest is None:
+                for accept, argument in zip(self._accepts, arguments):  # noqa: B905  # defaults may be left out
+                    bound.append(accept(argument))
+            else:
+                for position, argument in enumerate(arguments):
+                    bound.append(self._parameter(position).accept(argument))
         except Unsuitable:
+            position = len(bound)
             parameter = self._parameter(position)
             raise WrongArguments(
                 f"parameter {parameter.name} (number {position + 1}) wants {parameter.expected}, "

@@ -26,7 +26,6 @@ from jacaros.env.operation import LINK, SUCCEEDED, OperationOutcome, OperationRe
 from jacaros.env.property import check_name
 from jacaros.env.values import plain
 from jacaros.errors import InternalError
-from jacaros.trace import Cause
 
 T = TypeVar("T")
 
@@ -43,6 +42,7 @@ class Steps:
         turns: whose turn it is.
         ports: names of its out ports.
         disposed: True when it takes no more operations.
+        over: True when the last of them has ended and everything has been given back.
         initialised: True once ``init`` has succeeded.
         hook: called first when an initialised artifact ends.
         cleanups: called after that, the last one first.
@@ -66,7 +66,7 @@ class Steps:
         self.hook: Callable[[], object] | None = None
         self.cleanups: list[Callable[[], object]] = []
         self._closed: asyncio.Future[None] | None = None
-        self._over = False
+        self.over = False
         self._running: dict[OperationExecution, None] = {}
         self._started: list[OperationExecution] = []
         self._delayed: list[tuple[Signal, str | None]] = []
@@ -145,7 +145,7 @@ class Steps:
     def _run(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
         try:
             result = declared.function(self._artifact, *execution.arguments)
-            if inspect.iscoroutine(result):
+            if result is not None and inspect.iscoroutine(result):
                 result.close()
                 raise InvalidArtifact(f"{declared.function.__qualname__} gave a coroutine: write async def")
         except Exception as error:
@@ -200,12 +200,14 @@ class Steps:
             self._note(execution, error)
         if execution.disposed:
             outcome = outcomes.disposed(execution.request)
-        self._running.pop(execution, None)
+        if execution.task is not None:
+            del self._running[execution]
         try:
             self.turns.end(self._tell, execution, outcome)
         finally:
-            self._close_if_over()
-        if isinstance(error, InternalError):
+            if self.disposed:
+                self._close_if_over()
+        if error is not None and isinstance(error, InternalError):
             self.setting.report(error)
 
     def _tell(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
@@ -241,11 +243,12 @@ class Steps:
         except RuntimeError:
             return holder.declared is not None and holder.declared.threaded
 
-    def current(self, wanted: str) -> OperationExecution:
+    def current(self, wanted: str, name: str = "") -> OperationExecution:
         """The operation that makes a step now.
 
         Args:
             wanted: what the caller is about to do, for the message.
+            name: and to what.
 
         Raises:
             InvalidArtifact: the caller is not within a step, such as in a callback.
@@ -254,36 +257,40 @@ class Steps:
         if holder is not None and (holder.task is None or self.inside()):
             return holder
         raise InvalidArtifact(
-            f"artifact {self.id.name}: {wanted} is only possible within an operation; "
+            f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; "
             "from a callback or another task use self.start(...) to run an internal operation"
         )
 
     def commit(self) -> None:
         """Publish what the step has changed so far; operations that it started may begin."""
-        holder = self.turns.holder
-        cause = holder.cause if holder is not None else None
         if self._delayed:
-            self._publish_delayed(cause)
-        self.publication.publish(cause)
+            self._publish_delayed()
+        if self.publication.properties.changing:
+            holder = self.turns.holder
+            self.publication.publish(holder.cause if holder is not None else None)
         if self._started:
             started, self._started = self._started, []
-            self.turns.line_up(started, self._guard)
+            if not self.disposed:
+                self.turns.line_up(started, self._guard)
 
-    def _publish_delayed(self, cause: Cause | None) -> None:
+    def _publish_delayed(self) -> None:
         delayed, self._delayed = self._delayed, []
+        holder = self.turns.holder
+        cause = holder.cause if holder is not None else None
         self.publication.publish(cause, tuple(signal for signal, addressee in delayed if addressee is None))
         for signal, addressee in delayed:
             if addressee is not None:
                 self.publication.publish(cause, (signal,), addressee)
 
     def _roll_back(self) -> None:
+        """Undo what the step has changed, signalled (in a thread) and started since the last commit."""
         self.publication.properties.roll_back()
         self._started.clear()
         self._delayed.clear()
 
     def signal(self, name: str, arguments: tuple[object, ...], addressee: str | None) -> None:
         """Publish a signal, together with what the step has changed so far."""
-        holder = self.current(f"the signal {name}")
+        holder = self.current("the signal", name)
         check_name(name)
         signal = Signal(name, tuple(map(plain, arguments)))
         if holder.declared is not None and holder.declared.threaded:
@@ -342,6 +349,10 @@ class Steps:
         """See whether somebody who waits may go on now."""
         self.turns.reconsider()
 
+    def pending(self) -> tuple[OperationExecution, ...]:
+        """The operations that run or wait, in no particular order of their ends."""
+        return (*self._running, *self.turns.waiting_to_begin())
+
     def complain(self, what: str, error: Exception) -> None:
         """Log an error of the artifact's code that harms nobody."""
         self.setting.log_error(self.id.name, what, error)
@@ -385,15 +396,15 @@ class Steps:
 
     async def closed(self) -> None:
         """Wait until the disposed artifact has given back everything."""
-        if not self._over:
+        if not self.over:
             if self._closed is None:
                 self._closed = asyncio.get_running_loop().create_future()
-            await asyncio.shield(self._closed)
+            await asyncio.shield(self._closed)  # who stops waiting must not end the waiting of others
 
     def _close_if_over(self) -> None:
-        if not self.disposed or self._over or self._running or self.turns.holder is not None:
+        if not self.disposed or self.over or self._running or self.turns.holder is not None:
             return
-        self._over = True
+        self.over = True
         hooks = (self.hook,) if self.hook is not None and self.initialised else ()
         for callback in (*hooks, *reversed(self.cleanups)):
             try:

@@ -48,19 +48,27 @@ class TurnQueue:
 
     def enter(self, execution: OperationExecution, guard: Guard | None) -> None:
         """Let an operation begin as soon as its turn comes, which may be at once."""
-        place = Place(execution, guard)
         if self.holder is not None or self._serving:
-            self._places.append(place)
+            self._places.append(Place(execution, guard))
             return
         self._serving = True
+        self._changed = False  # who waits while the artifact is free has been asked since the last change
         try:
-            if self._may_go(place):
-                self._give(place)
+            if guard is None:
+                self.holder = execution
+                self._begin(execution, None)
             else:
-                self._places.append(place)
+                self._enter_guarded(Place(execution, guard))
         finally:
             self._serving = False
-            self.serve()
+            if self._places:
+                self.serve()
+
+    def _enter_guarded(self, place: Place) -> None:
+        if self._may_go(place):
+            self._give(place)
+        else:
+            self._places.append(place)
 
     def line_up(
         self, executions: list[OperationExecution], guard: Callable[[OperationExecution], Guard | None]
@@ -101,8 +109,7 @@ class TurnQueue:
     async def _retake_first(self, place: Place) -> None:
         place.guard = None
         while self.holder is not place.execution:
-            if place in self._places:
-                self._places.remove(place)
+            self._places.remove(place)
             if self.holder is None:
                 self.holder = place.execution
                 return
@@ -148,7 +155,7 @@ class TurnQueue:
             return
         self._serving = True
         try:
-            while self._changed and self.holder is None:
+            while self._changed and self.holder is None and self._places:
                 self._changed = False
                 place = self._next()
                 if place is not None:
