@@ -1,0 +1,161 @@
+"""The reasoning cycle: interleaving, failure, atomic plans, and the freedom to stay with an intention."""
+
+from pathlib import Path
+
+import pytest
+from recording_host import mind, printed
+
+CASES = Path(__file__).parents[2] / "conformance"
+AREAS = ("beliefs", "plan_selection", "body_statements", "failure", "intentions", "rules_and_queries", "time")
+
+
+def single_agent_cases() -> list[Path]:
+    return [path for area in AREAS for path in sorted((CASES / area).glob("*.asl"))]
+
+
+@pytest.mark.parametrize("case", single_agent_cases(), ids=lambda path: f"{path.parent.name}/{path.stem}")
+@pytest.mark.parametrize("fuel", [1, 3, 100_000])
+def test_staying_with_an_intention_changes_nothing_a_program_can_see(case: Path, fuel: int) -> None:
+    host = mind(case.read_text(), name=case.stem, path=str(case), complete=no_environment)
+    host.run(fuel)
+    expected = [
+        line.partition("] ")[2]
+        for line in case.with_suffix(".expected").read_text().splitlines()
+        if line[:1] == "["
+    ]
+    assert host.printed == expected
+    assert host.stopped
+
+
+def no_environment(act: object) -> object:
+    from jacaros.bdi.act import Completion
+
+    del act
+    return Completion(success=False)
+
+
+def test_a_tail_recursive_goal_needs_constant_space() -> None:
+    host = mind("!g(100000). +!g(0) <- .stopMAS. +!g(N) : N > 0 <- !g(N-1).")
+    deepest = 0
+    while host.agent.run(997):
+        deepest = max([deepest, *(len(i.frames) for i in host.agent.alive.values())])
+    assert host.stopped
+    assert deepest == 1
+
+
+def test_ten_thousand_nested_goals_need_no_python_recursion() -> None:
+    assert printed(
+        "!g(10000,S). +!g(0,0). +!g(N,S) : N > 0 <- !g(N-1,T); S = T+1; if (N == 10000) { .print(S) }."
+    ) == ["10000"]
+
+
+def test_a_rule_a_hundred_thousand_levels_deep_needs_no_python_recursion() -> None:
+    assert printed("n(0). n(X) :- X > 0 & n(X-1). !s. +!s : n(100000) <- .print(deep).") == ["deep"]
+
+
+def test_an_atomic_plan_is_never_interleaved() -> None:
+    lines = printed(
+        """
+        !a. !b.
+        @l[atomic] +!a <- .print(a1); !sub; .print(a3).
+        +!sub <- .print(a2).
+        +!b <- .print(b1); .print(b2).
+        """
+    )
+    assert lines == ["a1", "a2", "a3", "b1", "b2"]
+
+
+def test_while_an_atomic_plan_waits_everything_waits() -> None:
+    lines = printed(
+        """
+        !a. !b.
+        @l[atomic] +!a <- .print(a1); .wait(50); .print(a2).
+        +!b <- .print(b1).
+        """
+    )
+    assert lines == ["a1", "a2", "b1"]
+
+
+def test_an_exception_in_an_internal_action_fails_that_step_only() -> None:
+    host = mind(
+        """
+        !other. !g.
+        +!other <- .wait(10); .print(other_lives).
+        +!g <- .nth(9, [a], _); .print(bad).
+        -!g[error(E)] <- .print(E).
+        """
+    )
+    host.run()
+    assert host.printed == ["internal_action", "other_lives"]
+
+
+def test_a_lost_intention_is_reported_with_its_place() -> None:
+    host = mind("!g.\n+!g <-\n  ?nothing(1).", name="lost")
+    host.run()
+    assert host.logged == [
+        (
+            "warning",
+            "the goal !g failed and has no plan for its failure: test_goal_failed, a test found no answer (lost.asl:3)",
+        )
+    ]
+
+
+def test_a_handler_that_posts_its_goal_again_retries() -> None:
+    assert printed(
+        """
+        n(3). !g.
+        +!g : n(0) <- .print(done).
+        +!g : n(N) <- -+n(N-1); .print(try(N)); .fail.
+        -!g <- !g.
+        """
+    ) == ["try(3)", "try(2)", "try(1)", "done"]
+
+
+def test_a_failed_goal_gives_its_variables_back_to_the_handler_and_the_caller() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- !g(X, f(Y)); X = free; Y = free_too; .print(X, " ", Y).
+        +!g(A, f(B)) <- A = 1; B = 2; .fail.
+        -!g(A, f(B)) <- if (A == 1 | B == 2) { .print(bound) } else { .print(unbound) }.
+        """
+    ) == ["unbound", "free free_too"]
+
+
+def test_bindings_made_before_a_goal_outlive_its_failure() -> None:
+    assert (
+        printed(
+            """
+        !s.
+        +!s <- P = pair(A, B); A = 1; !g(P); .print(P); B = 3; .print(P).
+        +!g(pair(_, Y)) <- Y = 2; .fail.
+        -!g(_).
+        """
+        )[1]
+        == "pair(1,3)"
+    )
+
+
+def test_variables_bound_in_a_loop_are_free_in_the_next_round_and_after_it() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- P = pair(A, B); for (.member(X, [1,2])) { A = X; .print(P) }; A = 9; B = 8; .print(P).
+        """
+    )[0::2] == ["pair(1,B)", "pair(9,8)"]
+
+
+def test_a_variable_bound_on_one_branch_only_is_free_on_the_other() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- for (.member(X, [1,2,1])) { if (X == 1) { Y = one }; if (Y = other) { .print(free) } else { .print(Y) } }.
+        """
+    ) == ["one", "free", "one"]
+
+
+def test_a_condition_that_cannot_be_evaluated_does_not_hold_and_is_reported() -> None:
+    host = mind("!g(0). +!g(X) : 5 div X > 1 <- .print(bad). +!g(_) <- .print(second).")
+    host.run()
+    assert host.printed == []
+    assert "cannot be evaluated" in host.logged[0][1]

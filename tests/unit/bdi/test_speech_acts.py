@@ -1,0 +1,89 @@
+"""Messages: what each performative does at the receiver, and synchronous questions."""
+
+import pytest
+from recording_host import RecordingHost, believed, mind
+
+from jacaros.asl.loader import parse_term
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.compiler.lowering import lower_value
+from jacaros.terms.text import text
+
+
+def message(performative: str, content: str, reply: str | None = None) -> SpeechAct:
+    return SpeechAct(performative, "ann", "tester", lower_value(parse_term(content)), "m1", reply)
+
+
+def after(program: str, *messages: SpeechAct) -> RecordingHost:
+    host = mind(program)
+    for one in messages:
+        host.agent.receive(one)
+    host.run()
+    return host
+
+
+def test_tell_adds_a_belief_with_the_sender_as_source() -> None:
+    assert believed(after("", message("tell", "p(1)[at(2)]")), "p") == ["p(1)[at(2),source(ann)]"]
+
+
+def test_sources_are_nested() -> None:
+    assert believed(after("", message("tell", "p[source(bob)]")), "p") == ["p[source(ann)[source(bob)]]"]
+
+
+def test_untell_takes_only_the_source_of_the_sender() -> None:
+    assert believed(after("p.", message("tell", "p"), message("untell", "p")), "p") == ["p[source(self)]"]
+
+
+def test_achieve_posts_a_goal() -> None:
+    assert after("+!g(X)[source(S)] <- .print(X, S).", message("achieve", "g(1)")).printed == ["1ann"]
+
+
+def test_unachieve_drops_the_goal() -> None:
+    host = after("+!g <- .wait(100); .print(bad).", message("achieve", "g"))
+    host = after("!g. +!g <- .wait(100); .print(bad).", message("unachieve", "g"))
+    assert host.printed == []
+
+
+def test_a_question_is_answered_from_beliefs_then_from_a_plan_then_with_no() -> None:
+    host = after("p(1). +?q(X) <- X = 2. +?r(_) <- .fail.", *(message("askOne", f"{f}(X)") for f in "pqrs"))
+    answers = {text(a.content)[0]: (a.performative, text(a.content), a.in_reply_to) for a in host.sent}
+    assert answers == {
+        "p": ("tell", "p(1)", "m1"),
+        "q": ("tell", "q(2)", "m1"),
+        "r": ("untell", "r(X)", "m1"),
+        "s": ("untell", "s(X)", "m1"),
+    }
+
+
+def test_a_synchronous_question_waits_for_its_answer() -> None:
+    host = mind("!g. +!g <- .send(friend, askOne, p(_), A); .print(A).")
+    host.run(seconds=0.1)
+    question = host.sent[0]
+    host.agent.receive(
+        SpeechAct("tell", "friend", "tester", lower_value(parse_term("p(3)")), "x", question.id)
+    )
+    host.run()
+    assert host.printed == ["p(3)[source(friend)]"]
+
+
+def test_a_question_without_answer_times_out() -> None:
+    host = mind("!g. +!g <- .send(friend, askOne, p(_), A, 100); .print(A).")
+    host.run()
+    assert host.printed == ["timeout"]
+
+
+def test_an_unknown_receiver_fails_the_step() -> None:
+    host = mind("!g. +!g <- .send(nobody, tell, p). -!g[error(E)] <- .print(E).")
+    host.run()
+    assert host.printed == ["receiver_not_found"]
+
+
+@pytest.mark.parametrize("performative", ["tellHow", "tell-how"])
+def test_plans_can_be_told(performative: str) -> None:
+    host = after("", message(performative, '"+!h <- .print(told)."'), message("achieve", "h"))
+    assert host.printed == ["told"]
+
+
+def test_a_plan_of_the_program_comes_before_what_a_message_does() -> None:
+    host = after("+!kqml_received(S, tell, C, _) <- .print(S, C).", message("tell", "p(1)"))
+    assert host.printed == ["annp(1)"]
+    assert believed(host, "p") == []
