@@ -23,16 +23,13 @@ _run_time_names = Names(count(1_000_000), count(1_000_000), count(1_000_000))
 def load_program(name: str, text: str, read: Read | None = None) -> tuple[nodes.Program, list[Diagnostic]]:
     """The program in *text*, with its includes, and the warnings.
 
-    Parameters
-    ----------
-    name: what diagnostics call the file; also given to *read* as the including file.
-    text: the AgentSpeak source.
-    read: ``read(path, including_name) -> (name, text)`` finds an included file; raises FileNotFoundError.
+    Args:
+        name: what diagnostics call the file; also given to *read* as the including file.
+        text: the AgentSpeak source.
+        read: ``read(path, including_name) -> (name, text)`` finds an included file; raises FileNotFoundError.
 
-    Raises
-    ------
-    AslError: with all errors of all files.
-
+    Raises:
+        AslError: with all errors of all files.
     """
     diagnostics: list[Diagnostic] = []
     names = Names(count(1), count(1), count(1))
@@ -48,10 +45,8 @@ def parse_term(text: str, name: str = "<string>", functions: Mapping[str, int] |
     *functions* are the registered arithmetic functions with their numbers of arguments.  Unnamed variables
     get numbers that no program has.
 
-    Raises
-    ------
-    AslError: if the text is no term.
-
+    Raises:
+        AslError: if the text is no term.
     """
     return _parse(text, name, functions, PlanParser.expression)
 
@@ -88,10 +83,8 @@ def parse_trigger(
 def parse_plan(text: str, name: str = "<string>", functions: Mapping[str, int] | None = None) -> nodes.Plan:
     """The one plan in *text*, with or without its final '.' and with or without braces around it.
 
-    Raises
-    ------
-    AslError: if the text is no plan.
-
+    Raises:
+        AslError: if the text is no plan.
     """
 
     def plan(parser: PlanParser) -> nodes.Plan:
@@ -106,18 +99,17 @@ def parse_plan(text: str, name: str = "<string>", functions: Mapping[str, int] |
     return _parse(text, name, functions, plan)
 
 
-def parse_plans(text: str, name: str = "<string>") -> tuple[nodes.Plan, ...]:
+def parse_plans(
+    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
+) -> tuple[nodes.Plan, ...]:
     """The plans in *text*, each with its final '.' (the last one may lack it).
 
-    Raises
-    ------
-    AslError: with all errors, also when the text holds beliefs or goals.
-
+    Raises:
+        AslError: with all errors, also when the text holds beliefs or goals.
     """
     diagnostics: list[Diagnostic] = []
-    if not text.rstrip().endswith((".", "}")):
-        text = f"{text}\n."
-    section = DirectiveProcessor(None, _run_time_names, diagnostics).read_file(SourceFile(name, text))
+    processor = DirectiveProcessor(None, _names_with(functions), diagnostics)
+    section = processor.read_file(SourceFile(name, text), last_dot_optional=True)
     for clause in (*section.beliefs, *section.goals):
         diagnostics.append(Diagnostic("error", "only plans are expected", clause.span))
     _settled(diagnostics)
@@ -127,10 +119,8 @@ def parse_plans(text: str, name: str = "<string>") -> tuple[nodes.Plan, ...]:
 def parse_literals(text: str, name: str = "<string>") -> tuple[nodes.Literal, ...]:
     """The literals in *text*, with ',' between them, as in the options of project files.
 
-    Raises
-    ------
-    AslError: if the text is anything else.
-
+    Raises:
+        AslError: if the text is anything else.
     """
 
     def literals(parser: PlanParser) -> tuple[nodes.Literal, ...]:
@@ -154,8 +144,7 @@ def _parse(
 ) -> Result:
     """What *read* makes of the whole of *text*."""
     diagnostics: list[Diagnostic] = []
-    names = replace(_run_time_names, functions=dict(functions or {}))
-    parser = PlanParser(SourceFile(name, text), names, diagnostics)
+    parser = PlanParser(SourceFile(name, text), _names_with(functions), diagnostics)
     result: Result | None = None
     try:
         result = read(parser)
@@ -169,6 +158,10 @@ def _parse(
     _settled(diagnostics)
     assert result is not None
     return result
+
+
+def _names_with(functions: Mapping[str, int] | None) -> Names:
+    return replace(_run_time_names, functions=dict(functions or {}))
 
 
 def _settled(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

@@ -53,9 +53,11 @@ class ProgramParser(PlanParser):
         diagnostics: list[Diagnostic],
         directives: Directives,
         namespaces: Namespaces | None = None,
+        last_dot_optional: bool = False,
     ) -> None:
         super().__init__(file, names, diagnostics)
         self.directives = directives
+        self._last_dot_optional = last_dot_optional
         if namespaces is not None:
             self.namespaces = namespaces
 
@@ -183,9 +185,9 @@ class ProgramParser(PlanParser):
 
     def _finish(self, what: str) -> None:
         """The final '.' of a clause; where the next line begins a clause reading goes on without it."""
-        if self.accept("."):
-            return
         token = self.token
+        if self.accept(".") or (token.kind == "end" and self._last_dot_optional):
+            return
         if token.kind == "end":
             self.report(f"the {what} has no final '.'", hint="the file ends here")
         elif self._begins_clause(self.index) or (what != "plan" and token.first and token.kind in _STARTS):

@@ -38,19 +38,17 @@ class FocusSpec:
 class AgentSpec:
     """One agent, that is, one instance: ``agents: a #3;`` gives three of them, ``a1`` to ``a3``.
 
-    Attributes
-    ----------
-    name: the name of the agent in the run.
-    declared_name: the name in the project file, without the number of the instance.
-    source_path: its AgentSpeak program.
-    options: settings such as ``verbose`` and ``events``, and keys of the user's own, as text.
-    beliefs, goals: literals separated by commas, as text (see `jacaros.asl.loader.parse_literals`).
-    join: workspaces it joins at its start, in order; all workspaces of ``focus`` are among them.
-    focus: artifacts it focuses on at its start, in order.
-    agent_class, architecture_classes, belief_base_class: class names as written; without use here.
-    host: the computer that is asked for, without use here.
-    span: where it is declared.
-
+    Attributes:
+        name: the name of the agent in the run.
+        declared_name: the name in the project file, without the number of the instance.
+        source_path: its AgentSpeak program.
+        options: settings such as ``verbose`` and ``events``, and keys of the user's own, as text.
+        beliefs, goals: literals separated by commas, as text (see `jacaros.asl.loader.parse_literals`).
+        join: workspaces it joins at its start, in order; all workspaces of ``focus`` are among them.
+        focus: artifacts it focuses on at its start, in order.
+        agent_class, architecture_classes, belief_base_class: class names as written; without use here.
+        host: the computer that is asked for, without use here.
+        span: where it is declared.
     """
 
     name: str
@@ -103,19 +101,17 @@ class WorkspaceSpec:
 class Deployment:
     """A whole multi-agent system as declared.
 
-    Attributes
-    ----------
-    name: of the system.
-    base_path: the folder of the project file.
-    agents, workspaces: in the order of the file, but a workspace comes after its parent.
-    environment: the class of ``environment:`` in a `.mas2j` file as written; None if there is none.
-    artifact_environment: whether the agents live among artifacts: in a `.jcm` file, a lone `.asl` file, or
-        with one of the known environment classes.
-    infrastructure: of a `.mas2j` file, or the platforms of a `.jcm` file, as written.
-    world: the world file (a path that exists, or the name as written).
-    source_paths: folders in which agent programs and included files are looked for, in order.
-    ignored: warnings about what is declared and has no effect here.
-
+    Attributes:
+        name: of the system.
+        base_path: the folder of the project file.
+        agents, workspaces: in the order of the file, but a workspace comes after its parent.
+        environment: the class of ``environment:`` in a `.mas2j` file as written; None if there is none.
+        artifact_environment: whether the agents live among artifacts: in a `.jcm` file, a lone `.asl` file, or
+            with one of the known environment classes.
+        infrastructure: of a `.mas2j` file, or the platforms of a `.jcm` file, as written.
+        world: the world file (a path that exists, or the name as written).
+        source_paths: folders in which agent programs and included files are looked for, in order.
+        ignored: warnings about what is declared and has no effect here.
     """
 
     name: str

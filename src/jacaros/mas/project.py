@@ -29,10 +29,8 @@ _USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents"
 def load_deployment(path: str | Path) -> Deployment:
     """What the project file *path* declares; a lone `.asl` file is a system of one agent of its name.
 
-    Raises
-    ------
-    ProjectError: with all errors of the file, also when a program of an agent is not found.
-
+    Raises:
+        ProjectError: with all errors of the file, also when a program of an agent is not found.
     """
     path = Path(path)
     if path.suffix == ".asl":

@@ -1,8 +1,10 @@
 """Plans, bodies, labels and the other clauses of a program."""
 
+import pytest
 from asl_lab import belief_texts, errors, plan_texts, program
 
 from jacaros.asl import nodes
+from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_plan, parse_plans
 
 
@@ -184,3 +186,11 @@ def test_the_same_plan_twice_is_one():
 def test_plans_at_run_time():
     assert parse_plan("+!g <- a.") == parse_plan("{ +!g <- a }") == parse_plan("+!g <- a")
     assert len(parse_plans("+!g(1) <- a. +!g(2) <- b")) == 2
+    assert len(parse_plans("+!g <- a({ b })")) == 1
+    assert len(parse_plans("+!g <- a. { +e. +f. }")[0].subplans) == 2
+
+
+@pytest.mark.parametrize("text", ["p.", "!g.", "+!g <- ", "+!g. p", "{ +!g }"])
+def test_only_plans_are_plans(text: str):
+    with pytest.raises(AslError):
+        parse_plans(text)

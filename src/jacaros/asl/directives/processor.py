@@ -49,10 +49,15 @@ class DirectiveProcessor:
         self._open_files: list[str] = []
         self._pattern_numbers = count(1)
 
-    def read_file(self, file: SourceFile, namespaces: Namespaces | None = None) -> Section:
+    def read_file(
+        self, file: SourceFile, namespaces: Namespaces | None = None, last_dot_optional: bool = False
+    ) -> Section:
         """All clauses of *file* and of what it includes."""
         self._open_files.append(file.name)
-        section = ProgramParser(file, self._names, self._diagnostics, self, namespaces).file_clauses()
+        parser = ProgramParser(
+            file, self._names, self._diagnostics, self, namespaces, last_dot_optional=last_dot_optional
+        )
+        section = parser.file_clauses()
         self._open_files.pop()
         return section
 
