@@ -49,7 +49,8 @@ def test_a_failure_reaches_the_plan_with_its_reason() -> None:
         !g.
         +!g <- .print(go);
           move(9).
-        -!g[error(E), error_msg(M), env_failure_reason(R), code(C), code_line(L)] <- .print(E, " ", M, " ", R, " ", C, " ", L).
+        -!g[error(E), error_msg(M), env_failure_reason(R), code(C), code_line(L)] <-
+          .print(E, " ", M, " ", R, " ", C, " ", L).
         """,
         complete=refuse,
     )
