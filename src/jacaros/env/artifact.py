@@ -67,7 +67,7 @@ class Artifact:
 
     Authors derive from it and mark methods with `operation`, `internal_operation` and `link`.  A class has
     no constructor; a method ``init`` (``def`` or ``async def``) prepares the artifact and has the
-    parameters given to ``makeArtifact``.  All that changes properties or sends signals happens within
+    parameters given to ``makeArtifact`` (without arguments, an ``init`` that wants some does not run).  All that changes properties or sends signals happens within
     operations, ``init`` included; a callback from elsewhere uses `start`.
 
     Attributes:

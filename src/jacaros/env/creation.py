@@ -70,18 +70,23 @@ def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, s
 
 
 def init_of(artifact_type: type[Artifact], request: OperationRequest) -> DeclaredOperation:
-    """The ``init`` of *artifact_type* for the arguments of *request*; without ``init`` nothing is done.
+    """The ``init`` of *artifact_type* for the arguments of *request*.
+
+    Without arguments, a type that has no ``init`` for that is made all the same, and nothing is done
+    (case ``creation/make_failures``, as in CArtAgO).
 
     Raises:
         OperationFailed: it takes another number of arguments.
     """
+    count = len(request.arguments)
     function = getattr(artifact_type, "init", _nothing)
     declared = declare_method(Mark(INTERNAL), "init", function, artifact_type, 0)
-    count = len(request.arguments)
+    if not count and not declared.signature.takes(0):
+        return declare_method(Mark(INTERNAL), "init", _nothing, artifact_type, 0)
     if not declared.signature.takes(count):
         raise init_failed(request.artifact, f"its init takes ({declared.signature}), not {count} arguments")
     return declared
 
 
 def _nothing(_: Artifact) -> None:
-    """Stand for the ``init`` of an artifact that needs none."""
+    """Stand for the ``init`` of an artifact that is made without."""

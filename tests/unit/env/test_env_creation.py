@@ -113,6 +113,15 @@ def test_an_artifact_without_init_is_made_without_arguments_only(play):
     play(scene)
 
 
+def test_without_arguments_an_artifact_is_made_even_if_its_init_wants_some(play):
+    async def scene(stage):
+        fussy = await stage.make(Fussy)
+        assert stage.main.properties(fussy) == ()
+        assert stage.lines == []
+
+    play(scene)
+
+
 def test_a_used_name_is_refused_and_the_artifact_stays(play):
     async def scene(stage):
         counter = await stage.make(Counter, 5)
@@ -178,7 +187,6 @@ def test_a_type_that_is_no_artifact_or_cannot_be_loaded_is_refused(play):
         ((-1,), "negative"),
         ((0,), "RuntimeError in operation init/1 of it: no level"),
         (("one",), "parameter level (number 1) wants an integer"),
-        ((), "its init takes (level: an integer), not 0 arguments"),
         ((1, 2), "its init takes (level: an integer), not 2 arguments"),
     ],
 )
