@@ -67,8 +67,9 @@ class Artifact:
 
     Authors derive from it and mark methods with `operation`, `internal_operation` and `link`.  A class has
     no constructor; a method ``init`` (``def`` or ``async def``) prepares the artifact and has the
-    parameters given to ``makeArtifact`` (without arguments, an ``init`` that wants some does not run).  All that changes properties or sends signals happens within
-    operations, ``init`` included; a callback from elsewhere uses `start`.
+    parameters given to ``makeArtifact`` (without arguments, an ``init`` that wants some does not run).
+    All that changes properties or sends signals happens within operations, ``init`` included; a callback
+    from elsewhere uses `start`.
 
     Attributes:
         ports: names of the out ports, through which it calls linked operations of other artifacts.
