@@ -4,12 +4,17 @@ Exit codes: 0 after a clean end, 1 after an error in a program or project, 2 for
 own code after ``.stopMAS``; 130 and 143 when a signal (Ctrl-C, SIGTERM) ended the run.
 """
 
+import os
 import sys
+import traceback
 from importlib import import_module
 
 import click
 
 from jacaros.errors import JacarosError, UsageError
+
+OUTPUT_GONE = 141
+"""Whoever read the output has gone, as in ``| head``: 128 and the number of SIGPIPE."""
 
 COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
@@ -55,7 +60,11 @@ def jacaros() -> None:
 
 def main(arguments: list[str] | None = None) -> None:
     """The entry point of the ``jacaros`` command; ends the process."""
-    sys.exit(call(arguments))
+    code = call(arguments)
+    if code == OUTPUT_GONE:
+        # Otherwise the interpreter complains when it flushes the output at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(code)
 
 
 def call(arguments: list[str] | None = None) -> int:
@@ -74,13 +83,16 @@ def call(arguments: list[str] | None = None) -> int:
     except JacarosError as wrong:
         return _tell(wrong, 1)
     except BrokenPipeError:
-        # Whoever read the output has gone (as in `| head`): there is nobody left to be told.
-        sys.stdout = None
+        return OUTPUT_GONE
+    except Exception as defect:
+        traceback.print_exception(defect)
+        print(f"jacaros: this is a defect of jacaros, please report it: {defect}", file=sys.stderr)
         return 1
     return result if isinstance(result, int) else 0
 
 
 def _tell(error: JacarosError, code: int) -> int:
-    text = str(error)
-    print(text if text.startswith("jacaros:") else f"jacaros: {text}", file=sys.stderr)
+    # Diagnostics begin with file and line, where editors look for them.
+    prefix = "" if hasattr(error, "diagnostics") else "jacaros: "
+    print(f"{prefix}{error}", file=sys.stderr)
     return code

@@ -1,10 +1,12 @@
 """``jacaros run FILE``."""
 
+import difflib
 from collections.abc import Callable
 from pathlib import Path
 
 import click
 
+from jacaros.errors import UsageError
 from jacaros.mas.console import Console, StandardConsole
 from jacaros.mas.launch import launch
 from jacaros.mas.mas import Mas
@@ -62,6 +64,7 @@ def command(
     What agents print goes to the standard output as `[agent] text`, everything else to the standard error
     output.
     """  # fmt: skip
+    check_file(file)
     watched = record is not None or replay is not None or view
     options = RunOptions(
         fast=clock == "fast",
@@ -88,3 +91,19 @@ def _launch_watched(
     with Watching(console, record, replay, view) as watching:
         begin: Callable[[Mas], None] = watching.begin
         return launch(file, options, watching, begin)
+
+
+def check_file(file: Path) -> None:
+    """Refuse a project file that is not there.
+
+    Raises:
+        UsageError: with the names of similar files beside it.
+    """
+    if file.is_file():
+        return
+    if file.is_dir():
+        raise UsageError(f"{file} is a folder; give a .asl, .mas2j or .jcm file in it")
+    beside = [each.name for each in file.parent.glob("*.*") if each.suffix in (".asl", ".mas2j", ".jcm")]
+    near = difflib.get_close_matches(file.name, beside, n=2)
+    hint = f"; did you mean {' or '.join(str(file.parent / name) for name in near)}?" if near else ""
+    raise UsageError(f"there is no file {file}{hint}")

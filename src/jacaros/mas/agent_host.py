@@ -13,6 +13,9 @@ from jacaros.mas.console import Console
 from jacaros.mas.scheduler import Scheduler
 from jacaros.terms.values import String, atom, functor
 
+OUTPUT_GONE = 141
+"""Exit code of a run whose output nobody reads any more: 128 and the number of SIGPIPE."""
+
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
 
@@ -96,7 +99,8 @@ class AgentHost:
     Attributes:
         queued: True while it waits for a turn; kept by the scheduler.
         mind: set before the first turn.
-        body: None in a project without environment.
+        body: what carries its actions out, None while there is none.
+        make_body: makes the body for the first action; None in a project without environment.
     """
 
     mind: Mind
@@ -106,6 +110,7 @@ class AgentHost:
         self.random = random
         self.queued = False
         self.body: Body | None = None
+        self.make_body: Callable[[], Body] | None = None
         self._run = run
         self._ended = False
 
@@ -144,6 +149,8 @@ class AgentHost:
 
     def act(self, act: Act) -> None:
         """Begin an external action; without an environment it fails at once."""
+        if self.body is None and self.make_body is not None:
+            self.body = self.make_body()
         if self.body is not None:
             self.body.act(act)
         else:
@@ -174,8 +181,13 @@ class AgentHost:
 
     def print(self, text: str) -> None:
         """Show a line of the program's output; an agent that has ended prints nothing more."""
-        if not self._ended:
+        if self._ended:
+            return
+        try:
             self._run.console.print(self.name, text)
+        except BrokenPipeError:
+            # Whoever read the output has gone, as in `| head`: nobody wants the rest.
+            self._run.stop_system(0.0, OUTPUT_GONE)
 
     def log(self, level: str, text: str) -> None:
         """Tell people about trouble."""

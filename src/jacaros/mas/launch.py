@@ -11,7 +11,6 @@ from types import FrameType
 from typing import Any
 
 from jacaros.clock import Clock, VirtualClock, WallClock, run
-from jacaros.errors import InternalError
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.mas import Mas
@@ -101,9 +100,3 @@ def _ended_by_signals(mas: Mas, loop: asyncio.AbstractEventLoop) -> Iterator[Non
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def explain(error: BaseException) -> str:
-    """What to tell people of a defect of JaCaROS."""
-    cause = error.__cause__ if isinstance(error, InternalError) and error.__cause__ is not None else error
-    return f"internal error of jacaros, please report it: {type(cause).__name__}: {cause}"

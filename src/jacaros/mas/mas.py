@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.errors import AslError
@@ -12,12 +12,7 @@ from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
-from jacaros.body.body import AgentBody
-from jacaros.body.percepts import PerceptWriter
-from jacaros.body.values import References
 from jacaros.clock import Clock
-from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed
 from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
@@ -28,8 +23,11 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.programs import Programs
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
-from jacaros.mas.surroundings import Resources, artifact_of, furnish, open_environment, path_of
 from jacaros.terms import arithmetic
+
+if TYPE_CHECKING:
+    from jacaros.env.environment import Environment
+    from jacaros.mas.surroundings import Surroundings
 
 _HOPS = 8
 """Turns of the loop that must pass without anything to do before a run counts as idle: a message of a ROS
@@ -47,7 +45,6 @@ class Mas:
 
     Attributes:
         directory: the agents by name.
-        environment: None in a project without environment.
         ros: the ROS graph and the embedded world.
         scheduler: gives the agents their turns.
         activity: what the agents wait for.
@@ -64,13 +61,12 @@ class Mas:
         self.directory: Directory[AgentHost] = Directory()
         self.activity = Activity()
         self.scheduler = Scheduler(clock, self._when_idle, self.fail)
-        self.environment: Environment | None = None
+        self._surroundings: Surroundings | None = None
         log = self.console.log
         self.ros = RosGraph(self.options, clock, deployment.name, deployment.world, log)
         self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"))
         self._mailboxes = Mailboxes(self._mailbox_of)
-        self._references = References()
-        self._writer: PerceptWriter | None = None
+        self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
@@ -100,6 +96,11 @@ class Mas:
             raise self._error
         return code
 
+    @property
+    def environment(self) -> "Environment | None":
+        """Workspaces and artifacts; None while nobody has needed them."""
+        return self._surroundings.environment if self._surroundings is not None else None
+
     # ---- the start
 
     async def _start(self) -> None:
@@ -107,57 +108,40 @@ class Mas:
             self.console.log(diagnostic.render(), "warning")
         programs = self._programs.load_all(self.deployment.agents)
         await self.ros.start()
-        if self.deployment.artifact_environment or self.deployment.workspaces:
-            self._open_environment()
-        if self.environment is not None:
-            await furnish(self.environment, self.deployment)
+        if self._has_environment and (self.deployment.environment or self.deployment.workspaces):
+            await self.surroundings().furnish(self.deployment)
         for spec, program in zip(self.deployment.agents, programs, strict=True):
             self._add(spec, program)
-        for spec in self.deployment.agents:
-            self._situate(spec)
         for host in self.directory:
             host.mind.start()
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self._when_idle()
 
-    def _open_environment(self) -> None:
-        random = Random(f"{self._seed}/artifacts")
-        resources = Resources(
-            {"ros": self.ros.backend, "console": lambda: self.console.print, "random": lambda: random}
-        )
-        self.environment = open_environment(
-            self.deployment, self.clock, resources, self.console.log, self.fail
-        )
-        self._writer = PerceptWriter(self._references, self.environment.workspace)
+    def surroundings(self) -> "Surroundings":
+        """The environment, opened when it is first asked for."""
+        if self._surroundings is None:
+            from jacaros.mas.surroundings import Resources, Surroundings
+
+            random = Random(f"{self._seed}/artifacts")
+            resources = Resources(
+                {"ros": self.ros.backend, "console": lambda: self.console.print, "random": lambda: random}
+            )
+            self._surroundings = Surroundings(
+                self.deployment, self.clock, resources, self.console, self.activity, self.fail
+            )
+        return self._surroundings
 
     def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
         name = spec.name
         host = AgentHost(name, self, Random(f"{self._seed}/{name}"))
-        agent = Agent(name, program, host, _options(spec))
-        host.mind = agent
-        if self.environment is not None and self._writer is not None:
-            host.body = AgentBody(
-                name, agent, self.environment, self._references, self._writer, host.print, self.activity
-            )
+        host.mind = Agent(name, program, host, _options(spec))
         self.directory.add(name, host)
+        if self._has_environment:
+            host.make_body = lambda: self.surroundings().make_body(host)
+        if self._surroundings is not None:
+            host.body = self._surroundings.situated_body(host, spec)
         return host
-
-    def _situate(self, spec: AgentSpec) -> None:
-        """Let an agent join and focus what the project says, before it begins to reason."""
-        host = self.directory.find(spec.name)
-        body = host.body if host is not None else None
-        if self.environment is None or not isinstance(body, AgentBody):
-            return
-        if self.deployment.environment is not None or self.deployment.workspaces:
-            body.enter()
-        try:
-            for workspace in spec.join:
-                body.join(path_of(self.environment, workspace))
-            for focus in spec.focus:
-                body.focus(artifact_of(self.environment, focus), focus.namespace)
-        except OperationFailed as failure:
-            self.console.log(f"[{spec.name}] error: {failure.message}", "error")
 
     # ---- the end
 
@@ -182,8 +166,8 @@ class Mas:
         self.end(1)
         for host in self.directory:
             host.end()
-        if self.environment is not None:
-            await self.environment.close()
+        if self._surroundings is not None:
+            await self._surroundings.environment.close()
         await self.ros.close()
 
     def _when_idle(self) -> None:
@@ -234,7 +218,6 @@ class Mas:
         except AslError as wrong:
             self.console.log(str(wrong), "error")
             return None
-        self._situate(spec)
         host.mind.start()
         return host.name
 

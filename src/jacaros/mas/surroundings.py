@@ -5,11 +5,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.body.body import AgentBody
+from jacaros.body.percepts import PerceptWriter
+from jacaros.body.values import References
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.workspace import Workspace
-from jacaros.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
+from jacaros.mas.activity import Activity
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.console import Console
+from jacaros.mas.deployment import (
+    AgentSpec,
+    ArtifactSpec,
+    Deployment,
+    FocusSpec,
+    ProjectError,
+    WorkspaceSpec,
+)
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -56,32 +69,71 @@ class TypeFinder:
         return self._find
 
 
-def open_environment(
-    deployment: Deployment,
-    clock: Clock,
-    resources: Mapping[str, object],
-    log: Callable[[str], None],
-    on_internal_error: Callable[[BaseException], None],
-) -> Environment:
-    """Make an environment that holds nothing yet.
+class Surroundings:
+    """The environment of a run, and the bodies of its agents in it.
+
+    A module of its own, so that a program that does nothing in an environment need not import one.
+
+    Args:
+        deployment: what the project declares.
+        clock: of the run.
+        resources: what artifacts are lent.
+        console: for what artifacts log.
+        activity: told of the operations under way for agents.
+        on_internal_error: told of defects of JaCaROS itself.
+
+    Attributes:
+        environment: all workspaces and artifacts.
 
     Raises:
         ArtifactsUnreadable: the project's own artifacts have a mistake.
     """
-    find_type = TypeFinder(deployment.base_path)
-    return Environment(clock, resources, find_type, log, on_internal_error)
 
+    def __init__(
+        self,
+        deployment: Deployment,
+        clock: Clock,
+        resources: Mapping[str, object],
+        console: Console,
+        activity: Activity,
+        on_internal_error: Callable[[BaseException], None],
+    ) -> None:
+        find_type = TypeFinder(deployment.base_path)
+        self.environment = Environment(clock, resources, find_type, console.log, on_internal_error)
+        self._console = console
+        self._activity = activity
+        self._references = References()
+        self._writer = PerceptWriter(self._references, self.environment.workspace)
 
-async def furnish(environment: Environment, deployment: Deployment) -> None:
-    """Make the workspaces and artifacts that the project declares.
+    def make_body(self, host: AgentHost) -> AgentBody:
+        """A body for an agent, in ``/main``."""
+        return AgentBody(
+            host.name, host.mind, self.environment, self._references, self._writer, host.print, self._activity
+        )
 
-    Raises:
-        ProjectError: one cannot be made.
-    """
-    for spec in deployment.workspaces:
-        workspace = _workspace(environment, spec)
-        for artifact in spec.artifacts:
-            await _make(workspace, artifact)
+    def situated_body(self, host: AgentHost, spec: AgentSpec) -> AgentBody:
+        """A body that has joined and focused what the project says; what is not there is told in the log."""
+        body = self.make_body(host)
+        body.enter()
+        try:
+            for workspace in spec.join:
+                body.join(path_of(self.environment, workspace))
+            for focus in spec.focus:
+                body.focus(artifact_of(self.environment, focus), focus.namespace)
+        except OperationFailed as failure:
+            self._console.log(f"[{spec.name}] error: {failure.message}", "error")
+        return body
+
+    async def furnish(self, deployment: Deployment) -> None:
+        """Make the workspaces and artifacts that the project declares.
+
+        Raises:
+            ProjectError: one cannot be made.
+        """
+        for spec in deployment.workspaces:
+            workspace = _workspace(self.environment, spec)
+            for artifact in spec.artifacts:
+                await _make(workspace, artifact)
 
 
 def _workspace(environment: Environment, spec: WorkspaceSpec) -> Workspace:

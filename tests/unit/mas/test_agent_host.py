@@ -1,0 +1,186 @@
+"""What stands between a mind and its run."""
+
+from collections.abc import Sequence
+from random import Random
+
+from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.clock import VirtualClock, run
+from jacaros.mas.activity import Activity
+from jacaros.mas.agent_host import OUTPUT_GONE, AgentHost
+from jacaros.mas.scheduler import Scheduler
+from jacaros.terms.text import text
+from jacaros.terms.values import atom, functor
+
+
+class Mind:
+    """Takes notes."""
+
+    stopped = False
+
+    def __init__(self) -> None:
+        self.log: list[str] = []
+
+    def start(self) -> None:
+        self.log.append("start")
+
+    def run(self, fuel: int) -> bool:
+        self.log.append("run")
+        return False
+
+    def receive(self, message: SpeechAct) -> None:
+        self.log.append(f"receive {text(message.content)}")
+
+    def perceive(self, percepts: list[Percept]) -> None:
+        self.log.append("perceive")
+
+    def complete(self, act_id: int, completion: Completion) -> None:
+        self.log.append(
+            f"complete {act_id} {completion.success} {' '.join(map(text, completion.annotations))}"
+        )
+
+
+class Body:
+    """Takes notes."""
+
+    def __init__(self, log: list[str]) -> None:
+        self.log = log
+
+    def act(self, act: Act) -> None:
+        self.log.append(f"act {act.id}")
+
+    def cancel_act(self, act_id: int) -> None:
+        self.log.append(f"cancel {act_id}")
+
+    def suspend_act(self, act_id: int) -> None:
+        self.log.append(f"suspend {act_id}")
+
+    def resume_act(self, act_id: int) -> None:
+        self.log.append(f"resume {act_id}")
+
+    def close(self) -> None:
+        self.log.append("close")
+
+
+class FakeRun:
+    """A run with one agent; its output can be taken away."""
+
+    def __init__(self) -> None:
+        self.clock = VirtualClock()
+        self.scheduler = Scheduler(self.clock)
+        self.activity = Activity()
+        self.console = self
+        self.lines: list[str] = []
+        self.pipe_is_broken = False
+
+    def print(self, agent: str, text: str) -> None:
+        if self.pipe_is_broken:
+            raise BrokenPipeError
+        self.lines.append(f"[{agent}] {text}")
+
+    def log(self, text: str, level: str = "info") -> None:
+        self.lines.append(f"{level}: {text}")
+
+    def deliver(self, message: SpeechAct) -> bool:
+        return message.receiver == "ann"
+
+    def agent_names(self) -> Sequence[str]:
+        return ["ann"]
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        self.lines.append(f"stop {delay} {exit_code}")
+
+    def create_agent(self, name: str, source: str | None) -> str | None:
+        return name
+
+    def kill_agent(self, name: str) -> bool:
+        return name == "ann"
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        return path, ""
+
+
+def host_and_mind() -> tuple[AgentHost, Mind, FakeRun]:
+    run_ = FakeRun()
+    host, mind = AgentHost("ann", run_, Random(1)), Mind()
+    host.mind = mind
+    return host, mind, run_
+
+
+def act() -> Act:
+    return Act(1, functor("move", 1), (3.0,), (), 1)
+
+
+def test_an_action_without_environment_fails_at_once() -> None:
+    host, mind, _ = host_and_mind()
+    host.act(act())
+    host.cancel_act(1)
+    host.suspend_act(1)
+    host.resume_act(1)
+    (line,) = mind.log
+    assert line.startswith("complete 1 False error_msg(")
+    assert line.endswith("env_failure_reason(no_environment)")
+
+
+def test_the_body_is_made_for_the_first_action() -> None:
+    host, mind, _ = host_and_mind()
+    made: list[Body] = []
+
+    def make_body() -> Body:
+        made.append(Body(mind.log))
+        return made[-1]
+
+    host.make_body = make_body
+    host.act(act())
+    host.act(act())
+    host.suspend_act(1)
+    host.resume_act(1)
+    host.cancel_act(1)
+    host.end()
+    assert len(made) == 1
+    assert mind.log == ["act 1", "act 1", "suspend 1", "resume 1", "cancel 1", "close"]
+
+
+def test_a_halted_agent_neither_runs_nor_prints_nor_hears() -> None:
+    host, mind, run_ = host_and_mind()
+    host.halt()
+    host.end()
+    assert not host.run(10)
+    host.print("x")
+    host.receive(SpeechAct("tell", "bob", "ann", atom("x"), "mid1"))
+    assert mind.stopped
+    assert mind.log == run_.lines == []
+
+
+def test_a_ready_agent_gets_a_turn() -> None:
+    host, mind, run_ = host_and_mind()
+
+    async def main() -> None:
+        host.ready()
+        await run_.clock.sleep(1)
+
+    run(main, run_.clock)
+    assert mind.log == ["run"]
+    assert host.now() == run_.clock.now()
+
+
+def test_what_the_mind_asks_goes_to_the_run() -> None:
+    host, mind, run_ = host_and_mind()
+    host.print("hello")
+    host.log("warning", "beware")
+    host.stop_system(1.0, 2)
+    assert run_.lines == ["[ann] hello", "warning: [ann] warning: beware", "stop 1.0 2"]
+    assert host.send(SpeechAct("tell", "ann", "ann", atom("x"), "mid1"))
+    assert host.agent_names() == ["ann"]
+    assert host.create_agent("bob", None) == "bob"
+    assert host.kill_agent("ann")
+    assert host.read_program("x.asl") == ("x.asl", "")
+    host.receive(SpeechAct("tell", "bob", "ann", atom("x"), "mid1"))
+    assert mind.log == ["receive x"]
+
+
+def test_a_run_whose_output_nobody_reads_ends() -> None:
+    host, _, run_ = host_and_mind()
+    run_.pipe_is_broken = True
+    host.print("hello")
+    assert run_.lines == [f"stop 0.0 {OUTPUT_GONE}"]

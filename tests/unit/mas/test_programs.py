@@ -1,0 +1,76 @@
+"""Agent programs of a run."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.nodes import Literal
+from jacaros.mas.deployment import AgentSpec
+from jacaros.mas.programs import Programs
+
+
+def programs(*folders: Path) -> Programs:
+    return Programs(folders, lambda text: None)
+
+
+def names(literals: object) -> list[str]:
+    return [each.functor for each in literals if isinstance(each, Literal)]  # type: ignore[attr-defined]
+
+
+def test_a_program_is_read_once(tmp_path: Path) -> None:
+    file = tmp_path / "a.asl"
+    file.write_text("p(1). !g.", encoding="utf-8")
+    read = programs(tmp_path)
+    assert read.load(AgentSpec("a1", file)) is read.load(AgentSpec("a2", file))
+
+
+def test_beliefs_and_goals_of_the_project_are_added(tmp_path: Path) -> None:
+    file = tmp_path / "a.asl"
+    file.write_text("p(1). !g.", encoding="utf-8")
+    program = programs(tmp_path).load(AgentSpec("a", file, beliefs="q(2), r", goals="first, second(3)"))
+    assert names(program.beliefs) == ["p", "q", "r"]
+    assert names(program.goals) == ["first", "second", "g"]
+
+
+def test_the_errors_of_all_programs_are_told_together(tmp_path: Path) -> None:
+    specs = []
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.asl").write_text("+!g <- .", encoding="utf-8")
+        (tmp_path / f"{name}.asl").write_text("p(.", encoding="utf-8")
+        specs.append(AgentSpec(name, tmp_path / f"{name}.asl"))
+    with pytest.raises(AslError) as wrong:
+        programs(tmp_path).load_all([*specs, AgentSpec("c", tmp_path / "missing.asl")])
+    assert "a.asl:1" in str(wrong.value)
+    assert "b.asl:1" in str(wrong.value)
+    assert "missing.asl is not found" in str(wrong.value)
+
+
+def test_programs_are_found_in_the_folders_of_the_project(tmp_path: Path) -> None:
+    (tmp_path / "agt").mkdir()
+    (tmp_path / "agt" / "bob.asl").write_text("p.", encoding="utf-8")
+    read = programs(tmp_path, tmp_path / "agt")
+    assert read.find("bob") == read.find("bob.asl") == tmp_path / "agt" / "bob.asl"
+    with pytest.raises(FileNotFoundError):
+        read.find("ann")
+
+
+def test_an_included_file_beside_the_including_one_comes_first(tmp_path: Path) -> None:
+    (tmp_path / "inc").mkdir()
+    for folder in (tmp_path, tmp_path / "inc"):
+        (folder / "x.asl").write_text(f"// {folder.name}", encoding="utf-8")
+    read = programs(tmp_path)
+    assert read.include("x.asl", str(tmp_path / "inc" / "a.asl")) == (
+        str(tmp_path / "inc" / "x.asl"),
+        "// inc",
+    )
+    assert read.include("x.asl", "elsewhere/a.asl")[0] == str(tmp_path / "x.asl")
+    with pytest.raises(FileNotFoundError):
+        read.include("y.asl", str(tmp_path / "a.asl"))
+
+
+def test_warnings_are_passed_on(tmp_path: Path) -> None:
+    (tmp_path / "a.asl").write_text("+!g : p(X) <- .print(Y).", encoding="utf-8")
+    told: list[str] = []
+    Programs([tmp_path], told.append).read(tmp_path / "a.asl")
+    assert all("warning" in line for line in told)
