@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.asl.loader import parse_plans
-from jacaros.bdi import belief_update, cycle, formulas, goals
+from jacaros.bdi import belief_update, body_terms, cycle, formulas, goals, plan_changes
 from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.bdi.answers import AnswerByPlan
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.belief_base import OpenFact, Rule, parts
 from jacaros.bdi.circumstance import Circumstance
@@ -17,26 +17,16 @@ from jacaros.bdi.intention import Frame
 from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
-from jacaros.bdi.speech_acts import answer
 from jacaros.bdi.waiting import Waiting
-from jacaros.compiler.bodies import BodyCompiler
-from jacaros.compiler.function import Frame as Slots
-from jacaros.compiler.lowering import fresh_names, lower, lower_value
-from jacaros.compiler.plan import Plan, label_of
-from jacaros.compiler.reflection import Reflection
+from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
-from jacaros.compiler.unit import CodeUnit
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.plans import PLAN, RULE, TRIGGER, is_body
 from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, undo, unify
 from jacaros.terms.values import (
     BY_SELF,
-    SELF,
-    SOURCE,
     Functor,
-    String,
     Term,
     annotations_of,
     arguments_of,
@@ -45,8 +35,6 @@ from jacaros.terms.values import (
     deref,
     functor,
     functor_of,
-    is_list,
-    list_items,
     structure,
 )
 from jacaros.trace import cause
@@ -76,10 +64,8 @@ class Agent(Circumstance):
         super().__init__(name, architecture, STANDARD if actions is None else actions, options or Options())
         self.program = program
         self.context = Context(self)
-        self._labels = 0
         self._acts = 0
         self._messages = 0
-        self._bodies: dict[int, tuple[Term, Plan]] = {}
         self.add_plans(program.plans)
 
     # --- life ----------------------------------------------------------------------------------------------
@@ -313,47 +299,7 @@ class Agent(Circumstance):
         """A condition calls an internal action that does not exist: it does not hold."""
         raise ActionError(f"there is no internal action {name}")
 
-    def run_value(self, value: Term, frame: Frame, next_step: Any) -> Any:
-        """A variable as a body formula: a plan body, or an action."""
-        term = resolve(value)
-        if is_body(term):
-            return self._run_body(term, frame, next_step)
-        symbol = functor_of(term)
-        if symbol is None:
-            raise Failure((ERROR, atom("body_var_without_value")))
-        if symbol.kind:
-            return self._run_body(term, frame, next_step)
-        return self.begin_act(symbol, arguments_of(term), annotations_of(term), next_step)
-
-    def _run_body(self, term: Term, frame: Frame, next_step: Any) -> Any:
-        """Run a body held by a variable, on a frame of its own above the plan's."""
-        frame[0] = next_step
-        plan = self._body_plan(term)
-        assert self.current is not None
-        if plan.first is not None:
-            inner: Frame = [plan.first, (_BODY,), BY_SELF, self.trail.serial, plan, *([None] * plan.size)]
-            self.current.frames.append(inner)
-        return None
-
-    def _body_plan(self, term: Term) -> Plan:
-        """The compiled form of a body; one that is run often is compiled once."""
-        known = self._bodies.get(id(term))
-        if known is not None and known[0] is term:
-            return known[1]
-        body = Reflection(shared=True).body(term)
-        node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("body")), None, body)
-        plan = Plan(node, atom("body"))
-        unit = CodeUnit("<body>", self.actions)
-        compiler = BodyCompiler(unit, Slots(_Always()), "step")
-        first = compiler.body(body.steps, "None")
-        unit.execute()
-        plan.first = unit.globals[first] if first != "None" else None
-        plan.steps = {unit.globals[name]: info for name, info in compiler.infos.items()}
-        plan.slots, plan.size = compiler.frame.slots, compiler.frame.size
-        if len(self._bodies) > 256:
-            self._bodies.clear()
-        self._bodies[id(term)] = (term, plan)
-        return plan
+    run_value = body_terms.run_value
 
     def fork(self, operator: str, frame: Frame, branches: tuple[Any, ...], next_step: Any) -> Any:
         """``|&|`` and ``|||``."""
@@ -366,100 +312,11 @@ class Agent(Circumstance):
 
     # --- plans ---------------------------------------------------------------------------------------------
 
-    def add_plans(self, plan_nodes: tuple[nodes.Plan, ...]) -> None:
-        """Take in plans of a program, behind those held."""
-        plans = []
-        for node in plan_nodes:
-            self._labels += 1
-            plans.append(Plan(node, label_of(node, self._labels)))
-        self.library.extend(plans)
-        self.meta = self.library.has_meta_plans()
-
-    def add_plan(self, term: Term, source: Term = SELF, first: bool = False) -> None:
-        """Add a plan given as a term or as text; one that is held already only gains a source.
-
-        Raises:
-            NotAPlan: when the term is no plan.
-            AslError: when the text is none.
-        """
-        term = resolve(term)
-        if term.__class__ is String:
-            text = str(term).strip()
-            for node in parse_plans(text if text.endswith(".") else text + "."):
-                self._add_node(node, source, first)
-            return
-        if is_list(term):
-            for item in list_items(term):
-                self.add_plan(item, source, first)
-            return
-        self._add_node(Reflection(shared=False).plan(term), source, first)
-
-    def _add_node(self, node: nodes.Plan, source: Term, first: bool) -> None:
-        for held in self.library.plans:
-            if (held.node.trigger, held.node.context, held.node.body) == (
-                node.trigger,
-                node.context,
-                node.body,
-            ):
-                return
-        self._labels += 1
-        plan = Plan(node, label_of(node, self._labels))
-        plan.source = (SOURCE, source)
-        self.library.add(plan, first)
-        self.meta = self.library.has_meta_plans()
-
-    def remove_plan(self, wanted: Term) -> bool:
-        """Take out the plan of that label, or equal to that plan term; False when there is none."""
-        term = resolve(wanted)
-        if term.__class__ is tuple and term[0] is PLAN:
-            node = Reflection(shared=False).plan(term)
-            found = next(
-                (
-                    p
-                    for p in self.library.plans
-                    if (p.node.trigger, p.node.context, p.node.body)
-                    == (node.trigger, node.context, node.body)
-                ),
-                None,
-            )
-        else:
-            found = self.library.by_label(term)
-        if found is None:
-            return False
-        self.library.remove(found)
-        return True
-
-    def change_plans(self, operator: str, term: Term) -> bool:
-        """``+{plan}``, ``-{plan}``, ``+{rule}`` …; False when the operand is neither a plan nor a rule."""
-        term = resolve(term)
-        if term.__class__ is not tuple:
-            return False
-        if term[0] is PLAN:
-            if operator in ("-", "--"):
-                self.remove_plan(term)
-            else:
-                self.add_plan(term, SELF, first=operator != "+>")
-            return True
-        if term[0] is RULE:
-            self.change_rule(operator, term)
-            return True
-        if term[0] is TRIGGER or is_body(term):
-            raise Failure((ERROR, atom("body_var_with_op")))
-        return False
-
-    def change_rule(self, operator: str, term: Term) -> None:
-        """Add or remove a rule given as a term."""
-        node = Reflection(shared=False).rule(term)
-        head = functor_of(lower(node.head, fresh_names()))
-        assert head is not None
-        table = self.beliefs[head]
-        if operator in ("-", "--"):
-            for entry, _ in table.entries():
-                if isinstance(entry, Rule) and entry.node == node:
-                    table.remove(entry)
-                    return
-            return
-        belief_update.add_rule(self, Rule(node, self.actions), head, last=operator == "+>")
+    add_plans = plan_changes.add_plans
+    add_plan = plan_changes.add_plan
+    remove_plan = plan_changes.remove_plan
+    change_plans = plan_changes.change_plans
+    change_rule = plan_changes.change_rule
 
     # --- messages ------------------------------------------------------------------------------------------
 
@@ -471,52 +328,6 @@ class Agent(Circumstance):
     def test_for(self, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]) -> None:
         """Answer a question by a plan for its test goal; whatever fails is answered with false."""
         AnswerByPlan(self, message, symbol, arguments).begin()
-
-
-class AnswerByPlan:
-    """A question from another agent that a plan ``+?q`` of this one answers."""
-
-    def __init__(
-        self, agent: Agent, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]
-    ) -> None:
-        self.agent, self.message = agent, message
-        self.goal = (trigger("+", "?", symbol), *arguments)
-
-    def begin(self) -> None:
-        """Begin an intention whose bottom frame sends the answer."""
-        agent = self.agent
-        intention = agent.new_intention()
-        intention.on_failed = self.failed
-        frame: Frame = [self._answered, (_ANSWER,), BY_SELF, agent.trail.serial, _answer_plan()]
-        intention.frames.append(frame)
-        agent.post(Event(self.goal, intention, BY_SELF))
-
-    def _answered(self, agent: Agent, frame: Frame) -> None:
-        symbol = self.goal[0].functor
-        term = (symbol, *self.goal[1:]) if len(self.goal) > 1 else symbol
-        answer(agent, self.message, resolve(term))
-        frame[0] = None
-
-    def failed(self) -> None:
-        """No plan, or it failed."""
-        answer(self.agent, self.message, None)
-
-
-def _answer_plan() -> Plan:
-    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("answer")), None, nodes.Body())
-    return Plan(node, atom("answer"))
-
-
-class _Always(dict[str, int]):
-    """Every variable of a body that was made at run time is kept."""
-
-    def get(self, key: str, default: Any = None) -> Any:
-        del key, default
-        return 2
-
-
-_BODY = trigger("+", "", functor("body", 0, namespace="jacaros"))
-_ANSWER = trigger("+", "", functor("answer", 0, namespace="jacaros"))
 
 
 def _is_free(term: Term) -> bool:

@@ -40,7 +40,10 @@ class Circumstance:
         condition_waits: waits for a condition.
         pending_acts: external actions under way, by number.
         pending_asks: questions whose answer is awaited, by message id.
-        meta: whether there are plans for changes of goal states.
+        meta: whether plans or an observer want to hear of changes of goal states.
+        goal_observer: told of the state and text of each goal that changes, or None.
+        plans_made: number of plans so far, for the labels of those that have none.
+        bodies: compiled forms of plan bodies held by variables.
         cycles: number of steps made.
         stopped: the agent is over.
     """
@@ -70,9 +73,12 @@ class Circumstance:
         self.pending_acts: dict[int, Waiting] = {}
         self.pending_asks: dict[str, Any] = {}
         self.meta = False
+        self.goal_observer: Callable[[str, str], None] | None = None
         self.cycles = 0
         self.stopped = False
         self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}
+        self.plans_made = 0
+        self.bodies: dict[int, tuple[Term, Any]] = {}
         self._intention_numbers = 0
 
     def new_intention(self, cause: Any = None) -> Intention:

@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from recording_host import mind, printed
 
+from jacaros.bdi.meta_events import observe_goals
+
 CASES = Path(__file__).parents[2] / "conformance"
 AREAS = ("beliefs", "plan_selection", "body_statements", "failure", "intentions", "rules_and_queries", "time")
 
@@ -159,3 +161,17 @@ def test_a_condition_that_cannot_be_evaluated_does_not_hold_and_is_reported() ->
     host.run()
     assert host.printed == []
     assert "cannot be evaluated" in host.logged[0][1]
+
+
+def test_an_observer_hears_of_every_change_of_a_goal() -> None:
+    host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
+    heard: list[tuple[str, str]] = []
+    observe_goals(host.agent, lambda state, goal: heard.append((state, goal)))
+    host.run()
+    assert heard == [
+        ("executing", "!a"),
+        ("pending", "!b"),
+        ("executing", "!b"),
+        ("failed", "!b"),
+        ("suspended", "!a"),
+    ]

@@ -1,0 +1,48 @@
+"""Questions of other agents that a plan for a test goal answers."""
+
+from jacaros.asl import nodes
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import Event
+from jacaros.bdi.intention import Frame
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.speech_acts import answer
+from jacaros.compiler.plan import Plan
+from jacaros.compiler.triggers import trigger
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import BY_SELF, Functor, Term, atom, functor
+
+_ANSWER = trigger("+", "", functor("answer", 0, namespace="jacaros"))
+
+
+class AnswerByPlan:
+    """A question from another agent that a plan ``+?q`` of this one answers."""
+
+    def __init__(
+        self, agent: Circumstance, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]
+    ) -> None:
+        self.agent, self.message = agent, message
+        self.goal = (trigger("+", "?", symbol), *arguments)
+
+    def begin(self) -> None:
+        """Begin an intention whose bottom frame sends the answer."""
+        agent = self.agent
+        intention = agent.new_intention()
+        intention.on_failed = self.failed
+        frame: Frame = [self._answered, (_ANSWER,), BY_SELF, agent.trail.serial, _answer_plan()]
+        intention.frames.append(frame)
+        agent.post(Event(self.goal, intention, BY_SELF))
+
+    def _answered(self, agent: Circumstance, frame: Frame) -> None:
+        symbol = self.goal[0].functor
+        term = (symbol, *self.goal[1:]) if len(self.goal) > 1 else symbol
+        answer(agent, self.message, resolve(term))
+        frame[0] = None
+
+    def failed(self) -> None:
+        """No plan, or it failed."""
+        answer(self.agent, self.message, None)
+
+
+def _answer_plan() -> Plan:
+    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("answer")), None, nodes.Body())
+    return Plan(node, atom("answer"))

@@ -1,0 +1,123 @@
+"""Changes of the plan library and of rules at run time, and the loading of plans."""
+
+from jacaros.asl import nodes
+from jacaros.asl.loader import parse_plans
+from jacaros.bdi import belief_update
+from jacaros.bdi.belief_base import Rule
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.compiler.lowering import fresh_names, lower
+from jacaros.compiler.plan import Plan, label_of
+from jacaros.compiler.reflection import Reflection
+from jacaros.compiler.runtime import Failure
+from jacaros.terms.plans import PLAN, RULE, TRIGGER, is_body
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import (
+    SELF,
+    SOURCE,
+    String,
+    Term,
+    atom,
+    functor,
+    functor_of,
+    is_list,
+    list_items,
+)
+
+ERROR = functor("error", 1)
+
+
+def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
+    """Whether two plans are equal, labels aside."""
+    return (left.trigger, left.context, left.body) == (right.trigger, right.context, right.body)
+
+
+def add_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
+    """Take in plans of a program, behind those held."""
+    plans = []
+    for node in plan_nodes:
+        agent.plans_made += 1
+        plans.append(Plan(node, label_of(node, agent.plans_made)))
+    agent.library.extend(plans)
+    agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
+
+
+def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:
+    """Add a plan given as a term or as text; one that is held already only gains a source.
+
+    Raises:
+        NotAPlan: when the term is no plan.
+        AslError: when the text is none.
+    """
+    term = resolve(term)
+    if term.__class__ is String:
+        text = str(term).strip()
+        for node in parse_plans(text if text.endswith(".") else text + "."):
+            _add_node(agent, node, source, first)
+        return
+    if is_list(term):
+        for item in list_items(term):
+            add_plan(agent, item, source, first)
+        return
+    _add_node(agent, Reflection(shared=False).plan(term), source, first)
+
+
+def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) -> None:
+    for held in agent.library.plans:
+        if _same(held.node, node):
+            return
+    agent.plans_made += 1
+    plan = Plan(node, label_of(node, agent.plans_made))
+    plan.source = (SOURCE, source)
+    agent.library.add(plan, first)
+    agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
+
+
+def remove_plan(agent: Circumstance, wanted: Term) -> bool:
+    """Take out the plan of that label, or equal to that plan term; False when there is none."""
+    term = resolve(wanted)
+    if term.__class__ is tuple and term[0] is PLAN:
+        node = Reflection(shared=False).plan(term)
+        found = next(
+            (p for p in agent.library.plans if _same(p.node, node)),
+            None,
+        )
+    else:
+        found = agent.library.by_label(term)
+    if found is None:
+        return False
+    agent.library.remove(found)
+    return True
+
+
+def change_plans(agent: Circumstance, operator: str, term: Term) -> bool:
+    """``+{plan}``, ``-{plan}``, ``+{rule}`` …; False when the operand is neither a plan nor a rule."""
+    term = resolve(term)
+    if term.__class__ is not tuple:
+        return False
+    if term[0] is PLAN:
+        if operator in ("-", "--"):
+            remove_plan(agent, term)
+        else:
+            add_plan(agent, term, SELF, first=operator != "+>")
+        return True
+    if term[0] is RULE:
+        change_rule(agent, operator, term)
+        return True
+    if term[0] is TRIGGER or is_body(term):
+        raise Failure((ERROR, atom("body_var_with_op")))
+    return False
+
+
+def change_rule(agent: Circumstance, operator: str, term: Term) -> None:
+    """Add or remove a rule given as a term."""
+    node = Reflection(shared=False).rule(term)
+    head = functor_of(lower(node.head, fresh_names()))
+    assert head is not None
+    table = agent.beliefs[head]
+    if operator in ("-", "--"):
+        for entry, _ in table.entries():
+            if isinstance(entry, Rule) and entry.node == node:
+                table.remove(entry)
+                return
+        return
+    belief_update.add_rule(agent, Rule(node, agent.actions), head, last=operator == "+>")
