@@ -1,0 +1,5 @@
+"""``python -m jacaros``."""
+
+from jacaros.cli.main import main
+
+main()

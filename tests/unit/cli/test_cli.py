@@ -1,0 +1,164 @@
+"""The command line: exit codes, outputs, and what it tells about mistakes."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from jacaros.cli.main import call
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "hello.asl").write_text("!go. +!go <- .print(hi); .stopMAS(0, 3).", encoding="utf-8")
+    return tmp_path
+
+
+def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error output of a command."""
+    code = call(list(arguments))
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_a_program_prints_its_lines_and_gives_its_code(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert outcome(capsys, "run", "hello.asl", "--clock", "fast") == (3, "[hello] hi\n", "")
+
+
+def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "hello.asl")[:2] == (3, "[hello] hi\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["run", "hallo.asl"], "did you mean hello.asl?"),
+        (["run", "."], "is a folder"),
+        (["run", "hello.asl", "--clock", "fast", "--ros", "ros1"], "use --clock real"),
+        (["run", "hello.asl", "--clok", "fast"], "--clock"),
+        (["run", "hello.asl", "--clock", "slow"], "slow"),
+        (["run"], "FILE"),
+        (["nonsense"], "nonsense"),
+        (["sim", "empty", "--ros", "ros2", "--clock", "fast"], "--ros memory"),
+        (["describe", "ArtOdometri"], "did you mean ArtOdometry"),
+    ],
+)
+def test_wrong_usage_is_told_with_code_2(
+    folder: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
+) -> None:
+    code, output, errors = outcome(capsys, *arguments)
+    assert (code, output) == (2, "")
+    assert told in errors
+    assert "Traceback" not in errors
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("wrong.asl", '!go.\n+!go <- .print("hi".', "wrong.asl:2:"),
+        ("wrong.mas2j", "MAS wrong { agents: nobody; }", "wrong.mas2j:1:"),
+        ("wrong.txt", "", "no .mas2j, .jcm or .asl file"),
+    ],
+)
+def test_a_wrong_project_is_told_with_code_1(
+    folder: Path, capsys: pytest.CaptureFixture[str], name: str, text: str, told: str
+) -> None:
+    (folder / name).write_text(text, encoding="utf-8")
+    code, output, errors = outcome(capsys, "run", name)
+    assert (code, output) == (1, "")
+    assert told in errors
+    assert "Traceback" not in errors
+
+
+def test_an_unknown_world_is_told_with_the_known_ones(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, _, errors = outcome(capsys, "run", "hello.asl", "--world", "nowhere")
+    assert code == 1
+    assert "empty, house" in errors
+
+
+def test_a_failure_without_handler_is_a_warning_that_names_the_remedy(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "a.asl").write_text(
+        '!go. +!go <- makeArtifact("m", "ArtCmdVel", [], M); moveForwad(1).', encoding="utf-8"
+    )
+    code, output, errors = outcome(capsys, "run", "a.asl", "--clock", "fast", "--until-idle")
+    assert (code, output) == (0, "")
+    assert "did you mean moveForward/1 of 'm'" in errors
+
+
+def test_a_run_can_be_recorded_and_replayed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["run", "hello.asl", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]
+    assert outcome(capsys, *arguments)[:2] == (3, "[hello] hi\n")
+    kinds = [json.loads(line)["kind"] for line in (folder / "r.jsonl").read_text().splitlines()]
+    assert kinds[0] == "world"
+    assert "text" in kinds
+    assert "<html" in (folder / "r.html").read_text()
+
+
+def test_a_world_runs_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [
+        "sim",
+        "empty",
+        "--ros",
+        "memory",
+        "--clock",
+        "fast",
+        "--for",
+        "2",
+        "--ground-truth",
+        "t.jsonl",
+    ]
+    assert outcome(capsys, *arguments)[0] == 0
+    last = json.loads((folder / "t.jsonl").read_text().splitlines()[-1])
+    assert last["kind"] == "end"
+    assert last["time"] == pytest.approx(2.0)
+
+
+def test_types_and_projects_are_described(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, output, _ = outcome(capsys, "describe", "ArtCmdVel")
+    assert code == 0
+    assert "moveForward(length: a number)" in output
+    assert "agent hello: hello.asl" in outcome(capsys, "describe", "hello.asl")[1]
+
+
+def test_versions_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+    code, output, _ = outcome(capsys, "version")
+    assert code == 0
+    assert output.startswith("jacaros 0.")
+
+
+def test_help_lists_the_commands(capsys: pytest.CaptureFixture[str]) -> None:
+    code, output, _ = outcome(capsys, "--help")
+    assert code == 0
+    assert "Run an agent program or a project." in output
+
+
+def test_a_defect_is_shown_with_its_trace(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> int:
+        raise ZeroDivisionError("oh")
+
+    monkeypatch.setattr("jacaros.cli.run.launch", broken)
+    code, _, errors = outcome(capsys, "run", "hello.asl")
+    assert code == 1
+    assert "Traceback" in errors
+    assert "defect of jacaros" in errors
+
+
+def test_a_program_without_robots_loads_no_heavy_library(folder: Path) -> None:
+    script = (
+        "import sys; from jacaros.cli.main import call; call(['run', 'hello.asl']); "
+        "print([m for m in ('numpy', 'rosbags', 'rich', 'ruamel', 'jacaros.sim', 'jacaros.body') "
+        "if m in sys.modules])"
+    )
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert result.stdout == "[hello] hi\n[]\n"
