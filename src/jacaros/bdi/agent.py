@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.bdi import belief_update, body_terms, cycle, formulas, goals, plan_changes
+from jacaros.bdi import belief_update, body_terms, cycle, forks, formulas, goals, plan_changes
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.answers import AnswerByPlan
 from jacaros.bdi.architecture import Architecture
@@ -301,14 +301,8 @@ class Agent(Circumstance):
 
     run_value = body_terms.run_value
 
-    def fork(self, operator: str, frame: Frame, branches: tuple[Any, ...], next_step: Any) -> Any:
-        """``|&|`` and ``|||``."""
-        raise Failure(
-            *error_terms(
-                "not_supported",
-                f"the operator |{'&' if operator == 'and' else '|'}| comes in a later version",
-            )
-        )
+    fork = forks.fork
+    join_branch = forks.join
 
     # --- plans ---------------------------------------------------------------------------------------------
 

@@ -96,6 +96,18 @@ class Circumstance:
             self.intentions.append(intention)
         self.architecture.ready()
 
+    def finish(self, intention: Intention) -> None:
+        """An intention is over; what it waits for is cancelled."""
+        intention.dropped = True
+        intention.frames.clear()
+        intention.handlers.clear()
+        self.alive.pop(intention.id, None)
+        if self.atomic is intention:
+            self.atomic = None
+        if intention.waiting is not None:
+            waiting, intention.waiting = intention.waiting, None
+            waiting.cancel()
+
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and tell those who wait for it."""
         self.events.append(event)

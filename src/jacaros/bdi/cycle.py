@@ -11,6 +11,7 @@ from jacaros.bdi.belief_update import apply_percepts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.failure import FailureReason
+from jacaros.bdi.forks import branch_failed
 from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
 from jacaros.errors import InternalError
@@ -226,6 +227,10 @@ def fail_goal(
 
 def fail_intention(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:
     """The nearest handler down the stack takes over; without one the intention ends with a warning."""
+    while intention.forks and not failure.has_handler(agent, intention, intention.forks[-1][0].depth):
+        if not branch_failed(agent, intention):
+            agent.finish(intention)
+            return None
     posted = failure.handler_event(agent, intention, reason)
     if posted is not None:
         if agent.meta:
@@ -235,7 +240,7 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
         intention.on_failed()
     else:
         _warn_lost(agent, intention, reason)
-    finish(agent, intention)
+    agent.finish(intention)
     return None
 
 
@@ -255,7 +260,7 @@ def _lost_in_handler(
 ) -> None:
     if intention.on_failed is not None:
         intention.on_failed()
-        finish(agent, intention)
+        agent.finish(intention)
         return
     shown = f"-{goal[0].kind}{text(literal_of(goal, ()))}"
     told = (
@@ -264,7 +269,7 @@ def _lost_in_handler(
     agent.architecture.log(
         "warning", f"no applicable plan for the failure event {shown}; the intention is dropped{told}"
     )
-    finish(agent, intention)
+    agent.finish(intention)
 
 
 def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - written out for speed
@@ -355,18 +360,5 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
             agent.atomic = None
     if frames:
         return True
-    finish(agent, intention)
+    agent.finish(intention)
     return False
-
-
-def finish(agent: Circumstance, intention: Intention) -> None:
-    """The intention is over."""
-    intention.dropped = True
-    intention.frames.clear()
-    intention.handlers.clear()
-    agent.alive.pop(intention.id, None)
-    if agent.atomic is intention:
-        agent.atomic = None
-    if intention.waiting is not None:
-        waiting, intention.waiting = intention.waiting, None
-        waiting.cancel()

@@ -275,6 +275,21 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
     return None
 
 
+def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
+    """Whether a goal higher on the stack than the frame *above* has a handler that is not already at work."""
+    handlers = list(intention.handlers)
+    index = len(intention.frames) - 1
+    while index > above:
+        trigger = intention.frames[index][GOAL][0]
+        if trigger.failing:
+            index = handlers.pop() - 1
+            continue
+        if trigger.on_fail is not None and agent.selects[trigger.on_fail] is not None:
+            return True
+        index -= 1
+    return False
+
+
 def is_error(term: Term, error: str) -> bool:
     """Whether a failure annotation is ``error(Id)``."""
     inner = bare(term)

@@ -5,7 +5,7 @@ from typing import Any
 
 from jacaros.bdi import meta_events
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.cycle import fail_intention, finish, pop_finished
+from jacaros.bdi.cycle import fail_intention, pop_finished
 from jacaros.bdi.event import Event
 from jacaros.bdi.failure import nowhere
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
@@ -103,7 +103,7 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
     if agent.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
-    finish(agent, intention)
+    agent.finish(intention)
 
 
 def drop_events(agent: Circumstance, goal: Term) -> None:
@@ -250,7 +250,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
 
 def _goes_on(agent: Circumstance, intention: Intention) -> bool:
     if not intention.frames:
-        finish(agent, intention)
+        agent.finish(intention)
         return False
     return pop_finished(agent, intention)
 

@@ -31,12 +31,14 @@ class Intention:
         waiting: what it waits for (`Waiting`), or None.
         dropped: it is over; whoever still holds it lets it go.
         cause: why it was adopted.
+        forks: the forks it is a branch of, outermost first, with the number of the branch.
         on_failed: called when it ends in failure, in place of the usual warning.
     """
 
     __slots__ = (
         "cause",
         "dropped",
+        "forks",
         "frames",
         "handlers",
         "id",
@@ -55,6 +57,7 @@ class Intention:
         self.waiting: Any = None
         self.dropped = False
         self.cause = cause
+        self.forks: tuple[tuple[Any, int], ...] = ()
         self.on_failed: Callable[[], None] | None = None
 
     def is_atomic(self) -> bool:

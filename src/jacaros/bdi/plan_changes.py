@@ -26,6 +26,18 @@ from jacaros.terms.values import (
 ERROR = functor("error", 1)
 
 
+def _warn_of_what_is_missing(agent: Circumstance, node: nodes.Plan) -> None:
+    """Goal conditions and sub-plans are read, and come in a later version."""
+    span = node.span
+    where = f"{span.file.name}:{span.line}: " if span is not None else ""
+    for present, what in (
+        (node.goal_condition is not None, "a goal condition '<:'"),
+        (node.subplans, "sub-plans"),
+    ):
+        if present:
+            agent.architecture.log("warning", f"{where}{what} of this plan has no effect yet")
+
+
 def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
     """Whether two plans are equal, labels aside."""
     return (left.trigger, left.context, left.body) == (right.trigger, right.context, right.body)
@@ -35,6 +47,7 @@ def add_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
     """Take in plans of a program, behind those held."""
     plans = []
     for node in plan_nodes:
+        _warn_of_what_is_missing(agent, node)
         agent.plans_made += 1
         plans.append(Plan(node, label_of(node, agent.plans_made)))
     agent.library.extend(plans)

@@ -275,32 +275,48 @@ def _construct(variable: Term, parts: list[Term], trail: Trail) -> bool:
 CLOSED = frozenset({float, String, Functor})
 """Values that never unify with a structure."""
 
+
+def join_branch(agent: Any, frame: list[Any]) -> Any:
+    """The step behind the last one of a branch of ``|&|`` or ``|||``."""
+    return agent.join_branch(frame)
+
+
 _FUNCTIONS = (
-    *(
-        annotation_set,
-        annotations_of_event,
-        answers_of,
-        at_most,
-        binary,
-        deconstruct,
-        deref,
-        divide,
-        equal,
-        exists,
-    ),
-    *(
-        free_variables,
-        integer_divide,
-        less,
-        literal_in,
-        literal_of,
-        make_list,
-        namespace_name,
-        negate,
-        on_trail,
-    ),
-    *(own_annotations, positive, power, qualify, release, remainder, resolve, resolve_all, run, solve),
-    *(solve_annotated, undo, unify, unify_annotations, wrong_arity),
+    annotation_set,
+    annotations_of_event,
+    answers_of,
+    at_most,
+    binary,
+    deconstruct,
+    deref,
+    divide,
+    equal,
+    exists,
+    free_variables,
+    integer_divide,
+    join_branch,
+    less,
+    literal_in,
+    literal_of,
+    make_list,
+    namespace_name,
+    negate,
+    on_trail,
+    own_annotations,
+    positive,
+    power,
+    qualify,
+    release,
+    remainder,
+    resolve,
+    resolve_all,
+    run,
+    solve,
+    solve_annotated,
+    undo,
+    unify,
+    unify_annotations,
+    wrong_arity,
 )
 _CLASSES = (Annotated, Fail, Functor, String, Trail, Var)
 

@@ -1,0 +1,104 @@
+"""Concurrency inside a plan: ``a |&| b`` (all branches) and ``a ||| b`` (the first one).
+
+Each branch is an intention of its own with a copy of the stack, so what it binds stays with it; the branch that finishes
+last (``|&|``) or first (``|||``) goes on with the rest of the plan.
+"""
+
+from typing import Any
+
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.intention import GOAL, STEP, Frame, Intention
+from jacaros.compiler.runtime import SUSPENDED
+from jacaros.terms.unifier import ATOMIC, rename
+from jacaros.terms.values import Annotated, Term, Var
+
+
+class Fork:
+    """One fork that is under way.
+
+    Attributes:
+        joins_all: True for ``|&|``.
+        depth: index of the forking plan's frame on every branch's stack.
+        next_step: where the plan goes on.
+        open: numbers of the branches that have neither finished nor failed.
+    """
+
+    __slots__ = ("depth", "joins_all", "next_step", "open")
+
+    def __init__(self, joins_all: bool, depth: int, next_step: Any, branches: int) -> None:
+        self.joins_all, self.depth, self.next_step = joins_all, depth, next_step
+        self.open = set(range(branches))
+
+
+def fork(agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ...], next_step: Any) -> Any:
+    """Begin the branches; the intention that forks is replaced by theirs."""
+    parent = agent.current
+    assert parent is not None
+    point = Fork(operator == "and", len(parent.frames) - 1, next_step, len(firsts))
+    del frame
+    for number, first in enumerate(firsts):
+        branch = agent.new_intention(parent.cause)
+        branch.frames = _copied(parent.frames)
+        branch.frames[-1][STEP] = first
+        branch.handlers = list(parent.handlers)
+        branch.on_failed = parent.on_failed
+        branch.forks = (*parent.forks, (point, number))
+        agent.make_ready(branch)
+        if agent.atomic is parent:
+            agent.atomic = branch
+    agent.finish(parent)
+    return SUSPENDED
+
+
+def _copied(frames: list[Frame]) -> list[Frame]:
+    """The stack with frames and free variables of its own."""
+    names: dict[Var, Var] = {}
+    copies = []
+    for frame in frames:
+        copy = list(frame)
+        copy[GOAL] = (frame[GOAL][0], *(_renamed(a, names) for a in frame[GOAL][1:]))
+        copy[5:] = [_renamed(value, names) for value in frame[5:]]
+        copies.append(copy)
+    return copies
+
+
+def _renamed(value: Term, names: dict[Var, Var]) -> Term:
+    return (
+        rename(value, names)
+        if value.__class__ in (tuple, Var, Annotated) and value.__class__ not in ATOMIC
+        else value
+    )
+
+
+def join(agent: Circumstance, frame: Frame) -> Any:
+    """A branch has come to its end."""
+    intention = agent.current
+    assert intention is not None
+    point, number = intention.forks[-1]
+    point.open.discard(number)
+    if point.joins_all and point.open:
+        agent.finish(intention)
+        return SUSPENDED
+    _drop_branches(agent, point, intention)
+    intention.forks = intention.forks[:-1]
+    frame[STEP] = point.next_step
+    return None
+
+
+def branch_failed(agent: Circumstance, intention: Intention) -> bool:
+    """A branch failed and nobody on it takes care: True when that is a failure of the plan that forked."""
+    point, number = intention.forks[-1]
+    point.open.discard(number)
+    if not point.joins_all and point.open:
+        return False
+    _drop_branches(agent, point, intention)
+    intention.forks = intention.forks[:-1]
+    return True
+
+
+def _drop_branches(agent: Circumstance, point: Fork, survivor: Intention) -> None:
+    """The other branches of a fork are over, with all that they forked themselves."""
+    point.open.clear()
+    for other in list(agent.alive.values()):
+        if other is not survivor and any(fork_point is point for fork_point, _ in other.forks):
+            agent.finish(other)

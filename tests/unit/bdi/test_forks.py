@@ -1,0 +1,38 @@
+"""Forks: all branches, the first branch, failure and dropping."""
+
+from recording_host import printed
+
+
+def test_bindings_made_before_a_fork_are_shared_and_those_of_branches_are_not() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- P = f(A); A = 1; (X = a; .print(P)) |&| (X = b; .wait(10); .print(P)); .print(X).
+        """
+    ) == ["f(1)", "f(1)", "b"]
+
+
+def test_a_variable_that_is_free_at_the_fork_is_bound_by_each_branch_for_itself() -> None:
+    assert printed("!s. +!s <- P = f(A); (A = 1; .print(P)) |&| (A = 2; .print(P)).") == ["f(1)", "f(2)"]
+
+
+def test_a_failing_branch_with_a_handler_of_its_own_does_not_fail_the_plan() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- !a |&| !b; .print(joined).
+        +!a <- .fail.
+        -!a <- .print(handled).
+        +!b <- .print(b).
+        """
+    ) == ["b", "handled", "joined"]
+
+
+def test_when_all_branches_of_an_or_fail_the_plan_fails() -> None:
+    assert printed("!s. +!s <- .fail ||| .fail; .print(bad). -!s[error(E)] <- .print(E).") == ["ia_failed"]
+
+
+def test_a_fork_inside_a_loop_is_made_anew_each_time() -> None:
+    assert printed(
+        "!s. +!s <- for (.range(I, 1, 2)) { .print(a, I) |&| .print(b, I) }; .print(end)."
+    ) == ["a1", "b1", "a2", "b2", "end"]
