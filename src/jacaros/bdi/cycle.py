@@ -27,8 +27,11 @@ def run(agent: Circumstance, fuel: int) -> bool:
         _housekeeping(agent)
         if agent.inbox:
             speech_acts.process(agent, agent.inbox.popleft())
-        if agent.atomic is None and agent.events:
-            handle_event(agent)
+        if agent.events:
+            if agent.atomic is None:
+                handle_event(agent)
+            else:
+                _handle_atomic_event(agent, agent.atomic)
         intention = _select_intention(agent)
         if intention is not None:
             fuel = _execute(agent, intention, fuel)
@@ -44,7 +47,8 @@ def _has_work(agent: Circumstance) -> bool:
     if agent.inbox or agent.percepts or agent.tasks:
         return True
     if agent.atomic is not None:
-        return agent.atomic in agent.intentions
+        atomic = agent.atomic
+        return atomic in agent.intentions or any(e.intention is atomic for e in agent.events)
     return bool(agent.events or agent.intentions)
 
 
@@ -102,6 +106,15 @@ def handle_event(agent: Circumstance) -> None:
             if push(agent, intention, event.goal, event.annotations):
                 agent.make_ready(intention)
             return
+
+
+def _handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
+    """An atomic intention's own event comes before all others, which wait."""
+    event = next((e for e in agent.events if e.intention is intention), None)
+    if event is not None:
+        agent.events.remove(event)
+        if push(agent, intention, event.goal, event.annotations):
+            agent.make_ready(intention)
 
 
 def _external(agent: Circumstance, event: Event) -> bool:
@@ -166,6 +179,8 @@ def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annot
             agent.post(Event(posted.goal, intention, posted.annotations))
             return False
         goal, annotations = posted
+        if agent.event_waits:
+            agent.notify_event_waits(Event(goal, intention, annotations))
 
 
 def _alone(agent: Circumstance) -> bool:

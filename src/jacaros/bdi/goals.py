@@ -46,7 +46,7 @@ def _matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
 
 def pending_event(agent: Circumstance, intention: Intention) -> Event | None:
     """The event of the queue that an intention waits for, if any."""
-    return next((e for e in agent.events if e.intention is intention), None)
+    return next((e for e in (*agent.events, *agent.suspended_events) if e.intention is intention), None)
 
 
 def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
@@ -176,6 +176,10 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
     if agent.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "suspended")
+    event = pending_event(agent, intention)
+    if event is not None and event in agent.events:
+        agent.events.remove(event)
+        agent.suspended_events.append(event)
     if intention.waiting is not None and intention.waiting.on_suspend is not None:
         intention.waiting.on_suspend()
 
@@ -183,7 +187,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
 def resume_goal(agent: Circumstance, goal: Term) -> None:
     """The reverse of `suspend_goal`."""
     for event in list(agent.suspended_events):
-        if _matches(agent, goal, literal_of(event.goal, event.annotations)):
+        if event.intention is None and _matches(agent, goal, literal_of(event.goal, event.annotations)):
             agent.suspended_events.remove(event)
             agent.events.append(event)
             agent.architecture.ready()
@@ -199,7 +203,12 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     if agent.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "resumed")
-    if intention.parked:
+    held = next((e for e in agent.suspended_events if e.intention is intention), None)
+    if held is not None:
+        agent.suspended_events.remove(held)
+        agent.events.append(held)
+        agent.architecture.ready()
+    elif intention.parked:
         intention.parked = False
         agent.make_ready(intention)
     elif intention.waiting is not None and intention.waiting.on_resume is not None:
@@ -216,7 +225,7 @@ def _cut(agent: Circumstance, intention: Intention, index: int) -> None:
         waiting.cancel()
     event = pending_event(agent, intention)
     if event is not None:
-        agent.events.remove(event)
+        _remove_event(agent, event)
     if intention in agent.intentions:
         agent.intentions.remove(intention)
     intention.parked = False
@@ -236,7 +245,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
-                agent.events.remove(event)
+                _remove_event(agent, event)
         else:
             _cut(agent, intention, index)
         if running:
@@ -263,7 +272,7 @@ def fail_goal(agent: Circumstance, goal: Term) -> bool:
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
-                agent.events.remove(event)
+                _remove_event(agent, event)
         else:
             own = own or intention is agent.current
             _cut(agent, intention, index + 1)

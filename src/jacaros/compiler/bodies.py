@@ -116,23 +116,25 @@ def _achieve(compiler: BodyCompiler, step: nodes.Achieve, name: str, next_name: 
 def _test(compiler: BodyCompiler, step: nodes.Test, name: str, next_name: str) -> None:
     fn = compiler.begin(step)
     formula = step.formula
+    asked = isinstance(formula, (nodes.Literal, nodes.Variable))
     with fn.writer.block(_head(name)):
         fn.line("t = agent.trail")
+        if compiler.loops and asked:
+            _forget(compiler, fn, step)
         fn.load(compiler.frame, names_in(step))
-        _success(compiler, fn, formula, next_name)
+        bound = _success(compiler, fn, formula, next_name)
         if isinstance(formula, nodes.Literal) and _is_fixed(formula):
             _test_goal(compiler, fn, formula, next_name)
-        elif isinstance(formula, (nodes.Literal, nodes.Variable)):
+        elif asked:
             fn.line(f"posted = agent.test_goal_from({build(fn, formula)})")
             fn.store(compiler.frame)
             fn.line(f"frame[0] = {next_name}")
             fn.line("return posted")
         else:
             fn.line("raise Fail")
-    for variable in names_in(step):
-        if compiler.frame.counts.get(variable, 0) > 1:
-            compiler.frame.slot(variable)
-            compiler.frame.states[variable] = "set"
+    _learn(compiler, bound)
+    if asked:
+        _learn(compiler, [n for n in names_in(step) if n not in bound], "maybe")
     compiler.unit.add(fn.writer)
 
 
@@ -182,7 +184,7 @@ def _constraint(compiler: BodyCompiler, step: nodes.Constraint, name: str, next_
         fn.load(compiler.frame, names_in(step))
         bound = _success(compiler, fn, step.formula, next_name)
         fn.line("raise Fail")
-    _learn(compiler, bound or names_in(step))
+    _learn(compiler, bound)
     compiler.unit.add(fn.writer)
 
 
@@ -304,8 +306,8 @@ def _if(compiler: BodyCompiler, step: nodes.If, name: str, next_name: str) -> No
     compiler.frame.states = _joined(after_then, compiler.frame.states)
 
 
-def _forget(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.If) -> None:
-    """In a loop, variables of the branches may still hold values of the last round."""
+def _forget(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -> None:
+    """In a loop, variables of a step that has several ways on may still hold values of the last round."""
     for variable in names_in(step):
         if variable not in compiler.frame.states and compiler.frame.counts.get(variable, 0) > 1:
             fn.line(f"frame[{compiler.frame.slot(variable)}] = None")

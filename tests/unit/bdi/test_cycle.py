@@ -175,3 +175,44 @@ def test_an_observer_hears_of_every_change_of_a_goal() -> None:
         ("failed", "!b"),
         ("suspended", "!a"),
     ]
+
+
+def test_variables_inside_a_negation_or_a_collection_stay_free() -> None:
+    assert printed(
+        """
+        !g. p(1). p(2).
+        +!g <- ?(not q(Z)); Z = 3; .findall(X, p(X), [1,2]); X = 5; ?(.findall(Y, p(Y), L)); Y = 6; .count(p(W), 2); W = 7;
+          .print(Z, X, Y, L, W).
+        """
+    ) == ["356[1,2]7"]
+
+
+def test_an_atomic_intention_handles_its_own_failure_events() -> None:
+    assert printed(
+        """
+        !a.
+        @l[atomic] +!a <- .wait({+x}, 100); .print(no).
+        -!a[error(E)] <- .print(E); !b.
+        @m[atomic] +!b <- !h; .print(after).
+        +!h <- .fail_goal(h); .print(no).
+        -!h <- .print(handled).
+        """
+    ) == ["wait_timeout", "handled", "after"]
+
+
+def test_a_wait_for_a_failure_event_sees_it_though_nothing_else_runs() -> None:
+    assert printed("!g. !k. +!g <- .wait({-!n}); .print(seen). +!k <- .wait(10); !n. -!n <- .print(h).") == [
+        "h",
+        "seen",
+    ]
+
+
+def test_the_plan_of_a_suspended_goal_is_chosen_when_it_is_resumed() -> None:
+    assert printed(
+        """
+        !g. !k. c(1).
+        +!g <- !sub; .print(g2).
+        +!sub : c(X) <- .print(sub(X)).
+        +!k <- .suspend(g); -+c(2); .print(changed); .resume(g).
+        """
+    ) == ["changed", "sub(2)", "g2"]

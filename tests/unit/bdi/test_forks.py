@@ -33,6 +33,10 @@ def test_when_all_branches_of_an_or_fail_the_plan_fails() -> None:
 
 
 def test_a_fork_inside_a_loop_is_made_anew_each_time() -> None:
-    assert printed(
-        "!s. +!s <- for (.range(I, 1, 2)) { .print(a, I) |&| .print(b, I) }; .print(end)."
-    ) == ["a1", "b1", "a2", "b2", "end"]
+    assert printed("!s. +!s <- for (.range(I, 1, 2)) { .print(a, I) |&| .print(b, I) }; .print(end).") == [
+        "a1",
+        "b1",
+        "a2",
+        "b2",
+        "end",
+    ]
