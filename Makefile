@@ -1,0 +1,39 @@
+# make demo    a venv, the package, and a robot that patrols on the embedded world; under two minutes
+# make test    everything, ROS 1 and ROS 2 included (installs what that needs on Debian 12)
+# make quick   what to run before a commit: style, types, layers, unit tests
+# make bench   figures of speed
+#
+# PYTHON=python3.12 make demo     with another interpreter (3.11 or newer)
+# make test PARTS="unit docs"     some parts only; `.venv/bin/python tools/test_all.py --list` names them
+
+VENV := .venv
+PYTHON ?= $(shell tools/find_python.sh)
+
+.PHONY: demo test quick bench clean
+
+demo: $(VENV)/.installed
+	$(VENV)/bin/python tools/demo.py
+
+test: $(VENV)/.installed-dev
+	$(VENV)/bin/python tools/test_all.py $(PARTS)
+
+quick: $(VENV)/.installed-dev
+	$(VENV)/bin/python tools/test_all.py style types layers unit
+
+bench: $(VENV)/.installed
+	tools/bench.sh
+
+clean:
+	rm -rf $(VENV) $(VENV)-* runs build dist
+
+$(VENV)/bin/python:
+	@test -n "$(PYTHON)" || { echo "make: needs python3 >= 3.11 with venv (Debian: apt install python3-venv)" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml setup.cfg setup.py | $(VENV)/bin/python
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e .
+	touch $@
+
+$(VENV)/.installed-dev: pyproject.toml setup.cfg setup.py | $(VENV)/bin/python
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	touch $@ $(VENV)/.installed

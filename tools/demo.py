@@ -1,0 +1,56 @@
+"""What `make demo` shows: the patrol on the embedded world, its summary, and where the replay is."""
+
+import shlex
+import subprocess
+import sys
+import time
+from collections.abc import Iterable
+from itertools import pairwise
+from math import hypot
+from pathlib import Path
+
+from jacaros.inspector import Frame, Recording
+
+ROOT = Path(__file__).resolve().parent.parent
+RUNS = ROOT / "runs"
+PROJECT = "examples/04_patrol/patrol.jcm"
+REPLAY = "runs/replay.html"
+RECORD = "runs/patrol.jsonl"
+
+
+def main() -> int:
+    """Run the patrol as anybody can, then tell what happened."""
+    RUNS.mkdir(exist_ok=True)
+    command = ["run", PROJECT, "--clock", "fast", "--seed", "1", "--record", RECORD, "--replay", REPLAY]
+    print(f"$ jacaros {shlex.join(command)}\n", flush=True)
+    began = time.perf_counter()
+    code = subprocess.run(
+        [str(Path(sys.executable).parent / "jacaros"), *command], cwd=ROOT, check=False
+    ).returncode
+    took = time.perf_counter() - began
+    if code == 0:
+        summarise(Recording.read(ROOT / RECORD), took)
+    return code
+
+
+def summarise(recording: Recording, took: float) -> None:
+    """Print what the robot did, as the world saw it."""
+    frames = recording.frames
+    levels = [frame.robots[0][3] for frame in frames]
+    charges = sum(1 for _, kind, _ in recording.events if kind == "charging")
+    bumps = sum(1 for _, kind, _ in recording.events if kind in ("bump", "collision"))
+    print(f"""
+simulated time   {recording.duration:.0f} s in {took:.1f} s, {recording.duration / took:.0f} times as fast as life
+driven           {driven(frames):.0f} m, {bumps} bumps
+battery          charged {charges} times at the dock, never below {min(levels):.0f} %
+replay           {REPLAY}  (open it in a browser)""")
+
+
+def driven(frames: Iterable[Frame]) -> float:
+    """Metres that the first robot went."""
+    places = [frame.robots[0][:2] for frame in frames]
+    return sum(hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(places))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,312 @@
+"""Run every part of the test suite, two at a time, and tell at the end what passed, what failed, what did not run.
+
+    test_all.py [--list] [PART ...]        all parts, or the named ones with what they need
+
+All parts run even when one fails; the exit code is 1 if any did.  A part that this machine cannot run (exit code
+3 of its script: no root for a ROS installation, no such interpreter, ...) is reported in capitals at the end; with
+CI=true it is a failure.  Logs go to runs/test/.
+
+Parts that measure time against a real graph run last, when nothing else loads the processors.
+"""
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections import deque
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+LOGS = ROOT / "runs" / "test"
+PYTHON = sys.executable
+BIN = Path(PYTHON).parent
+NOT_HERE = 3
+"""Exit code of a script that cannot do its work on this machine."""
+
+PYTEST = (PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider")
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of the suite.
+
+    Attributes:
+        name: what people call it.
+        command: run in the project's folder, without standard input.
+        stage: ``install`` (one after the other), ``work`` or ``real-time`` (after everything else).
+        needs: a part that must have passed before.
+        minutes: longer than this and it has hung.
+        skips_fail: a test that was skipped fails the part.
+    """
+
+    name: str
+    command: tuple[str, ...]
+    stage: str = "work"
+    needs: str | None = None
+    minutes: float = 10
+    skips_fail: bool = False
+
+
+def parts() -> list[Part]:
+    """All parts, in the order in which they start."""
+    found = [
+        Part("chromium", ("tools/install_chromium.sh",), "install"),
+        Part("ros1-install", ("tools/install_ros1.sh",), "install"),
+        Part("ros2-jazzy-install", ("tools/install_ros2.sh", "jazzy"), "install"),
+        Part("ros2-kilted-install", ("tools/install_ros2.sh", "kilted"), "install"),
+        Part("style", (f"{BIN}/ruff", "check", ".")),
+        Part("format", (f"{BIN}/ruff", "format", "--check", ".")),
+        Part("types", (PYTHON, "-m", "mypy")),
+        Part("layers", (f"{BIN}/lint-imports", "--no-logo")),
+        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser")),
+        Part("wheel", ("tools/test_wheel.sh",)),
+        Part("conformance", (PYTHON, "tools/check_conformance.py", "language")),
+        Part("environment", (PYTHON, "tools/check_conformance.py", "environment")),
+        Part("contracts", (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2")),
+        Part("scenarios", (*PYTEST, "tests/integration", "-m", "not ros1 and not ros2")),
+        Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2")),
+        Part("browser", (*PYTEST, "tests", "-m", "browser"), needs="chromium", skips_fail=True),
+    ]
+    for minor in (12, 13, 14):
+        python = newer_python(minor)
+        if python is not None:
+            found.append(Part(f"python3.{minor}", ("tools/test_python.sh", str(python)), needs="wheel"))
+    found.append(Part("real-time", (PYTHON, "tools/check_conformance.py", "real-time"), "real-time"))
+    for kind, venv, needs in (
+        ("ros1", ".venv-ros1", "ros1-install"),
+        ("ros2", ".venv-ros2-jazzy", "ros2-jazzy-install"),
+        ("ros2", ".venv-ros2-kilted", "ros2-kilted-install"),
+    ):
+        python = str(ROOT / venv / "bin" / "python")
+        suites = ("tests/contracts", "tests/integration", "tests/packaging", "-m", kind, f"--require-{kind}")
+        name = venv.removeprefix(".venv-")
+        found.append(Part(name, (python, *PYTEST[1:], *suites), "real-time", needs, minutes=15))
+    return found
+
+
+def newer_python(minor: int) -> Path | None:
+    """An interpreter 3.*minor* of this machine, on the path or beside pyenv's others."""
+    if sys.version_info[:2] == (3, minor):
+        return None
+    folders = [Path(folder) for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
+    folders += sorted(Path.home().glob(f".pyenv/versions/3.{minor}.*/bin"))
+    for python in (folder / f"python3.{minor}" for folder in folders):
+        try:
+            # A shim of pyenv is there for versions that are not; only one that runs counts.
+            subprocess.run(
+                (python, "-c", "import venv, ensurepip"), check=True, capture_output=True, timeout=60
+            )
+        except (OSError, subprocess.SubprocessError):
+            continue
+        return python
+    return None
+
+
+@dataclass
+class Result:
+    """How a part went; `verdict` is ``ok``, ``FAILED`` or ``NOT RUN``."""
+
+    part: Part
+    verdict: str
+    seconds: float
+    closing_line: str
+
+
+class Run:
+    """Starts the parts and keeps their results."""
+
+    def __init__(self, chosen: list[Part], must_run: bool) -> None:
+        self._must_run = must_run
+        self._chosen = chosen
+        self._started = threading.Lock()
+        self._children: set[subprocess.Popen[bytes]] = set()
+        self._stopped = False
+        self.results: dict[str, Result] = {}
+
+    def everything(self) -> None:
+        """Run all stages."""
+        stages = {
+            stage: [p for p in self._chosen if p.stage == stage] for stage in ("install", "work", "real-time")
+        }
+        work = deque(stages["work"])
+        self._side_by_side(deque(stages["install"]), work)
+        self._side_by_side(deque(), deque(stages["real-time"]))
+
+    def _side_by_side(self, first: deque[Part], common: deque[Part]) -> None:
+        workers = [
+            threading.Thread(target=self._work, args=(first, common)),
+            threading.Thread(target=self._work, args=(deque(), common)),
+        ]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+
+    def _work(self, own: deque[Part], common: deque[Part]) -> None:
+        while (part := self._next(own, common)) is not None:
+            self._run(part)
+
+    def _next(self, own: deque[Part], common: deque[Part]) -> Part | None:
+        """The next part whose need is met; waits for one that another worker is about to finish."""
+        while True:
+            with self._started:
+                if self._stopped:
+                    return None
+                if own:
+                    return own.popleft()
+                for part in common:
+                    if part.needs is None or part.needs in self.results or not self._is_coming(part.needs):
+                        common.remove(part)
+                        return part
+                if not common:
+                    return None
+            time.sleep(0.2)
+
+    def _is_coming(self, name: str) -> bool:
+        return any(part.name == name for part in self._chosen)
+
+    def _run(self, part: Part) -> None:
+        needed = self.results.get(part.needs) if part.needs is not None else None
+        if needed is not None and needed.verdict != "ok":
+            self._finish(Result(part, needed.verdict, 0.0, f"needs {part.needs}"), LOGS / "none")
+            return
+        log = LOGS / f"{part.name}.log"
+        say(f"start    {part.name}")
+        began = time.monotonic()
+        code = self._call(part, log)
+        seconds = time.monotonic() - began
+        closing_line = last_line(log)
+        verdict = "ok" if code == 0 else "FAILED"
+        if code == NOT_HERE and part.command[0].startswith("tools/"):
+            verdict = "FAILED" if self._must_run else "NOT RUN"
+        if part.skips_fail and " skipped" in closing_line:
+            verdict = "FAILED"
+        self._finish(Result(part, verdict, seconds, closing_line), log)
+
+    def _call(self, part: Part, log: Path) -> int:
+        environment = {**os.environ, "PYTHON": PYTHON, "PYTHONUNBUFFERED": "1"}
+        with log.open("wb") as output:
+            try:
+                child = subprocess.Popen(
+                    part.command,
+                    cwd=ROOT,
+                    env=environment,
+                    stdin=subprocess.DEVNULL,
+                    stdout=output,
+                    stderr=subprocess.STDOUT,
+                    start_new_session=True,
+                )
+            except OSError as error:
+                output.write(f"cannot run {part.command[0]}: {error}\n".encode())
+                return 127
+            self._children.add(child)
+            try:
+                return child.wait(part.minutes * 60)
+            except subprocess.TimeoutExpired:
+                output.write(f"\nstopped after {part.minutes:g} minutes\n".encode())
+                return 124
+            finally:
+                end_group(child)
+                self._children.discard(child)
+
+    def _finish(self, result: Result, log: Path) -> None:
+        if result.verdict == "FAILED" and log.is_file():
+            text = log.read_text(errors="replace").splitlines()[-150:]
+            say(
+                "\n".join((f"----- {result.part.name}, end of {log.relative_to(ROOT)} -----", *text, "-----"))
+            )
+        say(f"{result.verdict:8} {result.part.name}  {result.seconds:.0f} s  {result.closing_line}")
+        with self._started:
+            self.results[result.part.name] = result
+
+    def stop(self) -> None:
+        """Start nothing more, and end what still runs."""
+        self._stopped = True
+        for child in list(self._children):
+            end_group(child)
+
+
+def end_group(child: "subprocess.Popen[bytes]") -> None:
+    """End a part and whatever it left behind; it leads a process group of its own."""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        try:
+            os.killpg(child.pid, number)
+        except ProcessLookupError:
+            break
+        try:
+            child.wait(5)
+        except subprocess.TimeoutExpired:
+            continue
+    child.wait()
+
+
+def last_line(log: Path) -> str:
+    """What a part said last, such as the closing line of pytest."""
+    lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
+    return lines[-1].strip()[:160] if lines else ""
+
+
+def say(text: str) -> None:
+    """Print at once and as a whole: two workers talk."""
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def report(results: list[Result], seconds: float) -> int:
+    """Print the table; the exit code."""
+    say("\n" + "=" * 100)
+    for result in results:
+        say(f"{result.verdict:8} {result.part.name:20} {result.seconds:6.0f} s  {result.closing_line[:90]}")
+    failed = [result.part.name for result in results if result.verdict == "FAILED"]
+    left_out = [result.part.name for result in results if result.verdict == "NOT RUN"]
+    say("=" * 100)
+    if left_out:
+        say(f"\n!!!!! NOT RUN ON THIS MACHINE: {', '.join(left_out)} !!!!!")
+        say("      Their logs in runs/test/ say what is missing.\n")
+    passed = len(results) - len(failed) - len(left_out)
+    say(
+        f"{passed} parts passed, {len(failed)} failed, {len(left_out)} not run, in {seconds / 60:.1f} minutes"
+    )
+    if failed:
+        say(f"FAILED: {', '.join(failed)}")
+    return 1 if failed else 0
+
+
+def choose(names: list[str]) -> list[Part]:
+    """The named parts with what they need; all when none is named."""
+    known = {part.name: part for part in parts()}
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        sys.exit(f"test_all: no part {', '.join(unknown)}; there are {', '.join(known)}")
+    wanted = set(names or known)
+    wanted |= {needs for name in wanted if (needs := known[name].needs) is not None}
+    return [part for name, part in known.items() if name in wanted]
+
+
+def main() -> int:
+    """Run what the command line names."""
+    parser = argparse.ArgumentParser(description="Run the test suite.")
+    parser.add_argument("parts", nargs="*", metavar="PART")
+    parser.add_argument("--list", action="store_true", help="name the parts")
+    arguments = parser.parse_args()
+    if arguments.list:
+        say("\n".join(f"{part.name:20} {' '.join(part.command)}" for part in parts()))
+        return 0
+    LOGS.mkdir(parents=True, exist_ok=True)
+    chosen = choose(arguments.parts)
+    run = Run(chosen, must_run=os.environ.get("CI", "").lower() in ("true", "1"))
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    began = time.monotonic()
+    try:
+        run.everything()
+    finally:
+        run.stop()
+    return report([run.results[part.name] for part in chosen], time.monotonic() - began)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
