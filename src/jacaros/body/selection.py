@@ -121,7 +121,8 @@ class Selection:
                 return f"; the internal action is written with a dot: .{call.name}"
             near = difflib.get_close_matches(call.key, offers, n=3, cutoff=0.7)
         if not near:
-            return ""
+            nothing = not any(a.creator is not None for w in places for a in w.artifacts())
+            return "; no artifact has been made there yet (makeArtifact)" if nothing else ""
         return f"; did you mean {' or '.join(key + offers[key] for key in near[:3])}?"
 
 

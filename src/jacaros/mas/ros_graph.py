@@ -55,6 +55,8 @@ class RosGraph:
     async def start(self) -> None:
         """Join a real graph; make the world if it was asked for by name.
 
+        On a real graph the world of the project is left out, and only one given for this run is made.
+
         Raises:
             BackendUnavailable: the library for the graph is missing; the text tells the cure.
             WorldError: the world file is wrong.
@@ -63,7 +65,8 @@ class RosGraph:
             backend = self._open()
             self._backend = backend
             await backend.start()
-            if self._source is not None:
+            # Only on demand: a project that names a world for practice also runs on the real robot.
+            if self._options.world is not None:
                 self._start_world(backend)
         elif self._source is not None or self._options.show_world:
             self.backend()

@@ -1,0 +1,132 @@
+"""The ROS graph of a run and the world on it."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.mas.options import RunOptions
+from jacaros.mas.ros_graph import RosGraph
+from jacaros.ros.errors import BackendUnavailable
+from jacaros.sim import WorldError
+
+
+def graph(clock: VirtualClock, own: str | Path | None = None, **options: Any) -> RosGraph:
+    return RosGraph(RunOptions(**options), clock, "my system", own, lambda text: None)
+
+
+def test_nothing_is_made_until_it_is_asked_for() -> None:
+    clock = VirtualClock()
+
+    async def main() -> None:
+        ros = graph(clock)
+        await ros.start()
+        assert ros.world is None
+        backend = ros.backend()
+        assert ros.backend() is backend
+        assert backend.node_name == "/my_system"
+        assert ros.world is not None
+        assert ros.world.description.name == "empty"
+        await ros.close()
+
+    run(main, clock)
+
+
+def test_the_robots_of_the_world_are_heard_over_topics() -> None:
+    clock = VirtualClock()
+    heard: list[float] = []
+
+    async def main() -> None:
+        ros = graph(clock)
+        ros.backend().subscription(
+            "/odom", "nav_msgs/msg/Odometry", lambda sample: heard.append(sample.stamp)
+        )
+        await clock.sleep(1.02)
+        await ros.close()
+
+    run(main, clock)
+    assert len(heard) == 20
+
+
+def test_a_named_world_is_made_at_the_start() -> None:
+    clock = VirtualClock()
+
+    async def main() -> None:
+        for ros in (
+            graph(clock, "patrol"),
+            graph(clock, "house", world="patrol"),
+            graph(clock, show_world=True),
+        ):
+            await ros.start()
+            assert ros.world is not None
+            assert ros.world.description.name in ("patrol", "empty")
+            await ros.close()
+
+    run(main, clock)
+
+
+def test_the_seed_of_the_run_is_that_of_the_world() -> None:
+    clock = VirtualClock()
+
+    async def main() -> None:
+        ros = graph(clock, seed=42)
+        ros.backend()
+        assert ros.world is not None
+        assert ros.world.description.seed == 42
+        await ros.close()
+
+    run(main, clock)
+
+
+def test_a_wrong_world_is_told_at_the_start() -> None:
+    clock = VirtualClock()
+
+    async def main() -> None:
+        with pytest.raises(WorldError, match="no such world file"):
+            await graph(clock, "nowhere").start()
+
+    run(main, clock)
+
+
+def test_a_missing_library_is_told_at_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: object, **__: object) -> None:
+        raise BackendUnavailable("no rclpy")
+
+    monkeypatch.setattr("jacaros.ros.open.open_backend", missing)
+    clock = VirtualClock()
+
+    async def main() -> None:
+        with pytest.raises(BackendUnavailable):
+            await graph(clock, ros="ros2").start()
+
+    run(main, clock)
+
+
+class Elsewhere:
+    """A real graph, as far as it matters here."""
+
+    started = closed = False
+
+    async def start(self) -> None:
+        self.started = True
+
+    async def close(self) -> None:
+        self.closed = True
+
+
+def test_on_a_real_graph_the_projects_own_world_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    backend = Elsewhere()
+    monkeypatch.setattr("jacaros.ros.open.open_backend", lambda *_, **__: backend)
+    clock = VirtualClock()
+
+    async def main() -> None:
+        ros = graph(clock, "patrol", ros="ros2")
+        await ros.start()
+        assert backend.started
+        assert ros.world is None
+        assert ros.backend() is backend
+        await ros.close()
+        assert backend.closed
+
+    run(main, clock)
