@@ -21,11 +21,13 @@ def check(program: nodes.Program, known_internal_actions: Collection[str]) -> li
     They are about unknown internal actions, goals for which there is no plan, and variables that occur once.
     *known_internal_actions* are names with their dots, as ``.print``.
     """
-    found = [
-        *_unknown_internal_actions(program, known_internal_actions),
-        *_goals_without_plan(program),
-        *(warning for clause in _clauses(program) for warning in _singletons(clause)),
-    ]
+    singletons = (warning for clause in _clauses(program) for warning in _singletons(clause))
+    return sorted([*check_names(program, known_internal_actions), *singletons], key=_place)
+
+
+def check_names(program: nodes.Program, known_internal_actions: Collection[str]) -> list[Diagnostic]:
+    """The warnings of `check` that are nearly always mistakes: names of actions and goals that lead nowhere."""
+    found = [*_unknown_internal_actions(program, known_internal_actions), *_goals_without_plan(program)]
     return sorted(found, key=_place)
 
 

@@ -2,13 +2,18 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 
 from jacaros.asl import nodes
+from jacaros.asl.checker import check_names
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_literals
+from jacaros.bdi.internal_action import STANDARD
 from jacaros.mas.deployment import AgentSpec
+
+_LIBRARY = "$jacaros/"
 
 
 class Programs:
@@ -65,7 +70,7 @@ class Programs:
         program = self._read.get(path)
         if program is None:
             program, warnings = load_program(str(path), _text(path), self.include)
-            for warning in warnings:
+            for warning in (*warnings, *check_names(program, STANDARD)):
                 self._warn(warning.render())
             self._read[path] = program
         return program
@@ -84,11 +89,15 @@ class Programs:
         raise FileNotFoundError(name)
 
     def include(self, path: str, including: str) -> tuple[str, str]:
-        """Name and text of an included file: beside the including one, or in one of the folders.
+        """Name and text of an included file: beside the including one, in one of the folders, or (``$jacaros/…``)
+        in the library that comes with the package.
 
         Raises:
             FileNotFoundError: there is none.
         """
+        if path.startswith(_LIBRARY):
+            found = resources.files("jacaros.asl").joinpath("library", path.removeprefix(_LIBRARY))
+            return path, found.read_text(encoding="utf-8")
         beside = Path(including).parent / path
         file = beside if beside.is_file() else self.find(path)
         return str(file), file.read_text(encoding="utf-8")
