@@ -11,7 +11,7 @@ from jacaros.clock import Clock
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.console import Console
 from jacaros.mas.scheduler import Scheduler
-from jacaros.terms.values import String, atom, functor
+from jacaros.terms.values import String, Term, atom, functor
 
 OUTPUT_GONE = 141
 """Exit code of a run whose output nobody reads any more: 128 and the number of SIGPIPE."""
@@ -28,6 +28,9 @@ class Mind(Protocol):
 
     def start(self) -> None:
         """Take up initial beliefs and goals."""
+
+    def post_goal(self, goal: Term) -> None:
+        """Adopt a goal."""
 
     def run(self, fuel: int) -> bool:
         """Make reasoning cycles; True when there is more to do."""

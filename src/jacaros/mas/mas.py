@@ -13,6 +13,7 @@ from jacaros.bdi.agent import Agent
 from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
+from jacaros.compiler.lowering import lower_value
 from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
@@ -110,10 +111,10 @@ class Mas:
         await self.ros.start()
         if self._has_environment and (self.deployment.environment or self.deployment.workspaces):
             await self.surroundings().furnish(self.deployment)
-        for spec, program in zip(self.deployment.agents, programs, strict=True):
-            self._add(spec, program)
-        for host in self.directory:
-            host.mind.start()
+        agents = list(zip(self.deployment.agents, programs, strict=True))
+        hosts = [self._add(spec, program) for spec, program in agents]
+        for host, (spec, program) in zip(hosts, agents, strict=True):
+            _begin(host, spec, program)
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self._when_idle()
@@ -135,7 +136,7 @@ class Mas:
     def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
         name = spec.name
         host = AgentHost(name, self, Random(f"{self._seed}/{name}"))
-        host.mind = Agent(name, program, host, _options(spec))
+        host.mind = Agent(name, _initial(spec, program), host, _options(spec))
         self.directory.add(name, host)
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
@@ -210,7 +211,7 @@ class Mas:
         try:
             path = self._programs.find(wanted)
             spec = AgentSpec(self.directory.free_name(name), path, name)
-            host = self._add(spec, self._programs.load(spec))
+            program = self._programs.load(spec)
         except FileNotFoundError:
             folders = ", ".join(str(folder) for folder in self.deployment.source_paths)
             self.console.log(f"error: agent {name}: there is no program {wanted} in {folders}", "error")
@@ -218,7 +219,8 @@ class Mas:
         except AslError as wrong:
             self.console.log(str(wrong), "error")
             return None
-        host.mind.start()
+        host = self._add(spec, program)
+        _begin(host, spec, program)
         return host.name
 
     def kill_agent(self, name: str) -> bool:
@@ -253,3 +255,22 @@ def _options(spec: AgentSpec) -> Options:
     if given.get("verbose", "").isdigit():
         changes["verbose"] = int(given["verbose"])
     return replace(options, **changes)
+
+
+def _is_situated(spec: AgentSpec) -> bool:
+    """Whether an agent begins with workspaces joined or artifacts focused."""
+    return bool(spec.join or spec.focus)
+
+
+def _initial(spec: AgentSpec, program: Program) -> Program:
+    """What the mind begins with; the goals of a situated agent come later, see `_begin`."""
+    return replace(program, goals=()) if _is_situated(spec) else program
+
+
+def _begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:
+    """Let a mind begin: as in JaCaMo, what it focuses is noticed before it adopts its goals."""
+    host.mind.start()
+    if _is_situated(spec):
+        host.mind.run(1)
+        for goal in program.goals:
+            host.mind.post_goal(lower_value(goal))

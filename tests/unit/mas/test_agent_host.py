@@ -10,7 +10,7 @@ from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import OUTPUT_GONE, AgentHost
 from jacaros.mas.scheduler import Scheduler
 from jacaros.terms.text import text
-from jacaros.terms.values import atom, functor
+from jacaros.terms.values import Term, atom, functor
 
 
 class Mind:
@@ -23,6 +23,9 @@ class Mind:
 
     def start(self) -> None:
         self.log.append("start")
+
+    def post_goal(self, goal: Term) -> None:
+        self.log.append(f"goal {text(goal)}")
 
     def run(self, fuel: int) -> bool:
         self.log.append("run")

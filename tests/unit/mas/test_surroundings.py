@@ -74,6 +74,30 @@ def test_what_a_jcm_file_declares_is_there_when_agents_begin(folder: Path) -> No
     ]
 
 
+def test_what_an_agent_focuses_is_noticed_before_its_goals(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl {
+                beliefs: known(3)
+                goals: go
+                focus: lab.c
+            }
+            workspace lab {
+                artifact c: Counter(5)
+            }
+        }
+        """,
+        a_asl="""
+        !own.
+        +!own <- .print(own). +!go <- .print(go); .stopMAS.
+        +count(X) : known(Y) <- .print(X, Y).
+        """,
+    )
+    assert run_project(file).of("ann")[0] == "53"
+
+
 def test_an_artifact_that_cannot_be_made_ends_the_run_at_its_place(folder: Path) -> None:
     file = write(
         folder,
