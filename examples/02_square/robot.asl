@@ -1,0 +1,16 @@
+// A square: four sides of one metre, back to where and how the robot stood at the beginning.
+
+{ include("$jacaros/artifacts.asl") }
+
+!start.
+
++!start
+  <- // Drives by odometry: an operation ends when the robot has come as far as it was told to.
+     !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
+     for ( .range(Side, 1, 4) ) {
+        moveForward(1);         // metres
+        rotate(90);             // degrees
+        getCurrentPose(X, Y, _);
+        .print("side ", Side, " done, at ", math.round(X * 100), " cm, ", math.round(Y * 100), " cm")
+     };
+     .stopMAS.

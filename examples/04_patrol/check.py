@@ -1,0 +1,89 @@
+"""Did the robot go from corner to corner, recharge when it had to, and go on where it had left off?
+
+Judged from the ground truth.
+"""
+
+import sys
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from jacaros.sim import GroundTruth, Sample
+from jacaros.testing import Verdict, judge
+from jacaros.testing.docking import Stay, judge_recharging
+from jacaros.testing.paths import distance, to_segment
+
+CORNERS = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+"""The route, in metres, from where the robot begins."""
+
+REACHED = 0.05
+"""A corner is visited when the robot comes so near, in metres."""
+
+
+class Visit(NamedTuple):
+    """The robot was at a corner, from ``begin`` to ``end``."""
+
+    corner: int
+    begin: float
+    end: float
+
+
+def check(truth: GroundTruth, cycles: int = 10) -> Verdict:
+    """Judge a run of at least so many recharges."""
+    verdict = Verdict()
+    path = [*truth.path(), truth.latest()]
+    found = visits(path)
+    verdict.measure("corners", sum(before.corner != after.corner for before, after in pairwise(found)))
+
+    stays = judge_recharging(verdict, truth)
+    verdict.expect(len(stays) >= cycles, f"{len(stays)} recharges, not {cycles}")
+    verdict.expect(
+        bool(stays) and found[-1].begin > stays[-1].begin, "no corner was visited after the last recharge"
+    )
+    verdict.expect(found[0].corner == 0, "the robot did not begin at the first corner")
+    for before, after in pairwise(found):
+        judge_next(
+            verdict, before, after, [stay for stay in stays if before.end < stay.begin < after.begin], path
+        )
+    verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
+    return verdict
+
+
+def visits(path: Sequence[Sample]) -> list[Visit]:
+    """All visits of corners, oldest first."""
+    found: list[Visit] = []
+    at = None
+    for sample in path:
+        corner = next((n for n, (x, y) in enumerate(CORNERS) if distance(sample, x, y) <= REACHED), None)
+        if corner is None or corner != at:
+            at = corner
+            if corner is not None:
+                found.append(Visit(corner, sample.time, sample.time))
+        else:
+            found[-1] = found[-1]._replace(end=sample.time)
+    return found
+
+
+def judge_next(
+    verdict: Verdict, before: Visit, after: Visit, between: Sequence[Stay], path: Sequence[Sample]
+) -> None:
+    """Expect the visit *after* where the robot was heading when it left the corner *before*."""
+    heading_for = [(before.corner + 1) % len(CORNERS)]
+    if between and straight_to_dock(before, between[0], path):
+        # It left from the corner itself: perhaps before driveTo knew that it had arrived.
+        heading_for.append(before.corner)
+    verdict.expect(
+        after.corner in heading_for,
+        f"after corner {before.corner} came corner {after.corner} at {after.begin:.1f} s",
+    )
+
+
+def straight_to_dock(before: Visit, stay: Stay, path: Sequence[Sample]) -> bool:
+    """Whether the robot drove from the corner to the dock without any other way before."""
+    way = [sample for sample in path if before.end <= sample.time <= stay.begin]
+    dock = way[-1].x, way[-1].y
+    return all(to_segment(sample, CORNERS[before.corner], dock) <= 2 * REACHED for sample in way)
+
+
+if __name__ == "__main__":
+    sys.exit(judge(check, sys.argv[1:]))

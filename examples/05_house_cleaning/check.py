@@ -1,0 +1,52 @@
+"""Were the tasks of each room done in that room, in order, and the battery never empty?
+
+Judged from the ground truth: the world takes note of every task with the room that the robot is truly in.
+"""
+
+import sys
+
+from jacaros.sim import GroundTruth
+from jacaros.testing import Verdict, judge
+from jacaros.testing.docking import judge_recharging
+from jacaros.testing.paths import distance
+
+ROUND = (
+    ("living_room", "vacuum carpet"),
+    ("kitchen", "mop floor"),
+    ("bathroom", "scrub tub"),
+    ("bathroom", "mop floor"),
+)
+"""The rooms with their tasks; in the hallway, where a round ends, there is nothing to do."""
+
+HALLWAY = (0.0, 0.0)
+
+
+def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
+    """Judge a run of so many rounds and at least so many recharges."""
+    verdict = Verdict()
+    tasks = truth.events_of("task")
+    verdict.measure("tasks", len(tasks))
+    verdict.expect(len(tasks) == rounds * len(ROUND), f"{len(tasks)} tasks, not {rounds * len(ROUND)}")
+    for number, event in enumerate(tasks):
+        room, task = ROUND[number % len(ROUND)]
+        text, where = event.data["task"], event.data["room"]
+        verdict.expect(text == f"{task} {room}", f"task {number + 1} was '{text}', not '{task} {room}'")
+        verdict.expect(where == room, f"the robot did '{text}' in the {where}")
+
+    # A round is over when the robot is in the hallway: after the last task, and before the first one of the next.
+    ends = [event.time for event in tasks[len(ROUND) - 1 :: len(ROUND)]]
+    begins = [event.time for event in tasks[len(ROUND) :: len(ROUND)]]
+    at_home = [sample.time for sample in truth.path() if distance(sample, *HALLWAY) <= 0.05]
+    for end, begin in zip(ends, [*begins, float("inf")], strict=False):
+        verdict.expect(
+            any(end < time < begin for time in at_home), f"after {end:.1f} s the robot left the hallway out"
+        )
+
+    stays = judge_recharging(verdict, truth)
+    verdict.expect(len(stays) >= recharges, f"{len(stays)} recharges, not {recharges}")
+    verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
+    return verdict
+
+
+if __name__ == "__main__":
+    sys.exit(judge(check, sys.argv[1:]))

@@ -1,0 +1,83 @@
+// House cleaning: from room to room, in each room the tasks of that room; when the battery is low, even in the
+// middle of a task, to the dock, back into the room, and on.
+
+{ include("$jacaros/artifacts.asl") }
+
+/* What the agent knows */
+
+room(0, hallway, 0, 0).         // number, name, and where to go, in metres
+room(1, living_room, 2, 0).
+room(2, kitchen, 2, 2).
+room(3, bathroom, 0, 2).
+dock(1, 1).
+rounds(4).                      // so often the house is cleaned
+
+done(0).                        // rounds done
+recharges(0).
+
+!start.
+
++!start
+  <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
+     !use_artifact("battery", "ArtSimBattery", [source(robot)]);
+     !use_artifact("household", "ArtCleaning");
+     !!clean_house.
+
+/* From room to room */
+
+// The household shows in atRoom(Number) which room is the present one; it begins in the hallway.
++!clean_house : done(N) & rounds(N) & recharges(R)
+  <- .print("The house is clean: ", N, " rounds, the battery charged ", R, " times.");
+     .stopMAS.
+
++!clean_house
+  <- updateWhereAmI;            // the next room is the present one now
+     ?atRoom(Number);
+     ?room(Number, Room, X, Y);
+     driveTo(X, Y);
+     !clean_room(Number, Room);
+     !!clean_house.
+
+// The round ends in the hallway, where there is nothing to do.
++!clean_room(_, hallway) : done(N)
+  <- -+done(N + 1);
+     .print("hallway: round ", N + 1, " is done").
+
++!clean_room(Number, Room)
+  <- +cleaning(Room);           // so that it comes back here after a recharge
+     clean(Number);
+     rotate(-5); rotate(10); rotate(-5);     // a little swing, as one does
+     -cleaning(Room).
+
+// What `clean` does shows in these properties of the household; they are empty at the beginning.
++vacuum(Thing, Room) : Thing \== "" <- .print(Room, ": vacuum the ", Thing).
++mop(Thing, Room)    : Thing \== "" <- .print(Room, ": mop the ", Thing).
++scrub(Thing, Room)  : Thing \== "" <- .print(Room, ": scrub the ", Thing).
+
+/* The battery */
+
++diagnostics("Low Battery")
+  <- .suspend(clean_house);     // whatever it does for this goal: driving or cleaning
+     .print("battery low");
+     !recharge;
+     .print("battery full");
+     !return;
+     .resume(clean_house).
+
++!recharge : dock(X, Y) & recharges(N)
+  <- driveTo(X, Y);
+     operationRecharge;
+     -+recharges(N + 1).
+
+// Something went wrong: the dock was missed, or the way was blocked.
+-!recharge[error_msg(Text)]
+  <- .print("I cannot recharge: ", Text);
+     .stopMAS(0, 1).
+
+// It was cleaning: back into that room.
++!return : cleaning(Room) & room(_, Room, X, Y)
+  <- .print("back into the ", Room);
+     driveTo(X, Y).
+
+// It was on its way: driveTo finds the rest of the way from anywhere.
++!return.
