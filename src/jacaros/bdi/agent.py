@@ -200,6 +200,7 @@ class Agent(Circumstance):
     delete_any = belief_update.delete_any
     change_mind = belief_update.change_mind
     solve_formula = formulas.solve_formula
+    solve_in_namespaces = formulas.solve_in_namespaces
     collect_formula = formulas.collect_formula
     drop_desire = goals.drop_desire
 
@@ -294,10 +295,6 @@ class Agent(Circumstance):
         if frame in self.current.frames if self.current is not None else False:
             frame[0] = next_step
         return None
-
-    def unknown_internal_action(self, name: str) -> None:
-        """A condition calls an internal action that does not exist: it does not hold."""
-        raise ActionError(f"there is no internal action {name}")
 
     run_value = body_terms.run_value
 

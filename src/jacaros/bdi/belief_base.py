@@ -8,14 +8,13 @@ from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.lowering import fresh_names, lower, lower_value
 from jacaros.compiler.unit import compile_rule_function
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import Trail, free_variables, rename, resolve, unify
+from jacaros.terms.unifier import Trail, equal, is_key, rename, resolve, unify
 from jacaros.terms.values import (
     BY_SELF,
     SOURCE,
     Annotated,
     Functor,
     Term,
-    Var,
     annotations_of,
     arguments_of,
     bare,
@@ -118,12 +117,19 @@ class Table:
                 index.setdefault(_key(row, positions), {})[row] = None
         return index
 
-    def get(self, row: Row) -> tuple[Term, ...] | None:
+    def aside(self, row: Row) -> "OpenFact | None":
+        """The ground belief with these arguments among those that are no keys."""
+        for entry in (*self.rows, *self.late):
+            if isinstance(entry, OpenFact) and equal(entry.literal, literal(self.functor, row)):
+                return entry
+        return None
+
+    def get(self, row: Any) -> tuple[Term, ...] | None:
         """The annotations of a row, None when it is not held."""
         held = self.rows.get(row)
         return self.late.get(row) if held is None and self.late else held
 
-    def set(self, row: Row, annotations: tuple[Term, ...]) -> None:
+    def set(self, row: Any, annotations: tuple[Term, ...]) -> None:
         """Replace the annotations of a row that is held."""
         (self.rows if row in self.rows else self.late)[row] = annotations
 
@@ -175,7 +181,7 @@ class Table:
         """The entries that may unify with the arguments, in order; an index is used where one helps."""
         if not self.plain:
             return self.entries()
-        ground = [(i, a) for i, a in enumerate(map(resolve, arguments)) if _is_key(a)]
+        ground = [(i, a) for i, a in enumerate(map(resolve, arguments)) if is_key(a)]
         if len(ground) == len(arguments):
             row = tuple(a for _, a in ground)
             held = self.rows.get(row)
@@ -191,20 +197,6 @@ class Table:
 
 def _key(row: Row, positions: tuple[int, ...]) -> Any:
     return row[positions[0]] if len(positions) == 1 else tuple(row[i] for i in positions)
-
-
-def _is_key(term: Term) -> bool:
-    """Whether a resolved argument can be looked up: ground, and without annotations."""
-    kind = term.__class__
-    if kind is Var or kind is Annotated:
-        return False
-    return kind is not tuple or not (free_variables(term) or _has_annotations(term))
-
-
-def _has_annotations(term: Term) -> bool:
-    return term.__class__ is Annotated or (
-        term.__class__ is tuple and any(_has_annotations(a) for a in term[1:])
-    )
 
 
 class BeliefBase(dict[Functor, Table]):

@@ -13,8 +13,8 @@ from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
 from jacaros.compiler.triggers import trigger
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, undo, unify_annotations
-from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, atom, bare, functor
+from jacaros.terms.unifier import ATOMIC, free_variables, is_key, rename, resolve, undo, unify_annotations
+from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, atom, bare, functor
 
 Annotations = tuple[Term, ...]
 
@@ -45,12 +45,14 @@ def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations 
 
 def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
     """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
-    if agent.selects[goal[0]] is None:
-        if agent.event_waits:
-            agent.notify_event_waits(Event(goal, None, annotations))
-        return None
+    unplanned = agent.selects[goal[0]] is None
     if apart or agent.options.new_focus:
+        if unplanned and not agent.event_waits:
+            return None
         agent.post(Event(goal, None, annotations))
+        return None
+    if unplanned and not (agent.events or agent.intentions or agent.event_waits):
+        # Nothing comes in between: the event would only be taken up and passed over.
         return None
     return goal if annotations is BY_SELF else Posted(goal, annotations)
 
@@ -65,31 +67,38 @@ def insert(
     """Add a belief; gives the annotations that are new, None when there are none (then there is no event)."""
     table = agent.beliefs[symbol]
     for argument in row:
-        if argument.__class__ not in ATOMIC and free_variables(argument):
-            renamed = rename(literal(symbol, row))
-            table.add(OpenFact(renamed, annotations), annotations, last)
-            return annotations
+        if argument.__class__ not in ATOMIC and not is_key(argument):
+            return _insert_aside(table, symbol, row, annotations, last)
     try:
         held = table.get(row)
-    except (RecursionError, TypeError):
-        return _insert_unhashable(table, symbol, row, annotations, last)
+    except TypeError:
+        return _insert_aside(table, symbol, row, annotations, last)
     if held is None:
         table.add(row, annotations, last)
         return annotations
     if held is annotations:
         return None
+    return _merge(table, row, held, annotations)
+
+
+def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
+    """Add what is new to the annotations of a belief."""
     new = tuple(a for a in annotations if a not in held)
     if not new:
         return None
-    table.set(row, annotation_set(held + new))
+    table.set(entry, annotation_set(held + new))
     return new
 
 
-def _insert_unhashable(
+def _insert_aside(
     table: Table, symbol: Functor, row: Row, annotations: Annotations, last: bool
 ) -> Annotations | None:
-    """A row that cannot be a key (very deep, or holding a mutable object): kept aside, found by unification."""
-    table.add(OpenFact(literal(symbol, row), annotations), annotations, last)
+    """A belief whose arguments are no keys (variables, annotations, very long lists): found by unification."""
+    known = table.aside(row)
+    if known is not None:
+        held = table.get(known)
+        return _merge(table, known, held or (), annotations)
+    table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
     return annotations
 
 
@@ -153,17 +162,27 @@ def _has_source(annotations: Annotations) -> bool:
     return False
 
 
-def delete_any(agent: Circumstance, symbol: Functor) -> None:
-    """The first half of ``-+b``: one own belief of that functor goes, whatever its arguments; an external event."""
+def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = BY_SELF) -> None:
+    """The first half of ``-+b``: the first belief with these annotations goes, whatever its arguments.
+
+    Its event is external.
+    """
+    if annotations is BY_SELF:
+        _delete_own(agent, symbol)
+        return
+    arguments = tuple(Var() for _ in range(symbol.arity))
+    removed = _remove_first(agent, symbol, arguments, annotations, bind=False)
+    if removed is not None:
+        external_change(agent, "-", symbol, removed, tuple(resolve(a) for a in annotations))
+
+
+def _delete_own(agent: Circumstance, symbol: Functor) -> None:
     table = agent.beliefs[symbol]
     for entry, held in table.entries():
-        if entry.__class__ is tuple and BY_SELF[0] in held:
+        row = entry if entry.__class__ is tuple else _open_row(entry)
+        if row is not None and BY_SELF[0] in held:
             take_away(table, entry, held, BY_SELF)
-            goal = (trigger("-", "", symbol), *entry)
-            if agent.selects[goal[0]] is not None or agent.event_waits:
-                agent.post(Event(goal, None, BY_SELF))
-            if agent.condition_waits:
-                agent.tasks.append(_nothing)
+            external_change(agent, "-", symbol, row, BY_SELF)
             return
 
 
@@ -183,7 +202,7 @@ def change_mind(agent: Circumstance, operator: str, term: Term) -> Any:
     if operator in ("-", "--"):
         return delete_belief(agent, symbol, row, own, operator == "--")
     if operator.startswith("-+"):
-        delete_any(agent, symbol)
+        delete_any(agent, symbol, BY_SELF if own == BY_SELF else own)
     if operator in ("++", "-++"):
         return add_belief_apart(agent, symbol, row, own)
     return (add_belief_last if operator == "+>" else add_belief)(agent, symbol, row, own)

@@ -41,7 +41,7 @@ class Circumstance:
         pending_acts: external actions under way, by number.
         pending_asks: questions whose answer is awaited, by message id.
         meta: whether plans or an observer want to hear of changes of goal states.
-        goal_observer: told of the state and text of each goal that changes, or None.
+        goal_observer: told of the state, text and number of each goal that changes, or None.
         plans_made: number of plans so far, for the labels of those that have none.
         bodies: compiled forms of plan bodies held by variables.
         cycles: number of steps made.
@@ -73,7 +73,7 @@ class Circumstance:
         self.pending_acts: dict[int, Waiting] = {}
         self.pending_asks: dict[str, Any] = {}
         self.meta = False
-        self.goal_observer: Callable[[str, str], None] | None = None
+        self.goal_observer: Callable[[str, str, int], None] | None = None
         self.cycles = 0
         self.stopped = False
         self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}

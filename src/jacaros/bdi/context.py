@@ -10,7 +10,9 @@ from jacaros.bdi.formulas import solve_formula
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.lowering import Names, lower_value
+from jacaros.compiler.plan import Plan
 from jacaros.compiler.runtime import run
+from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term, atom
 
@@ -79,6 +81,22 @@ class Context:
             slots = frame[4].slots
             names.update({n: frame[s] for n, s in slots.items() if frame[s] is not None})
         return lower_value(parse_term(text), names.__getitem__)
+
+    def report(self, action: str, fault: object) -> None:
+        """Tell people of an internal action that could not be done in a condition."""
+        current = self.intention
+        plan = (
+            f" in plan {text(current.frames[-1][4].label)}" if current is not None and current.frames else ""
+        )
+        self.architecture.log(
+            "warning", f"the condition {action}{plan} does not hold because of an error: {fault}"
+        )
+
+    def report_plan(self, plan: Plan, fault: object) -> None:
+        """Tell people of a plan whose context cannot be evaluated; the plans behind it are tried."""
+        self.architecture.log(
+            "warning", f"the context of plan {text(plan.label)} cannot be evaluated: {fault}"
+        )
 
     def suspend(self, reason: str) -> Waiting:
         """Suspend the calling intention; to be returned by the action.  See `Waiting`."""

@@ -148,15 +148,7 @@ def select_plan(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) ->
     agent.trail.serial += 1
     if select is None:
         return None
-    try:
-        frame = select(agent, goal, annotations)
-    except InternalError:
-        raise
-    except Exception as fault:
-        undo(agent.trail, 0)
-        shown = text(literal_of(goal, ()))
-        agent.architecture.log("warning", f"a context of the plans for {shown} cannot be evaluated: {fault}")
-        return None
+    frame = select(agent, goal, annotations)
     if agent.trail:
         agent.trail.clear()
     return frame
@@ -249,7 +241,8 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
     posted = failure.handler_event(agent, intention, reason)
     if posted is not None:
         if agent.meta:
-            meta_events.goal_state(agent, (posted.goal[0], *posted.goal[1:]), posted.annotations, "failed")
+            failed = intention.frames[intention.handlers[-1]]
+            meta_events.goal_state(agent, failed[GOAL], posted.annotations, "failed")
         return posted
     if intention.on_failed is not None:
         intention.on_failed()

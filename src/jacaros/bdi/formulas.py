@@ -8,7 +8,17 @@ from typing import Any
 
 from jacaros.bdi.belief_base import OpenFact, literal
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.compiler.runtime import answers_of, deconstruct, exists, run, solve, solve_annotated, wrong_arity
+from jacaros.compiler.runtime import (
+    answers_of,
+    deconstruct,
+    exists,
+    holds,
+    refuse_quietly,
+    run,
+    solve,
+    solve_annotated,
+    unknown,
+)
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.order import annotation_set, at_most, less
 from jacaros.terms.unifier import Trail, equal, rename, resolve, undo, unify
@@ -16,6 +26,7 @@ from jacaros.terms.values import (
     ACTION,
     FALSE,
     LOGIC,
+    NEGATED,
     NIL,
     RELATION,
     TRUE,
@@ -23,6 +34,7 @@ from jacaros.terms.values import (
     Functor,
     Term,
     Var,
+    atom,
     functor,
     make_list,
 )
@@ -37,6 +49,8 @@ def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Search:
     kind = formula.__class__
     if kind is tuple:
         symbol = formula[0]
+        if symbol is NEGATED:
+            return _anything(agent, formula, trail)
         if symbol.kind == LOGIC:
             return _logic(agent, symbol.name, formula, trail)
         if symbol.kind == RELATION:
@@ -76,7 +90,7 @@ def _annotated(agent: Circumstance, formula: Annotated, trail: Trail) -> Search:
     term = settle(formula.term)
     if term.__class__ is Annotated:
         return _annotated(agent, resolve(formula), trail)
-    if term.__class__ is Var:
+    if term.__class__ is Var or (term.__class__ is tuple and term[0] is NEGATED):
         return _anything(agent, formula, trail)
     symbol, arguments = (term[0], term[1:]) if term.__class__ is tuple else (term, ())
     return solve_annotated(agent, agent.beliefs[symbol], arguments, formula.annotations, formula.tail, trail)
@@ -144,25 +158,21 @@ def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], t
             yield ()
         undo(trail, mark)
         return
+    context = agent.context  # type: ignore[attr-defined]
     action = agent.actions.get(symbol.name)
     if action is None:
+        unknown(context, symbol.name)
         return
     if not action.minimum <= len(arguments) or (
         action.maximum is not None and len(arguments) > action.maximum
     ):
-        wrong_arity(action, len(arguments))
-    context = agent.context  # type: ignore[attr-defined]
+        refuse_quietly(context, action, len(arguments))
+        return
     values = [resolve(a) for a in arguments]
     if action.backtracks:
-        for _ in answers_of(context, trail, action.function(context, *values)):
+        for _ in answers_of(context, trail, action, *values):
             yield ()
-        return
-    outer, context.trail = context.trail, trail
-    try:
-        found = action.function(context, *values)
-    finally:
-        context.trail = outer
-    if found is not False:
+    elif holds(context, trail, action, *values):
         yield ()
     undo(trail, mark)
 
@@ -187,3 +197,29 @@ def first_answer(agent: Circumstance, formula: Term) -> bool:
 
 
 COUNT = functor(".count", 1)
+
+
+def solve_in_namespaces(
+    agent: Circumstance,
+    namespace: Term,
+    name: str,
+    negated: bool,
+    arguments: tuple[Term, ...],
+    items: tuple[Term, ...] | None,
+    tail: Term,
+    trail: Trail,
+) -> Search:
+    """Answers of a literal whose namespace is a variable; an unbound one takes every namespace in turn."""
+    for symbol in list(agent.beliefs):
+        if symbol.name != name or symbol.arity != len(arguments) or symbol.negated != negated:
+            continue
+        mark = len(trail)
+        if unify(namespace, atom(symbol.namespace or "default"), trail):
+            table = agent.beliefs[symbol]
+            if items is None:
+                search = solve(agent, table, arguments, trail)
+            else:
+                search = solve_annotated(agent, table, arguments, items, tail, trail)
+            while (yield search) is not None:
+                yield ()
+        undo(trail, mark)

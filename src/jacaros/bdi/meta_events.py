@@ -18,7 +18,7 @@ def goal_state(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, sta
     if not kind.kind or kind.operator == "^":
         return
     if agent.goal_observer is not None:
-        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())))
+        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), id(goal))
     meta = trigger("^", kind.kind, kind.functor)
     if agent.selects[meta] is None:
         return
@@ -27,8 +27,8 @@ def goal_state(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, sta
     agent.tasks.append(lambda: agent.events.appendleft(event))
 
 
-def observe_goals(agent: Circumstance, observer: Callable[[str, str], None]) -> None:
+def observe_goals(agent: Circumstance, observer: Callable[[str, str, int], None]) -> None:
     """Have an observer told of every change of a goal: its state (``executing``, ``achieved``, ``failed``,
-    ``suspended``, ``resumed``, ``dropped`` …) and the goal as text."""
+    ``suspended``, ``resumed``, ``dropped`` …), the goal as text, and a number that is the same for all news of one goal."""
     agent.goal_observer = observer
     agent.meta = True

@@ -1,14 +1,23 @@
 """Recording, replay page and terminal view of a run."""
 
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.meta_events import observe_goals
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.replay import write_replay
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
 from jacaros.mas.console import Console
 from jacaros.mas.mas import Mas
+
+_STATES = {
+    "executing": "pursued",
+    **{state: state for state in ("suspended", "resumed", "achieved", "failed", "dropped")},
+}
+"""States of goals that watchers hear of, in their words."""
 
 
 class Watching:
@@ -42,6 +51,15 @@ class Watching:
             watchers.append(self._view)
         self._watch = Watch(mas.clock, watchers, world)
         self._watch.start()
+        for host in mas.directory:
+            if isinstance(host.mind, Agent):
+                observe_goals(host.mind, partial(self._goal_changed, host.mind.name))
+
+    def _goal_changed(self, agent: str, state: str, goal: str, number: int) -> None:
+        """Tell the watchers what an agent pursues."""
+        told = _STATES.get(state)
+        if told is not None and goal.startswith("!") and self._watch is not None:
+            self._watch.event("goal", {"agent": agent, "goal": goal, "state": told, "id": number})
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""

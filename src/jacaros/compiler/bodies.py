@@ -179,6 +179,7 @@ def _constraint(compiler: BodyCompiler, step: nodes.Constraint, name: str, next_
         _call(compiler, step.formula, name, next_name)
         return
     fn = compiler.begin(step)
+    fn.quiet = not isinstance(step.formula, nodes.InternalAction)
     with fn.writer.block(_head(name)):
         fn.line("t = agent.trail")
         fn.load(compiler.frame, names_in(step))
@@ -246,7 +247,7 @@ def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) 
         annotations = f"own_annotations({items}, {tail})"
     if operator in ("-", "--", "-+", "-++"):
         if operator.startswith("-+"):
-            fn.line(f"agent.delete_any({symbol})")
+            fn.line(f"agent.delete_any({symbol}{'' if annotations == 'BY_SELF' else ', ' + annotations})")
         else:
             arguments = tuple_of([build(fn, a) for a in operand.arguments]) if operand.arguments else "()"
             fn.line(f"posted = agent.delete_belief({symbol}, {arguments}, {annotations}, {operator == '--'})")

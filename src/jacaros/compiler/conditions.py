@@ -105,7 +105,6 @@ def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
     """
     captured = [name for name in names_in(node) if name in fn.values]
     inner = type(fn)(fn.unit, trampoline=fn.trampoline, snapshot=fn.snapshot)
-    inner.own_trail = True
     name = fn.unit.fresh_function("answers")
     inner.values = {c: f"v_{c}" for c in captured}
     inner.at(node)
@@ -197,7 +196,7 @@ def _literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
                 then()
         return
     if isinstance(node.namespace, nodes.Variable):
-        _dynamic(fn, node, then)
+        _in_namespaces(fn, node, node.namespace, then)
         return
     if node.annotations is not None:
         _annotated_literal(fn, node, then)
@@ -324,6 +323,15 @@ def _annotated_literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> 
     _loop_binding(fn, call, names, then)
 
 
+def _in_namespaces(fn: FunctionBuilder, node: nodes.Literal, namespace: nodes.Variable, then: Then) -> None:
+    """A literal whose namespace is a variable."""
+    names = names_in(node)
+    items, tail = ("None", "None") if node.annotations is None else annotation_parts(fn, node.annotations)
+    arguments = tuple_of([build(fn, a) for a in node.arguments]) if node.arguments else "()"
+    parts = [build(fn, namespace), repr(node.functor), repr(node.negated), arguments, items, tail]
+    _loop_binding(fn, f"agent.solve_in_namespaces({', '.join(parts)}, t)", names, then)
+
+
 def _loop_binding(fn: FunctionBuilder, generator: str, names: list[str], then: Then) -> None:
     """A loop over answers that bind variables in place."""
 
@@ -350,27 +358,25 @@ def _internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then
         return
     action = fn.unit.actions.get(node.name)
     names = names_in(node)
-    arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
     if action is None:
-        fn.line(f"agent.unknown_internal_action({node.name!r})")
-        with fn.writer.block("if False:"):
-            then()
+        _undoing(fn, f"unknown(agent.context, {node.name!r})", names, then)
         return
+    constant = fn.constant(action)
+    arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
     if not accepts(action, len(node.arguments)):
-        call = f"wrong_arity({fn.constant(action)}, {len(node.arguments)})"
-    elif fn.own_trail and not action.backtracks:
-        call = f"on_trail(agent.context, t, {fn.constant(action.function)}{arguments})"
+        refusal = "refuse_quietly(agent.context, " if fn.quiet else "refuse("
+        _undoing(fn, f"{refusal}{constant}, {len(node.arguments)})", names, then)
+    elif not action.backtracks:
+        _undoing(fn, f"holds(agent.context, t, {constant}{arguments})", names, then)
+    elif not fn.quiet:
+        _undoing(fn, f"first_answer_of(agent.context, t, {constant}{arguments})", names, then)
     else:
-        call = f"{fn.constant(action.function)}(agent.context{arguments})"
-    if action.backtracks:
         mark = fn.local("n")
         fn.line(f"{mark} = len(t)")
-        with fn.writer.block(f"for _ in answers_of(agent.context, t, {call}):"):
+        with fn.writer.block(f"for _ in answers_of(agent.context, t, {constant}{arguments}):"):
             settle_fresh(fn, names)
             then()
         fn.line(f"if len(t) > {mark}: undo(t, {mark})")
-    else:
-        _undoing(fn, f"{call} is not False", names, then)
 
 
 def accepts(action: object, count: int) -> bool:
@@ -391,7 +397,6 @@ def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> s
     """Write a function that gives the list of all instances of *template*; returns the call."""
     captured = [n for n in names_in(template, formula) if n in fn.values]
     inner = type(fn)(fn.unit)
-    inner.own_trail = True
     name = fn.unit.fresh_function("collect")
     inner.values = {c: f"v_{c}" for c in captured}
     inner.at(formula)

@@ -100,7 +100,7 @@ class FunctionBuilder:
         fresh: variables that got their value in this function, in order.
         trampoline: the function is a generator that yields generators to have them run (see `conditions`).
         snapshot: answers are taken while beliefs may change in between, so tables are copied first.
-        own_trail: the function may be run with another trail than the agent's.
+        quiet: an internal action that cannot be done does not hold; a step of its own fails with the reason.
     """
 
     def __init__(self, unit: Unit, *, trampoline: bool = False, snapshot: bool = False) -> None:
@@ -110,7 +110,7 @@ class FunctionBuilder:
         self.fresh: list[str] = []
         self.trampoline = trampoline
         self.snapshot = snapshot
-        self.own_trail = trampoline or snapshot
+        self.quiet = True
 
     def line(self, text: str) -> None:
         """Write a line."""

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from jacaros.asl import nodes
 from jacaros.terms import plans
 from jacaros.terms.arithmetic import settle
+from jacaros.terms.negation import qualify
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
@@ -19,7 +20,6 @@ from jacaros.terms.values import (
     Var,
     atom,
     bare,
-    deref,
     functor,
     make_list,
 )
@@ -64,20 +64,6 @@ def _variable(node: nodes.Variable, lookup: Lookup) -> Term:
     if node.namespace is not None or node.negated:
         value = qualify(value, _namespace(node.namespace, lookup), node.negated)
     return _annotate(value, node.annotations, lookup)
-
-
-def qualify(value: Term, namespace: str | None, negated: bool) -> Term:
-    """The literal with another namespace or with strong negation."""
-    term = deref(value)
-    if term.__class__ is Annotated:
-        return Annotated(qualify(term.term, namespace, negated), term.annotations, term.tail)
-    inner = bare(term)
-    if inner.__class__ is tuple:
-        old = inner[0]
-        return (functor(old.name, old.arity, old.negated or negated, namespace or old.namespace), *inner[1:])
-    if inner.__class__ is Var:
-        return inner
-    return functor(inner.name, 0, inner.negated or negated, namespace or inner.namespace)
 
 
 def _namespace(namespace: str | nodes.Variable | None, lookup: Lookup) -> str | None:

@@ -6,8 +6,9 @@ Nothing here knows of agents beyond what is passed in: tables of beliefs, the tr
 from collections.abc import Generator, Iterator
 from typing import Any
 
-from jacaros.compiler.lowering import qualify
+from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import binary, divide, integer_divide, negate, power, remainder
+from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set, at_most, less
 from jacaros.terms.unifier import (
     ATOMIC,
@@ -142,13 +143,22 @@ def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) ->
     return all(a is b or unify(a, b, trail) for a, b in zip(left, right, strict=True))
 
 
-def answers_of(context: Any, trail: Trail, generator: Iterator[Any]) -> Iterator[None]:
-    """The answers of a backtracking internal action, on the given trail; its bindings are undone in between."""
+def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Iterator[None]:
+    """The answers of a backtracking internal action, on the given trail; its bindings are undone in between.
+
+    An error inside ends the answers and is reported: in a condition an action that cannot be done does not hold.
+    """
     mark = len(trail)
+    generator = action.function(context, *arguments)
     while True:
         outer, context.trail = context.trail, trail
         try:
             found = next(generator, generator)
+        except InternalError:
+            raise
+        except Exception as fault:
+            context.report(action.name, fault)
+            return
         finally:
             context.trail = outer
         if found is generator:
@@ -157,25 +167,53 @@ def answers_of(context: Any, trail: Trail, generator: Iterator[Any]) -> Iterator
         undo(trail, mark)
 
 
-def on_trail(context: Any, trail: Trail, function: Any, *arguments: Term) -> Any:
-    """Call an internal action with another trail than the agent's."""
+def first_answer_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
+    """The first answer of a backtracking internal action that is a step of its own: errors fail the step."""
+    del trail
+    return any(True for _ in action.function(context, *arguments))
+
+
+def holds(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
+    """Whether an internal action succeeds as a condition, on the given trail; an error is reported and counts as no."""
     outer, context.trail = context.trail, trail
     try:
-        return function(context, *arguments)
+        return action.function(context, *arguments) is not False
+    except InternalError:
+        raise
+    except Exception as fault:
+        context.report(action.name, fault)
+        return False
     finally:
         context.trail = outer
 
 
-def wrong_arity(action: Any, count: int) -> Any:
-    """An internal action was called with a number of arguments it does not take."""
+def wrong_arity(action: Any, count: int) -> str:
+    """What is wrong with calling an internal action with so many arguments."""
     most = action.maximum
     expected = (
         str(action.minimum)
         if most == action.minimum
         else f"{action.minimum} to {most if most is not None else 'any'}"
     )
-    message = f"{action.name} takes {expected} arguments, not {count}"
-    raise Failure((functor("error", 1), atom("wrong_arguments")), (functor("error_msg", 1), String(message)))
+    return f"{action.name} takes {expected} arguments, not {count}"
+
+
+def refuse(action: Any, count: int) -> bool:
+    """A step calls an internal action with a number of arguments that it does not take."""
+    error = (functor("error", 1), atom("wrong_arguments"))
+    raise Failure(error, (functor("error_msg", 1), String(wrong_arity(action, count))))
+
+
+def refuse_quietly(context: Any, action: Any, count: int) -> bool:
+    """A condition calls an internal action with a number of arguments that it does not take: it does not hold."""
+    context.report(action.name, wrong_arity(action, count))
+    return False
+
+
+def unknown(context: Any, name: str) -> bool:
+    """A condition calls an internal action that does not exist: it does not hold."""
+    context.report(name, "there is no such internal action")
+    return False
 
 
 def release(variables: list[Var]) -> None:
@@ -199,13 +237,10 @@ def annotations_of_event(annotations: Any) -> tuple[Term, ...]:
 
 
 def positive(term: Term) -> Term:
-    """A negated literal without its negation."""
-    inner = bare(term)
-    symbol = inner[0] if inner.__class__ is tuple else inner
-    plain = functor(symbol.name, symbol.arity, False, symbol.namespace)
-    result = (plain, *inner[1:]) if inner.__class__ is tuple else plain
+    """A negated literal without its negation; annotations are kept."""
+    plain = positive_form(bare(term))
     annotations = annotations_of(term)
-    return Annotated(result, annotations) if annotations else result
+    return Annotated(plain, annotations) if annotations else plain
 
 
 def own_annotations(items: tuple[Term, ...], tail: Term = None) -> tuple[Term, ...]:
@@ -292,7 +327,9 @@ _FUNCTIONS = (
     divide,
     equal,
     exists,
+    first_answer_of,
     free_variables,
+    holds,
     integer_divide,
     join_branch,
     less,
@@ -301,11 +338,12 @@ _FUNCTIONS = (
     make_list,
     namespace_name,
     negate,
-    on_trail,
     own_annotations,
     positive,
     power,
     qualify,
+    refuse,
+    refuse_quietly,
     release,
     remainder,
     resolve,
@@ -316,9 +354,9 @@ _FUNCTIONS = (
     undo,
     unify,
     unify_annotations,
-    wrong_arity,
+    unknown,
 )
-_CLASSES = (Annotated, Fail, Functor, String, Trail, Var)
+_CLASSES = (Annotated, Fail, InternalError, Functor, String, Trail, Var)
 
 NAMES: dict[str, Any] = {
     **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},

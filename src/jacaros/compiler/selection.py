@@ -43,8 +43,10 @@ class SelectCompiler:
                 fn.at(plan.node)
                 if index:
                     fn.line("if t: undo(t, 0)")
-                with fn.branch():
+                with fn.branch(), fn.writer.block("try:"):
                     self._plan(fn, plan)
+                fn.line("except InternalError: raise")
+                fn.line(f"except Exception as fault: agent.context.report_plan({fn.constant(plan)}, fault)")
             fn.line("if t: undo(t, 0)")
             fn.line("return None")
         self.unit.add(fn.writer)

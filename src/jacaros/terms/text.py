@@ -10,6 +10,7 @@ from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
     LOGIC,
+    NEGATED,
     NIL,
     PLAN,
     RELATION,
@@ -119,6 +120,8 @@ def _write_structure(term: tuple[Term, ...], depth: int) -> str:
         return _write_list(term, depth)
     if symbol.kind in (ARITHMETIC, RELATION, LOGIC):
         return _write_operator(term, depth)
+    if symbol is NEGATED:
+        return "~" + _write(term[1], depth + 1)
     if symbol.kind == PLAN:
         return _write_plan_piece(term, depth)
     arguments = ",".join([_write(a, depth + 1) for a in term[1:]])

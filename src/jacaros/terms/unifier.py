@@ -8,11 +8,13 @@ subset of those of the right one.
 from collections.abc import Iterator
 
 from jacaros.terms.arithmetic import settle
+from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
     FUNCTION,
+    NEGATED,
     NIL,
     Annotated,
     Functor,
@@ -72,6 +74,8 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:
             return _bind_checked(left, right, trail)
         if right.__class__ is Var:
             return _bind_checked(right, left, trail)
+        if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
+            return _unify_negated(left, right, trail)
         if kind is tuple and right.__class__ is tuple:
             if left[0] is not right[0]:
                 return False
@@ -83,6 +87,31 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:
         if kind is Annotated or right.__class__ is Annotated:
             return _unify_annotated(left, right, trail)
         return kind is right.__class__ and bool(left == right)
+
+
+def _unify_negated(left: Term, right: Term, trail: Trail) -> bool:
+    """``~X``: matches a negated literal, whose positive form X takes."""
+    left, right = _known_negation(left), _known_negation(right)
+    if left.__class__ is tuple and left[0] is NEGATED:
+        if right.__class__ is tuple and right[0] is NEGATED:
+            return unify(left[1], right[1], trail)
+        plain = positive_form(settle(right.term) if right.__class__ is Annotated else right)
+        if plain is None:
+            return False
+        if right.__class__ is Annotated:
+            plain = Annotated(plain, right.annotations, right.tail)
+        return unify(left[1], plain, trail)
+    if right.__class__ is tuple and right[0] is NEGATED:
+        return _unify_negated(right, left, trail)
+    return unify(left, right, trail)
+
+
+def _known_negation(term: Term) -> Term:
+    """``~X`` with the value that X has by now."""
+    if term.__class__ is tuple and term[0] is NEGATED:
+        value = deref(term[1])
+        return term if value.__class__ is Var else qualify(value, None, True)
+    return term
 
 
 def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
@@ -332,12 +361,51 @@ def _rename(term: Term, names: dict[Var, Var]) -> Term:
 def equal(left: Term, right: Term) -> bool:
     """The relation ``==``: the same term after applying all bindings, annotations included."""
     left, right = resolve(left), resolve(right)
+    if left.__class__ is not right.__class__:
+        return False
     try:
-        return left.__class__ is right.__class__ and bool(left == right)
+        return bool(left == right)
     except RecursionError:
-        from_left, from_right = left, right
-        while from_left.__class__ is tuple and from_right.__class__ is tuple and from_left[0] is CONS:
-            if from_right[0] is not CONS or not equal(from_left[1], from_right[1]):
+        return _equal_by_parts(left, right)
+
+
+def _equal_by_parts(left: Term, right: Term) -> bool:
+    """Equality of resolved terms that are nested too deeply for Python's own comparison."""
+    stack = [(left, right)]
+    while stack:
+        a, b = stack.pop()
+        if a is b:
+            continue
+        if a.__class__ is not b.__class__:
+            return False
+        if a.__class__ is tuple:
+            if len(a) != len(b):
                 return False
-            from_left, from_right = from_left[2], from_right[2]
-        return from_left.__class__ is not tuple and bool(from_left == from_right)
+            stack.extend(zip(a, b, strict=True))
+        elif a.__class__ is Annotated:
+            if len(a.annotations) != len(b.annotations):
+                return False
+            stack.append((a.term, b.term))
+            stack.extend(zip(a.annotations, b.annotations, strict=True))
+        elif a != b:
+            return False
+    return True
+
+
+_KEY_DEPTH = 300
+
+
+def is_key(term: Term, depth: int = 0) -> bool:
+    """Whether a resolved term can be looked up by equality: ground, without annotations, and not nested so deeply
+    that Python could not compare or hash it."""
+    while True:
+        kind = term.__class__
+        if kind is Var or kind is Annotated or depth > _KEY_DEPTH:
+            return False
+        if kind is not tuple:
+            return True
+        depth += 1
+        for argument in term[1:-1]:
+            if argument.__class__ not in ATOMIC and not is_key(argument, depth):
+                return False
+        term = term[-1]

@@ -22,8 +22,8 @@ from typing import Any, NoReturn
 Term = Any
 """Any value of the table above."""
 
-PLAIN, ARITHMETIC, FUNCTION, RELATION, LOGIC, ACTION, PLAN = range(7)
-"""Kinds of functors: ordinary; ``+``; ``math.max``; ``<``; ``&``; ``.print``; pieces of plans."""
+PLAIN, ARITHMETIC, FUNCTION, RELATION, LOGIC, ACTION, PLAN, NEGATION = range(8)
+"""Kinds of functors: ordinary; ``+``; ``math.max``; ``<``; ``&``; ``.print``; pieces of plans; ``~X`` with X unknown."""
 
 
 class Functor:
@@ -165,6 +165,8 @@ class Reference:
 
 CONS = functor("[|]", 2)
 NIL = functor("[]", 0)
+NEGATED = functor("~", 1, kind=NEGATION)
+"""Functor of ``~X`` while X has no value."""
 TRUE, FALSE = atom("true"), atom("false")
 SELF, PERCEPT = atom("self"), atom("percept")
 SOURCE = functor("source", 1)

@@ -156,17 +156,17 @@ def test_a_variable_bound_on_one_branch_only_is_free_on_the_other() -> None:
     ) == ["one", "free", "one"]
 
 
-def test_a_condition_that_cannot_be_evaluated_does_not_hold_and_is_reported() -> None:
+def test_a_context_that_cannot_be_evaluated_is_reported_and_the_next_plan_is_tried() -> None:
     host = mind("!g(0). +!g(X) : 5 div X > 1 <- .print(bad). +!g(_) <- .print(second).")
     host.run()
-    assert host.printed == []
+    assert host.printed == ["second"]
     assert "cannot be evaluated" in host.logged[0][1]
 
 
 def test_an_observer_hears_of_every_change_of_a_goal() -> None:
     host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
     heard: list[tuple[str, str]] = []
-    observe_goals(host.agent, lambda state, goal: heard.append((state, goal)))
+    observe_goals(host.agent, lambda state, goal, number: heard.append((state, goal)))
     host.run()
     assert heard == [
         ("executing", "!a"),
@@ -216,3 +216,67 @@ def test_the_plan_of_a_suspended_goal_is_chosen_when_it_is_resumed() -> None:
         +!k <- .suspend(g); -+c(2); .print(changed); .resume(g).
         """
     ) == ["changed", "sub(2)", "g2"]
+
+
+def test_an_internal_action_that_cannot_be_done_does_not_hold_as_a_condition() -> None:
+    assert printed(
+        """
+        !g. !h. r(X) :- .nth(5,[1],X). r(7).
+        +!g : .nth(5,[1],X) <- .print(bad).
+        +!g <- if (.nth(5,[1],X)) { .print(bad) } else { .print(no) };
+          ?r(Y); .print(Y); .findall(Z, .nth(5,[1],Z), L); .print(L).
+        +!h <- .nth(5,[1],_).
+        -!h[error(E)] <- .print(E).
+        """
+    ) == ["no", "internal_action", "7", "[]"]
+
+
+def test_a_belief_change_without_plan_takes_its_turn_in_the_event_queue() -> None:
+    assert printed(
+        """
+        !g1. !g2. !g3.
+        +!g1 <- +b; .print(a1); .print(a2).
+        +!g2 <- .print(b1); .print(b2).
+        +!g3 <- .print(c1); .print(c2).
+        """
+    ) == ["b1", "b2", "c1", "a1", "c2", "a2"]
+
+
+def test_replacing_a_belief_with_annotations_replaces_one_that_has_them() -> None:
+    assert printed(
+        """
+        !g. p(1). p(2)[foo].
+        +!g <- -+p(9)[foo]; .findall(X, p(X), L); .print(L).
+        -p(X)[|R] <- .print(del(X,R)).
+        """
+    ) == ["del(2,[foo,source(self)])", "[9,1]"]
+
+
+def test_beliefs_with_very_long_lists_are_found_counted_once_and_deleted() -> None:
+    assert printed(
+        """
+        !g.
+        +!g <- .findall(X,.range(X,1,5000),L); .findall(X,.range(X,1,5000),M);
+          +l(L); +l(M); .count(l(_),N); if (l(M)) { .print(held) }; -l(L); .count(l(_),K);
+          if (k(L) == k(M)) { .print(equal) };
+          .print(N, K).
+        +l(_) <- .print(event).
+        """
+    ) == ["event", "held", "equal", "10"]
+
+
+def test_a_negated_variable_stands_for_negated_literals_only() -> None:
+    assert printed(
+        """
+        !g. ~p(1). p(2).
+        +!g <- Y = ~p(3); ~Z = Y; .print(Z); .findall(W, ~W, L); .print(L);
+          if (~V = p(3)) { .print(bad) }; !h(~p(5)); !h(p(5)).
+        +!h(~X) <- .print(X).
+        -!h(_) <- .print(no).
+        """
+    ) == ["p(3)", "[p(1)[source(self)]]", "p(5)", "no"]
+
+
+def test_an_unbound_namespace_takes_every_namespace_in_turn() -> None:
+    lines = printed("!g. a::p(1). b::p(3). p(4). +!g <- for (N::p(X)) { .print(N, X) }.")
+    assert sorted(lines) == ["a1", "b3", "default4"]
