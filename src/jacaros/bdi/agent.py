@@ -164,14 +164,10 @@ class Agent(Circumstance):
         held = Waiting(self, intention, ended.reason)
         intention.waiting = held
 
-        def resumed() -> None:
+        def on_resume() -> None:
             if intention.waiting is held:
                 intention.waiting = None
                 self._end_wait(ended)
-
-        def on_resume() -> None:
-            self.tasks.append(resumed)
-            self.architecture.ready()
 
         held.on_resume = on_resume
 

@@ -123,6 +123,8 @@ class Circumstance:
             mark = len(self.trail)
             found = unify(pattern, _event_literal(event), self.trail)
             if found:
+                # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
+                del self.trail[mark:]
                 self.event_waits.remove(entry)
                 waiting.resume()
             else:

@@ -17,7 +17,7 @@ from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
 from jacaros.errors import InternalError
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
-from jacaros.terms.values import BY_SELF
+from jacaros.terms.values import BY_SELF, atom
 
 
 def run(agent: Circumstance, fuel: int) -> bool:
@@ -225,7 +225,7 @@ def fail_goal(
     """A goal that has no frame failed: post its handler, or look further down."""
     trigger = goal[0]
     if agent.meta:
-        meta_events.goal_state(agent, goal, annotations, "failed")
+        meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
     if trigger.on_fail is not None and agent.selects[trigger.on_fail] is not None:
         intention.handlers.append(len(intention.frames))
         return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
@@ -242,7 +242,7 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
     if posted is not None:
         if agent.meta:
             failed = intention.frames[intention.handlers[-1]]
-            meta_events.goal_state(agent, failed[GOAL], posted.annotations, "failed")
+            meta_events.goal_state(agent, failed[GOAL], failed[2], "failed", atom(reason.error()))
         return posted
     if intention.on_failed is not None:
         intention.on_failed()

@@ -218,7 +218,7 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
 # --- ending goals from outside -----------------------------------------------------------------------------
 
 
-def _cut(agent: Circumstance, intention: Intention, index: int) -> None:
+def cut(agent: Circumstance, intention: Intention, index: int) -> None:
     """Take the frame at *index* and all above off the stack, and whatever the intention waits for."""
     if intention.waiting is not None:
         waiting, intention.waiting = intention.waiting, None
@@ -226,8 +226,6 @@ def _cut(agent: Circumstance, intention: Intention, index: int) -> None:
     event = pending_event(agent, intention)
     if event is not None:
         _remove_event(agent, event)
-    if intention in agent.intentions:
-        agent.intentions.remove(intention)
     intention.parked = False
     del intention.frames[index:]
     while intention.handlers and intention.handlers[-1] >= index:
@@ -242,15 +240,16 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
     for intention in intentions_for(agent, goal):
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
+        queued = intention in agent.intentions
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
                 _remove_event(agent, event)
         else:
-            _cut(agent, intention, index)
+            cut(agent, intention, index)
         if running:
             own = True
-        elif _goes_on(agent, intention):
+        elif _goes_on(agent, intention) and not queued:
             agent.make_ready(intention)
     for event in goal_events(agent, goal):
         _remove_event(agent, event)
@@ -275,7 +274,9 @@ def fail_goal(agent: Circumstance, goal: Term) -> bool:
                 _remove_event(agent, event)
         else:
             own = own or intention is agent.current
-            _cut(agent, intention, index + 1)
+            cut(agent, intention, index + 1)
+        if intention in agent.intentions:
+            agent.intentions.remove(intention)
         _post_failure(agent, intention)
     return own
 

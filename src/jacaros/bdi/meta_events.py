@@ -9,10 +9,14 @@ from jacaros.compiler.runtime import annotations_of_event, literal_of
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
-from jacaros.terms.values import atom, structure
+from jacaros.terms.values import Annotated, String, Term, atom, structure
+
+_NO_REASON = String("")
 
 
-def goal_state(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str) -> None:
+def goal_state(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str, reason: Term = _NO_REASON
+) -> None:
     """Tell that a goal has got into another state; an event comes one cycle later, before ordinary ones."""
     kind = goal[0]
     if not kind.kind or kind.operator == "^":
@@ -22,9 +26,19 @@ def goal_state(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, sta
     meta = trigger("^", kind.kind, kind.functor)
     if agent.selects[meta] is None:
         return
-    told = structure("state", atom(state))
+    told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
     event = Event((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))))
-    agent.tasks.append(lambda: agent.events.appendleft(event))
+    agent.tasks.append(lambda: _insert(agent, event))
+
+
+def _insert(agent: Circumstance, event: Event) -> None:
+    """Put a meta event before the ordinary ones, behind those that came earlier."""
+    place = 0
+    for queued in agent.events:
+        if queued.goal[0].operator != "^":
+            break
+        place += 1
+    agent.events.insert(place, event)
 
 
 def observe_goals(agent: Circumstance, observer: Callable[[str, str, int], None]) -> None:

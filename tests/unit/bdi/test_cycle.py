@@ -280,3 +280,42 @@ def test_a_negated_variable_stands_for_negated_literals_only() -> None:
 def test_an_unbound_namespace_takes_every_namespace_in_turn() -> None:
     lines = printed("!g. a::p(1). b::p(3). p(4). +!g <- for (N::p(X)) { .print(N, X) }.")
     assert sorted(lines) == ["a1", "b3", "default4"]
+
+
+def test_what_a_wait_for_an_event_binds_outlives_the_search_for_its_plan() -> None:
+    lines = printed(
+        """
+        !g. !k.
+        +!g <- .wait({+b(X)}); .print(X).
+        +!k <- .wait(5); +b(1); .print(k).
+        +b(X) : X > 5 <- .print(no).
+        +b(X) : X > 4 <- .print(no).
+        """
+    )
+    assert lines == ["1", "k"]
+
+
+def test_done_ends_the_goal_at_once() -> None:
+    assert printed("!g. +!g <- !h; .print(after). +!h <- .print(h1); .done; .print(no).") == ["h1", "after"]
+
+
+def test_an_intention_whose_wait_ended_while_suspended_is_ready_at_its_resume() -> None:
+    assert printed(
+        """
+        !g. !k.
+        +!g <- .wait(10); .print(g2).
+        +!k <- .wait(5); .suspend(g); .wait(20); .resume(g); .print(resumed); .print(r2).
+        """
+    ) == ["g2", "resumed", "r2"]
+
+
+def test_goal_state_events_keep_their_order_and_tell_the_reason() -> None:
+    assert printed(
+        """
+        !g.
+        +!g <- !h; .wait(5); .print(end).
+        +!h <- .fail.
+        -!h.
+        ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
+        """
+    ) == ["pending ", "executing ", "failed ia_failed", "end"]

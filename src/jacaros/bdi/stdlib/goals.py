@@ -215,7 +215,9 @@ def done(ctx: Context) -> Any:
     """End the own goal as achieved."""
     current = ctx.intention
     assert current is not None
-    current.frames[-1][0] = None
+    index = max(i for i, frame in enumerate(current.frames) if frame[GOAL][0].kind or i == 0)
+    goals.cut(ctx.agent, current, index)
+    return _ended(ctx, own=True)
 
 
 @internal_action(".fail", suspends=True)
