@@ -35,7 +35,9 @@ def check(output: Iterable[str], truth: GroundTruth | None = None) -> Verdict:
         verdict.expect(level - late <= percent <= level, f"'{state}' was told at {percent} %, not {level} %")
     if truth is not None:
         levels = [event.data["level"] for event in truth.events_of("battery", "battery_empty")]
-        verdict.expect(levels == [*range(99, -1, -1)], f"the battery went through {levels}")
+        # The agent, which knows whole percents only, ends the run when the last half percent is left.
+        expected = [*range(99, -1, -1)]
+        verdict.expect(levels in (expected, expected[:-1]), f"the battery went through {levels}")
     return verdict
 
 

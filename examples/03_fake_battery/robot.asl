@@ -2,14 +2,15 @@
 
 { include("$jacaros/artifacts.asl") }
 
-// Where the battery comes from: a timer that takes one percent a second.  The project file
-// robot_battery.jcm says `robot` instead: then it is the robot's own.
-battery_source(timer).
-
 !start.
 
+// The project file robot_battery.jcm gives the agent the belief battery_source(robot).
 +!start : battery_source(Source)
   <- !use_artifact("battery", "ArtSimBattery", [source(Source)]).
+
+// Without such a belief it is a battery that a timer drains, one percent a second.
++!start
+  <- !use_artifact("battery", "ArtSimBattery").
 
 // The artifact shows battery(Percent) and diagnostics(Text).  The agent believes what it sees, and a
 // plan that begins with +diagnostics runs whenever there is a new one.

@@ -1,0 +1,95 @@
+"""The examples as tests see them: run in this process, judged by their own checkers, and falsified."""
+
+import importlib.util
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+from jacaros.mas.project import load_deployment
+from jacaros.sim import Event, GroundTruth, Sample
+from jacaros.testing import RunResult, run_project
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+PROJECTS = (
+    "01_out_and_back/out_and_back.jcm",
+    "02_square/square.jcm",
+    "03_fake_battery/fake_battery.jcm",
+    "03_fake_battery/robot_battery.jcm",
+    "04_patrol/patrol.jcm",
+    "05_house_cleaning/house_cleaning.jcm",
+)
+
+LONGEST = 3000.0
+"""Seconds of the virtual clock after which a scenario that should have ended by itself is ended."""
+
+
+def checker(folder: str) -> ModuleType:
+    """The module ``check.py`` of an example."""
+    path = EXAMPLES / folder / "check.py"
+    spec = importlib.util.spec_from_file_location(f"check_{folder}", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@cache
+def run_of(project: str) -> RunResult:
+    """The run of an example, made once; it must end by itself and complain about nothing."""
+    return run(project)
+
+
+def run(project: str, beliefs: str = "", world: Path | None = None, seed: int = 0) -> RunResult:
+    """Run an example whose agent has further beliefs, or in another world."""
+    deployment = load_deployment(EXAMPLES / project)
+    if beliefs:
+        agent = deployment.agents[0]
+        deployment = replace(deployment, agents=(replace(agent, beliefs=beliefs),))
+    began = time.perf_counter()
+    result = run_project(deployment, seed=seed, world=world, seconds=LONGEST)
+    took = time.perf_counter() - began
+    print(
+        f"{project}: {result.seconds:.1f} simulated seconds in {took:.2f} s, {result.seconds / took:.0f} times as fast"
+    )
+    assert result.errors == []
+    assert result.exit_code == 0
+    assert result.seconds < LONGEST
+    return result
+
+
+def world_with(folder: Path, original: Path, old: str, new: str) -> Path:
+    """A world file that differs from another one in one place."""
+    text = original.read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    path = folder / original.name
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    return path
+
+
+def falsified(
+    truth: GroundTruth,
+    sample: Callable[[Sample], Sample | None] = lambda sample: sample,
+    event: Callable[[Event], Event | None] = lambda event: event,
+    more: Iterable[Event] = (),
+) -> GroundTruth:
+    """A ground truth in which something else happened.
+
+    Args:
+        truth: what happened.
+        sample, event: what becomes of each sample and each event; None leaves it out.
+        more: events that are put in.
+    """
+    false = GroundTruth(truth.robots, truth.world)
+    for robot in truth.robots:
+        for true in [*truth.path(robot), truth.latest(robot)]:
+            if (changed := sample(true)) is not None:
+                false.record_sample(robot, changed)
+    kept = [changed for true in truth.events if (changed := event(true)) is not None]
+    for each in sorted([*kept, *more], key=lambda event: event.time):
+        false.record_event(each)
+    return false

@@ -1,0 +1,133 @@
+"""Scenario 5: a house to clean."""
+
+from pathlib import Path
+
+import pytest
+from examples_lab import checker, falsified, run, run_of, world_with
+
+import jacaros.sim
+from jacaros.sim import Event, GroundTruth
+
+PROJECT = "05_house_cleaning/house_cleaning.jcm"
+HOUSE = Path(jacaros.sim.__file__).parent / "worlds" / "house.yaml"
+check = checker("05_house_cleaning").check
+
+
+def truth_of_example() -> GroundTruth:
+    truth: GroundTruth = run_of(PROJECT).ground_truth
+    return truth
+
+
+def test_every_task_is_done_in_its_room_and_in_order() -> None:
+    verdict = check(truth_of_example())
+    print(*verdict.lines(), sep="\n")
+    assert verdict.complaints == []
+
+
+def test_the_agent_tells_the_tasks() -> None:
+    lines = run_of(PROJECT).lines
+    assert lines[:5] == [
+        "[robot] living Room: vacuum the Carpet",
+        "[robot] kitchen: mop the Floor",
+        "[robot] bathroom: scrub the Tub",
+        "[robot] bathroom: mop the Floor",
+        "[robot] hallway: round 1 is done",
+    ]
+    assert lines[-1] == "[robot] The house is clean: 4 rounds, the battery charged 1 times."
+
+
+LEVELS = {
+    24.5: "on the way to the living room",
+    26: "in the living room",
+    28: "on the way to the kitchen",
+    32: "in the kitchen",
+    37.8: "between scrubbing the tub and mopping the floor",
+    38.5: "in the bathroom",
+    39.5: "on leaving the bathroom",
+    43: "on the way to the hallway",
+}
+"""Percent at the beginning, and where the battery gets low then."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", LEVELS, ids=LEVELS.get)
+def test_the_battery_may_get_low_anywhere(level: float, tmp_path: Path) -> None:
+    world = world_with(tmp_path, HOUSE, "level: 100", f"level: {level}")
+    result = run(PROJECT, "rounds(1)", world)
+    assert check(result.ground_truth, rounds=1).complaints == []
+
+
+@pytest.mark.slow
+def test_the_program_alone_runs_in_the_world_of_the_command_line() -> None:
+    alone = run("05_house_cleaning/robot.asl", "rounds(1)", HOUSE)
+    assert check(alone.ground_truth, rounds=1, recharges=0).passed
+
+
+# The checker on runs that went otherwise.
+
+
+def tasks(truth: GroundTruth) -> list[Event]:
+    return truth.events_of("task")
+
+
+def test_the_checker_sees_a_task_done_in_another_room() -> None:
+    truth = truth_of_example()
+    wrong = tasks(truth)[2]
+    false = falsified(
+        truth, event=lambda e: e._replace(data={**e.data, "room": "kitchen"}) if e is wrong else e
+    )
+    assert check(false).complaints == ["the robot did 'scrub tub bathroom' in the kitchen"]
+
+
+def test_the_checker_sees_a_task_done_outside_of_all_rooms() -> None:
+    truth = truth_of_example()
+    wrong = tasks(truth)[0]
+    false = falsified(truth, event=lambda e: e._replace(data={**e.data, "room": None}) if e is wrong else e)
+    assert not check(false).passed
+
+
+def test_the_checker_sees_tasks_in_the_wrong_order() -> None:
+    truth = truth_of_example()
+    scrub, mop = tasks(truth)[2:4]
+
+    def swapped(event: Event) -> Event:
+        if event is scrub:
+            return event._replace(data=mop.data)
+        return event._replace(data=scrub.data) if event is mop else event
+
+    assert not check(falsified(truth, event=swapped)).passed
+
+
+def test_the_checker_sees_a_task_left_out() -> None:
+    truth = truth_of_example()
+    last = tasks(truth)[-1]
+    assert (
+        check(falsified(truth, event=lambda e: e if e is not last else None)).complaints[0]
+        == "15 tasks, not 16"
+    )
+
+
+def test_the_checker_sees_a_task_that_nobody_asked_for() -> None:
+    more = Event(199.0, "turtlebot", "task", 0, 0, 0, {"task": "mop floor hallway", "room": "hallway"})
+    assert not check(falsified(truth_of_example(), more=[more])).passed
+
+
+def test_the_checker_sees_that_nothing_was_done() -> None:
+    assert not check(falsified(truth_of_example(), event=lambda e: e if e.kind != "task" else None)).passed
+
+
+def test_the_checker_sees_an_empty_battery() -> None:
+    empty = Event(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
+    assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
+
+
+def test_the_checker_sees_a_hallway_left_out() -> None:
+    truth = truth_of_example()
+    second_round = tasks(truth)[4].time
+    false = falsified(truth, lambda s: s if s.time > second_round else s._replace(y=s.y + 0.1 * (s.y < 0.5)))
+    assert not check(false).passed
+
+
+def test_the_checker_sees_that_nobody_recharged() -> None:
+    false = falsified(truth_of_example(), event=lambda e: e if e.kind != "charging" else None)
+    assert check(false).complaints == ["0 recharges, not 1"]

@@ -1,0 +1,144 @@
+"""Scenario 4: a patrol with recharging."""
+
+from pathlib import Path
+
+import pytest
+from examples_lab import EXAMPLES, checker, falsified, run, run_of, world_with
+
+from jacaros.sim import Event, GroundTruth, Sample
+
+PROJECT = "04_patrol/patrol.jcm"
+module = checker("04_patrol")
+check = module.check
+
+
+def truth_of_example() -> GroundTruth:
+    truth: GroundTruth = run_of(PROJECT).ground_truth
+    return truth
+
+
+def test_ten_recharges_and_no_corner_left_out() -> None:
+    verdict = check(truth_of_example())
+    print(*verdict.lines(), sep="\n")
+    assert verdict.complaints == []
+    assert verdict.measured["recharges"] == 10
+
+
+def test_the_battery_gets_low_on_all_sides_of_the_room() -> None:
+    stops = {line for line in run_of(PROJECT).lines if "battery low" in line}
+    assert len(stops) == 4
+
+
+def test_the_report_agrees_with_what_happened() -> None:
+    lines = run_of(PROJECT).lines
+    verdict = check(truth_of_example())
+    corners = int(verdict.measured["corners"])
+    assert f"[robot] {corners} corners, that is {corners // 4} rounds and {corners % 4} of the next" in lines
+    assert sum(line.startswith("[robot] round ") for line in lines) == corners
+
+
+LEVELS = {
+    24.5: "in the middle of a side",
+    28.5: "braking before a corner",
+    30.5: "arriving at a corner",
+    31.5: "in a turn",
+    32.5: "at the end of a turn",
+    33.5: "behind a corner",
+}
+"""Percent at the beginning, and where the battery gets low then."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", LEVELS, ids=LEVELS.get)
+def test_the_battery_may_get_low_anywhere(level: float, tmp_path: Path) -> None:
+    world = world_with(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", "level: 100", f"level: {level}")
+    result = run(PROJECT, "shift(1)", world)
+    assert check(result.ground_truth, cycles=1).complaints == []
+
+
+@pytest.mark.slow
+def test_the_program_alone_runs_in_the_world_of_the_command_line() -> None:
+    alone = run("04_patrol/robot.asl", "shift(1)", EXAMPLES / "04_patrol/patrol.yaml")
+    assert check(alone.ground_truth, cycles=1).passed
+
+
+def test_the_agent_gives_up_when_the_dock_gives_no_current(tmp_path: Path) -> None:
+    from jacaros.testing import run_project
+
+    text = (EXAMPLES / "04_patrol/patrol.yaml").read_text(encoding="utf-8")
+    world = tmp_path / "world.yaml"
+    world.write_text(
+        text.replace("x: 1, y: 1,", "x: 1, y: 1.5,").replace("level: 100", "level: 30"), encoding="utf-8"
+    )
+    result = run_project(EXAMPLES / PROJECT, world=world, seconds=300)
+    assert result.exit_code == 1
+    assert result.lines[-1].startswith("[robot] I cannot recharge: the robot's battery gets no current")
+
+
+# The checker on runs that went otherwise.
+
+
+def test_the_checker_sees_too_few_recharges() -> None:
+    assert check(truth_of_example(), cycles=11).complaints == ["10 recharges, not 11"]
+
+
+def test_the_checker_sees_a_corner_left_out() -> None:
+    truth = truth_of_example()
+    visit = module.visits(truth.path())[5]
+
+    def away(sample: Sample) -> Sample:
+        return sample._replace(x=sample.x + 0.2) if visit.begin <= sample.time <= visit.end else sample
+
+    assert [c.split(" at ")[0] for c in check(falsified(truth, away)).complaints] == [
+        "after corner 0 came corner 2"
+    ]
+
+
+def test_the_checker_sees_a_patrol_that_goes_on_to_the_wrong_corner() -> None:
+    truth = truth_of_example()
+    stay = module.judge_recharging(module.Verdict(), truth)[0]
+
+    def swapped(sample: Sample) -> Sample:
+        return sample._replace(x=2.0 - sample.x, y=2.0 - sample.y) if sample.time > stay.begin else sample
+
+    assert not check(falsified(truth, swapped)).passed
+
+
+def test_the_checker_sees_the_way_driven_backwards() -> None:
+    assert not check(falsified(truth_of_example(), lambda s: s._replace(x=s.y, y=s.x))).passed
+
+
+def test_the_checker_sees_an_empty_battery() -> None:
+    empty = Event(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
+    assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
+
+
+def test_the_checker_sees_charging_outside_of_the_dock() -> None:
+    false = falsified(
+        truth_of_example(), event=lambda e: e._replace(x=e.x + 0.5) if e.kind == "charging" else e
+    )
+    assert not check(false).passed
+
+
+def test_the_checker_sees_a_robot_that_leaves_the_dock_too_early() -> None:
+    false = falsified(truth_of_example(), event=lambda e: e if e.kind != "charged" else None)
+    assert not check(false).passed
+
+
+def test_the_checker_sees_a_robot_that_docks_with_half_a_battery() -> None:
+    def half(event: Event) -> Event:
+        return event._replace(data={"level": 50.0}) if event.kind == "charging" else event
+
+    assert not check(falsified(truth_of_example(), event=half)).passed
+
+
+def test_the_checker_sees_a_patrol_that_ends_in_the_dock() -> None:
+    truth = truth_of_example()
+    last = module.judge_recharging(module.Verdict(), truth)[-1]
+    false = falsified(truth, lambda s: s if s.time <= last.begin + 1.0 else None)
+    assert "no corner was visited after the last recharge" in check(false).complaints
+
+
+def test_the_checker_sees_a_bump() -> None:
+    bump = Event(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
+    assert not check(falsified(truth_of_example(), more=[bump])).passed

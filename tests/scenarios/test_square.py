@@ -1,0 +1,70 @@
+"""Scenario 2: a square of one metre."""
+
+import math
+
+import pytest
+from examples_lab import checker, falsified, run, run_of
+
+PROJECT = "02_square/square.jcm"
+check = checker("02_square").check
+
+
+def test_the_robot_drives_the_square_and_comes_back() -> None:
+    verdict = check(run_of(PROJECT).ground_truth)
+    print(*verdict.lines(), sep="\n")
+    assert verdict.complaints == []
+
+
+def test_the_agent_tells_the_corners() -> None:
+    assert run_of(PROJECT).lines == [
+        "[robot] side 1 done, at 100 cm, 0 cm",
+        "[robot] side 2 done, at 100 cm, 100 cm",
+        "[robot] side 3 done, at 0 cm, 100 cm",
+        "[robot] side 4 done, at 0 cm, 0 cm",
+    ]
+
+
+@pytest.mark.parametrize("file", ["square.mas2j", "robot.asl"])
+def test_the_other_ways_to_run_it_do_the_same(file: str) -> None:
+    other = run(f"02_square/{file}")
+    assert other.lines == run_of(PROJECT).lines
+    assert check(other.ground_truth).passed
+
+
+@pytest.mark.parametrize(("corner_x", "corner_y"), [(1, 0), (1, 1), (0, 1)])
+def test_the_checker_sees_a_corner_seven_centimetres_off(corner_x: float, corner_y: float) -> None:
+    truth = run_of(PROJECT).ground_truth
+    false = falsified(
+        truth, lambda s: s._replace(x=s.x + 0.07) if math.dist((s.x, s.y), (corner_x, corner_y)) < 0.2 else s
+    )
+    assert not check(false).passed
+
+
+def test_the_checker_sees_a_square_driven_the_other_way_round() -> None:
+    false = falsified(run_of(PROJECT).ground_truth, lambda s: s._replace(y=-s.y, yaw=-s.yaw))
+    assert not check(false).passed
+
+
+def test_the_checker_sees_a_square_that_is_too_large() -> None:
+    assert not check(
+        falsified(run_of(PROJECT).ground_truth, lambda s: s._replace(x=1.1 * s.x, y=1.1 * s.y))
+    ).passed
+
+
+def test_the_checker_sees_a_side_that_is_left_out() -> None:
+    truth = run_of(PROJECT).ground_truth
+    assert not check(falsified(truth, lambda s: s if s.time < 0.8 * truth.latest().time else None)).passed
+
+
+def test_the_checker_sees_a_side_that_is_no_straight_line() -> None:
+    false = falsified(
+        run_of(PROJECT).ground_truth,
+        lambda s: s._replace(y=s.y - 0.08) if 0.4 < s.x < 0.6 and s.y < 0.5 else s,
+    )
+    assert [c.split(":")[0] for c in check(false).complaints] == ["metres beside the sides"]
+
+
+def test_the_checker_sees_a_robot_that_never_moved() -> None:
+    truth = run_of(PROJECT).ground_truth
+    start = truth.path()[0]
+    assert not check(falsified(truth, lambda s: start._replace(time=s.time))).passed
