@@ -84,9 +84,9 @@ def judge(passed: Counter[str], total: Counter[str], required: tuple[str, ...], 
     for area in sorted(set(total) - set(required)):
         floor = floors.get(area, 0)
         if passed[area] < floor:
-            wrong.append(f"{area}: {passed[area]} pass, it were {floor}")
+            wrong.append(f"{area}: {passed[area]} pass, {floor} did before")
         elif passed[area] > floor:
-            print(f"{area}: {passed[area]} pass, it were {floor}: raise the floor with --update")
+            print(f"{area}: {passed[area]} pass, {floor} did before: raise the floor with --update")
     print("\n".join(wrong))
     print(f"{passed.total()} of {total.total()} cases pass, {'FAILED' if wrong else 'as they should'}")
     return 1 if wrong else 0

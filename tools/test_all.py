@@ -67,7 +67,11 @@ def parts() -> list[Part]:
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language")),
         Part("environment", (PYTHON, "tools/check_conformance.py", "environment")),
         Part("contracts", (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2")),
-        Part("scenarios", (*PYTEST, "tests/integration", "-m", "not ros1 and not ros2")),
+        Part(
+            "integration",
+            (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2"),
+        ),
+        Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2")),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2")),
         Part("browser", (*PYTEST, "tests", "-m", "browser"), needs="chromium", skips_fail=True),
     ]
@@ -82,7 +86,9 @@ def parts() -> list[Part]:
         ("ros2", ".venv-ros2-kilted", "ros2-kilted-install"),
     ):
         python = str(ROOT / venv / "bin" / "python")
-        suites = ("tests/contracts", "tests/integration", "tests/packaging", "-m", kind, f"--require-{kind}")
+        suites = ["tests/contracts", "tests/integration", "-m", kind, f"--require-{kind}"]
+        if kind == "ros2":
+            suites.insert(0, "tests/packaging/test_ament.py")
         name = venv.removeprefix(".venv-")
         found.append(Part(name, (python, *PYTEST[1:], *suites), "real-time", needs, minutes=15))
     return found

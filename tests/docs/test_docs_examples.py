@@ -1,0 +1,114 @@
+"""Every program of the documentation runs, and prints what the page says."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pages import PAGES, ROOT, Block, blocks, name_of
+
+LANGUAGES = {"agentspeak", "console", "jcm", "python", "sh", "text", "xml", "yaml"}
+
+RUN = [page for page in PAGES if any(block.language == "console" for block in blocks(page))]
+
+
+def commands(text: str) -> list[tuple[str, str]]:
+    """The commands of a console block, each with what it is said to print."""
+    parts = re.split(r"^\$ ", text, flags=re.MULTILINE)
+    assert not parts[0].strip(), "a console block begins with a command"
+    found = []
+    for part in parts[1:]:
+        command, _, output = re.sub(r"\\\n\s*(?:> )?", "", part).partition("\n")
+        found.append((command, output))
+    return found
+
+
+def printed(command: str, folder: Path) -> str:
+    """What a command prints, errors included."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["sh", "-c", command],
+        cwd=folder,
+        env={**os.environ, "PATH": path, "COLUMNS": "100", "NO_COLOR": "1"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    return done.stdout
+
+
+def pattern(expected: str) -> str:
+    """A regular expression for an expected output: lines `...` stand for any lines, `...` within for any text."""
+    lines = []
+    for line in expected.rstrip("\n").splitlines():
+        if line.strip() == "...":
+            lines.append(r"(?:[^\n]*\n)*?")
+        else:
+            lines.append(re.escape(line.rstrip()).replace(re.escape("..."), "[^\\n]*") + r"[ ]*\n")
+    return "".join(lines)
+
+
+@pytest.mark.parametrize("page", RUN, ids=name_of)
+def test_the_commands_of_a_page_print_what_it_says(page: Path, tmp_path: Path) -> None:
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    (tmp_path / "runs").mkdir()
+    for block in blocks(page):
+        where = f"{name_of(page)}:{block.line}"
+        if block.language == "console":
+            for command, expected in commands(block.text):
+                output = printed(command, tmp_path)
+                found = re.fullmatch(pattern(expected), output)
+                assert found, f"{where}: $ {command}\nprints\n{output}\nand not\n{expected}"
+        elif is_file(block):
+            file = tmp_path / block.purpose
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(block.text, encoding="utf-8")
+
+
+def is_file(block: Block) -> bool:
+    """Whether a block is a file that commands may use."""
+    return bool(block.purpose) and not block.purpose.startswith("excerpt")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_every_block_of_a_page_has_a_known_purpose(page: Path) -> None:
+    """A program that is neither run nor an excerpt could be wrong without anybody noticing."""
+    for block in blocks(page):
+        where = f"{name_of(page)}:{block.line}"
+        assert block.language in LANGUAGES, f"{where}: language {block.language!r}"
+        if block.language in ("agentspeak", "jcm", "python", "yaml"):
+            assert block.purpose, f"{where}: name the file, or what it is an excerpt of"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_files_of_a_page_are_used_by_its_commands(page: Path) -> None:
+    found = list(blocks(page))
+    files = [block for block in found if is_file(block)]
+    text = " ".join(block.text for block in found if block.language == "console")
+    programs = " ".join(block.text for block in files)
+    for block in files:
+        stem = Path(block.purpose).stem
+        used = stem in text or stem in programs or stem == "artifacts"
+        assert used, f"{name_of(page)}:{block.line}: nothing runs {block.purpose}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_excerpts_stand_in_their_files(page: Path) -> None:
+    for block in blocks(page):
+        if not block.purpose.startswith("excerpt "):
+            continue
+        path = ROOT / block.purpose.removeprefix("excerpt ")
+        assert path.is_file(), f"{name_of(page)}:{block.line}: there is no file {path}"
+        source = [line.strip() for line in path.read_text(encoding="utf-8").splitlines()]
+        place = 0
+        for line in (line.strip() for line in block.text.splitlines()):
+            if line in ("", "...", "# ..."):
+                continue
+            where = f"{name_of(page)}:{block.line}: {path.name} has no line (any more, or not in this order)"
+            assert line in source[place:], f"{where}\n{line}"
+            place = source.index(line, place) + 1
