@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.bdi import belief_update, body_terms, cycle, forks, formulas, goals, plan_changes
+from jacaros.bdi import belief_update, body_terms, cycle, forks, formulas, goals, meta_events, plan_changes
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.answers import AnswerByPlan
 from jacaros.bdi.architecture import Architecture
@@ -176,6 +176,8 @@ class Agent(Circumstance):
         assert frame is not None
         if waiting.failure is None:
             frame[0] = waiting.next_step
+            if self.meta:
+                meta_events.top_goal_state(self, intention, "executing")
             if cycle.pop_finished(self, intention):
                 self.make_ready(intention)
             return

@@ -137,6 +137,7 @@ def _external(agent: Circumstance, event: Event) -> bool:
     if frame[PLAN].atomic:
         agent.atomic = intention
     if agent.meta:
+        meta_events.goal_state(agent, goal, annotations, "pending")
         meta_events.goal_state(agent, goal, annotations, "executing")
     agent.make_ready(intention)
     return True
@@ -248,8 +249,18 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
         intention.on_failed()
     else:
         _warn_lost(agent, intention, reason)
+    if agent.meta:
+        _tell_failed(agent, intention, reason)
     agent.finish(intention)
     return None
+
+
+def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+    """All goals of an intention that nobody saved have failed, and are over."""
+    for frame in reversed(intention.frames):
+        if not frame[GOAL][0].failing:
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "failed", atom(reason.error()))
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
 
 
 def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
@@ -315,6 +326,8 @@ def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # no
                 agent.make_ready(intention)
                 break
         elif goal is SUSPENDED:
+            if agent.meta and intention.waiting is not None:
+                meta_events.top_goal_state(agent, intention, "waiting", intention.waiting.reason)
             break
         else:
             annotations: Any = BY_SELF

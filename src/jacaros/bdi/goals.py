@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
-from jacaros.bdi import meta_events
+from jacaros.bdi import cycle, meta_events
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.cycle import fail_intention, pop_finished
-from jacaros.bdi.event import Event
+from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.failure import nowhere
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
 from jacaros.compiler.runtime import literal_of
@@ -103,6 +102,10 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
     if agent.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
+    event = pending_event(agent, intention)
+    if event is not None:
+        _remove_event(agent, event)
     agent.finish(intention)
 
 
@@ -260,7 +263,7 @@ def _goes_on(agent: Circumstance, intention: Intention) -> bool:
     if not intention.frames:
         agent.finish(intention)
         return False
-    return pop_finished(agent, intention)
+    return cycle.pop_finished(agent, intention)
 
 
 def fail_goal(agent: Circumstance, goal: Term) -> bool:
@@ -269,21 +272,34 @@ def fail_goal(agent: Circumstance, goal: Term) -> bool:
     for intention in intentions_for(agent, goal):
         index = frame_of(agent, intention, goal)
         if index is None:
-            event = pending_event(agent, intention)
-            if event is not None:
-                _remove_event(agent, event)
-        else:
-            own = own or intention is agent.current
-            cut(agent, intention, index + 1)
+            _fail_pending(agent, intention)
+            continue
+        own = own or intention is agent.current
+        cut(agent, intention, index + 1)
         if intention in agent.intentions:
             agent.intentions.remove(intention)
         _post_failure(agent, intention)
+    for event in goal_events(agent, goal):
+        _remove_event(agent, event)
+        intention = agent.new_intention(event.cause)
+        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, nowhere()))
     return own
+
+
+def _fail_pending(agent: Circumstance, intention: Intention) -> None:
+    """A sub-goal that was posted and not taken up yet fails in its place."""
+    event = pending_event(agent, intention)
+    if event is not None:
+        _remove_event(agent, event)
+        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, nowhere()))
 
 
 def _post_failure(agent: Circumstance, intention: Intention) -> None:
     """The failure of the goal on top is handled like any other, but carries no error annotation."""
-    posted = fail_intention(agent, intention, nowhere())
+    _post(agent, intention, cycle.fail_intention(agent, intention, nowhere()))
+
+
+def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:
     if posted is not None:
         agent.post(Event(posted.goal, intention, posted.annotations))
         agent.architecture.ready()

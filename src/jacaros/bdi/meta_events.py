@@ -5,6 +5,7 @@ from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
 from jacaros.compiler.runtime import annotations_of_event, literal_of
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.order import annotation_set
@@ -29,6 +30,14 @@ def goal_state(
     told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
     event = Event((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))))
     agent.tasks.append(lambda: _insert(agent, event))
+
+
+def top_goal_state(agent: Circumstance, intention: Intention, state: str, reason: Term = _NO_REASON) -> None:
+    """The same for the topmost goal of an intention."""
+    for frame in reversed(intention.frames):
+        if frame[GOAL][0].kind and not frame[GOAL][0].failing:
+            goal_state(agent, frame[GOAL], frame[ANNOTATIONS], state, reason)
+            return
 
 
 def _insert(agent: Circumstance, event: Event) -> None:

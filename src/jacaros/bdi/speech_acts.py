@@ -203,7 +203,7 @@ def answer(agent: Circumstance, question: SpeechAct, content: Term | None) -> No
     agent.architecture.send(
         SpeechAct(
             performative,
-            agent.name,
+            agent.name if question.sender != "self" else "self",
             question.sender if question.sender != "self" else agent.name,
             question.content if content is None else rename(content),
             agent.next_message_id(),  # type: ignore[attr-defined]

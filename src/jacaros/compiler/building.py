@@ -209,7 +209,13 @@ def _rule(fn: FunctionBuilder, node: nodes.RuleTerm) -> str:
 
 def _body(fn: FunctionBuilder, body: nodes.Body) -> str:
     result = fn.constant(BODY_END)
-    steps = [_step(fn, s) for s in body.steps]
+    written = list(body.steps)
+    last = written[-1] if len(written) > 1 else None
+    if isinstance(last, nodes.ExternalAction) and isinstance(last.action, nodes.Variable):
+        # A variable at the end stands for all that follows.
+        result = build(fn, last.action)
+        written.pop()
+    steps = [_step(fn, s) for s in written]
     for step in reversed(steps):
         result = f"({fn.constant(BODY_SEQUENCE)}, {step}, {result})"
     return result

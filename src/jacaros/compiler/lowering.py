@@ -155,6 +155,10 @@ def _body_term(node: nodes.BodyTerm, lookup: Lookup) -> Term:
 
 
 def _body(node: nodes.Body, lookup: Lookup) -> Term:
+    *steps, last = node.steps or (None,)
+    if steps and isinstance(last, nodes.ExternalAction) and isinstance(last.action, nodes.Variable):
+        # A variable at the end stands for all that follows.
+        return plans.make_body([lower(s, lookup) for s in steps], lower(last.action, lookup))
     return plans.make_body(lower(s, lookup) for s in node.steps)
 
 

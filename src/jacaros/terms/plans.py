@@ -25,9 +25,9 @@ BODY_END = functor("", 0, kind=KIND)
 NO_LABEL = atom("nolabel")
 
 
-def make_body(steps: Iterable[Term]) -> Term:
-    """The body term of these step terms."""
-    body: Term = BODY_END
+def make_body(steps: Iterable[Term], rest: Term = BODY_END) -> Term:
+    """The body term of these step terms, with *rest* behind them."""
+    body: Term = rest
     for step in reversed(list(steps)):
         body = (BODY_SEQUENCE, step, body)
     return body

@@ -5,15 +5,17 @@ from typing import Any
 
 from jacaros.bdi import goals
 from jacaros.bdi.context import Context
-from jacaros.bdi.intention import GOAL, Intention
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
-from jacaros.compiler.runtime import Failure
+from jacaros.compiler.lowering import lower
+from jacaros.compiler.runtime import Failure, literal_of
+from jacaros.terms.plans import make_body, trigger
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
     Annotated,
-    String,
     Term,
+    Var,
     atom,
     bare,
     functor,
@@ -81,16 +83,32 @@ def _state(candidate: Intention) -> Term:
 
 
 def _means(frame: Any) -> Term:
-    """``im(Label, Goal, Body, Bindings)`` of one frame."""
+    """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done."""
     plan = frame[4]
-    bindings = [
-        structure("map", atom(f"'{name}'"), resolve(frame[slot]))
+    values = {
+        name: frame[slot]
         for name, slot in plan.slots.items()
         if slot < len(frame) and frame[slot] is not None
-    ]
-    literal = frame[GOAL][0].functor
-    goal = (literal, *frame[GOAL][1:]) if len(frame[GOAL]) > 1 else literal
-    return structure("im", plan.label, resolve(goal), String(""), make_list(bindings))
+    }
+    bindings = [structure("map", atom(f"'{name}'"), resolve(value)) for name, value in values.items()]
+    kind = frame[GOAL][0]
+    goal = resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))
+    rest = make_body(
+        lower(node, lambda name: values[name] if name in values else Var(name))
+        for node in _remaining(plan, frame[STEP])
+    )
+    event = trigger(kind.operator + kind.kind, goal)
+    return structure("im", plan.label, event, resolve(rest), make_list(bindings))
+
+
+def _remaining(plan: Any, step: Any) -> Iterator[Any]:
+    """The formulae from a step on, each once."""
+    by_name = {function.__name__: info for function, info in plan.steps.items()}
+    name = step.__name__ if step is not None else "None"
+    while name in by_name:
+        info = by_name.pop(name)
+        yield info.node
+        name = info.next
 
 
 @internal_action(".current_intention", arity=1)

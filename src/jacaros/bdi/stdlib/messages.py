@@ -5,6 +5,7 @@ from typing import Any
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.speech_acts import from_sender
 from jacaros.bdi.waiting import Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import rename
@@ -46,6 +47,11 @@ def _deliver(
         raise ActionError(f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found")))
 
 
+def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
+    sender = own_name if message.sender == "self" else message.sender
+    return from_sender(content, sender) if bare(content).__class__ in (tuple, Functor) else content
+
+
 class _Question:
     """A synchronous question to one or several agents."""
 
@@ -67,13 +73,12 @@ class _Question:
             self._end(make_list(self.answers) if self.many else content)
 
     def _with_source(self, message: SpeechAct) -> Term:
-        from jacaros.bdi.speech_acts import from_sender
-
-        content = message.content
-        if is_list(content):
-            return content
-        inner = bare(content)
-        return from_sender(content, message.sender) if inner.__class__ in (tuple, Functor) else content
+        """The answer, every literal of it with the answering agent as source."""
+        if is_list(message.content):
+            return make_list(
+                [_told_by(item, self.ctx.agent.name, message) for item in list_items(message.content)]
+            )
+        return _told_by(message.content, self.ctx.agent.name, message)
 
     def timed_out(self) -> None:
         """No answer in time."""
