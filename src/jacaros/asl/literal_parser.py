@@ -134,7 +134,8 @@ class LiteralParser(Cursor, ABC):
             return ()
         opener = self.advance()
         if self.token.kind == ")":
-            self.report(
+            # So goals are written in the JaCaROS thesis, and in most other languages.
+            self.warn(
                 "the brackets are empty", self.span_of(opener), "without arguments leave them out: p, not p()"
             )
             self.advance()

@@ -64,6 +64,15 @@ class PlanParser(BodyParser):
             return self.condition()
         if self.token.kind != ":":
             return None
+        if self.peek().kind == "<-":
+            colon = self.advance()
+            # So the programs in the JaCaROS thesis are printed.
+            self.warn(
+                "the context behind ':' is missing; the plan is taken as one without a context",
+                self.span_of(colon),
+                "leave out the ':', or write ': true'",
+            )
+            return None
         context = self._part("context")
         while self.token.kind == ":":
             self.report("a plan has only one context", hint="join the conditions with &")

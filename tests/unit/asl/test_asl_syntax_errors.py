@@ -121,7 +121,7 @@ def test_carets_stand_under_the_mistake_also_behind_tabs():
         ("+!g : X =< 1.", 1, "there is no '=<'", "write <="),
         (r"+!g : X \= 1.", 1, r"'\' does not begin anything", r"'not equal' is written \=="),
         ("+!g : 1 < X < 5.", 1, "relations cannot be chained", "join two of them with &"),
-        ("+!g : <- a.", 1, "the context behind ':' is missing", None),
+        ("+!g : .", 1, "the context behind ':' is missing", None),
         ("+!g <- a <- b.", 1, "a plan has only one '<-'", "is the final '.'"),
         ("+!g <- +!h.", 1, "'+!' begins a plan and is no step of a body", "a goal is posted by !g"),
         ("+!g <- if (a) { b } else if (c) { d }.", 1, "'else if' is written elif", "elif (condition)"),
@@ -141,7 +141,6 @@ def test_carets_stand_under_the_mistake_also_behind_tabs():
         ("+!g : .send(a,tell,b) <- c.", 1, "'.send' acts and cannot stand in a context", "do it in the body"),
         (".print(a).", 1, "'.print' cannot stand outside a plan", "is it a step of the plan before"),
         ("!!g.", 1, "an initial goal has one '!'", "write !goal."),
-        ("p().", 1, "the brackets are empty", "without arguments leave them out"),
         ("p(a).q(b).", 1, "'.q' is read as one word", "put a blank or a line end after the final"),
         ("@X +!g.", 1, "a label is an atom, with annotations if need be", "as in @stop[atomic]"),
         ("/* never closed\n p.", 1, "the comment is not closed", "end it with */"),
@@ -200,6 +199,19 @@ def test_two_plans_with_one_label_in_two_files_are_an_error_that_names_both():
 def test_labels_of_subplans_are_apart_from_those_of_the_program():
     load_program("x", "@one +!a. { @one +e. @two +f. } @two +!b.")
     assert len(errors("@one +!a. { @two +e. @two +f. }")) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "plain", "message"),
+    [
+        ("+!g :\n <- a.", "+!g <- a.", "the context behind ':' is missing"),
+        ("+!g <- !h().", "+!g <- !h.", "the brackets are empty"),
+    ],
+)
+def test_ways_of_writing_in_the_thesis_are_warned_of(text: str, plain: str, message: str):
+    program, (warning,) = load_program("x", text)
+    assert (warning.severity, warning.message.split(";")[0]) == ("warning", message)
+    assert program.plans == load_program("x", plain)[0].plans
 
 
 def test_warnings_come_with_the_errors_in_the_order_of_the_text():

@@ -1,0 +1,152 @@
+"""Programs written as the listings of the thesis run to a sensible end."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from jacaros.mas.launch import launch
+from jacaros.mas.mas import Mas
+from jacaros.mas.options import RunOptions
+from jacaros.sim import GroundTruth
+from jacaros.testing import RunResult, run_project
+from jacaros.testing.paths import angle_between, distance, turns
+
+HERE = Path(__file__).parent
+
+AS_PRINTED = ("the context behind ':' is missing", "the brackets are empty")
+"""Ways of writing in the thesis of which a program is warned."""
+
+
+def run(name: str, seconds: float) -> RunResult:
+    """Run a program; nothing may be complained about but the two ways of writing."""
+    result = run_project(HERE / f"{name}.mas2j", seconds=seconds)
+    wrong = [text for text in result.errors if not any(each in text for each in AS_PRINTED)]
+    assert wrong == []
+    assert result.exit_code == 0
+    return result
+
+
+def is_back(truth: GroundTruth) -> bool:
+    start, end = truth.path()[0], truth.latest()
+    return distance(end, start.x, start.y) <= 0.05 and angle_between(end.yaw, start.yaw) <= math.radians(3.0)
+
+
+def test_odometry_is_created_found_and_perceived() -> None:
+    result = run("odometry", 60.0)
+    assert result.lines[0] == "[robot] looking the artifact up"
+    assert "[robot] looking again" in result.lines
+    assert "[robot] making the artifact of a robot without a name" in result.lines
+    seen = result.lines.index("[robot] odometry came")
+    assert result.lines[seen + 1 : seen + 4] == ["[robot] X: 0", "[robot] Y: 0", "[robot] Z: 0"]
+    assert "[robot] the pose: 0 0 0" in result.lines
+    assert result.lines[-2:] == ["[robot] making the artifact of robot_0", "[robot] no odometry for robot_0"]
+
+
+def test_each_robot_has_odometry_of_its_own() -> None:
+    result = run("odometry_of_robots", 60.0)
+    assert result.lines == [
+        "[watcher] making Odom",
+        "[watcher] looking up Odom",
+        "[watcher] making Odomrobot_1",
+        "[watcher] looking up Odomrobot_1",
+        "[watcher] robot_1 is at 1 1",
+        "[watcher] found what it made",
+    ]
+
+
+def test_out_and_back_by_time() -> None:
+    truth = run("out_and_back", 30.0).ground_truth
+    assert max(sample.x for sample in truth.path()) > 1.0
+    assert is_back(truth)
+
+
+def test_a_square_by_odometry() -> None:
+    truth = run("square", 40.0).ground_truth
+    corners = [(turn.x, turn.y) for turn in turns(truth.path())]
+    for corner, wanted in zip(corners, [(1, 0), (1, 1), (0, 1), (0, 0)], strict=True):
+        assert math.dist(corner, wanted) <= 0.05
+    assert is_back(truth)
+
+
+def test_the_diagnoses_of_the_battery() -> None:
+    assert run("battery", 110.0).lines == [
+        "[robot] Full Battery",
+        "[robot] Medium Battery",
+        "[robot] Low Battery",
+    ]
+
+
+@pytest.mark.slow
+def test_patrol_and_recharge() -> None:
+    result = run("patrol", 300.0)
+    told = [line.removeprefix("[robot] ") for line in result.lines]
+    story = re.sub(r"(side )+", "sides ", " ".join(line.replace(" ", "_") for line in told) + " ")
+    cycle = (
+        "Current_Diagnostic:_Medium_Battery sides Current_Diagnostic:_Low_Battery recharging "
+        "Current_Diagnostic:_Medium_Battery Current_Diagnostic:_Full_Battery returned sides "
+    )
+    assert story.startswith(f"Current_Diagnostic:_Full_Battery sides {cycle}{cycle}")
+    # Before the first stop, the corners are those of the square; afterwards the relative moves lead elsewhere.
+    first = [(turn.x, turn.y) for turn in turns(result.ground_truth.path())][:8]
+    for corner, wanted in zip(first, [(2, 0), (2, 2), (0, 2), (0, 0)] * 2, strict=True):
+        assert math.dist(corner, wanted) <= 0.05
+
+
+class Odometer:
+    """A console that notes how far the robot has driven at each line."""
+
+    def __init__(self) -> None:
+        self.driven: dict[str, float] = {}
+        self.mas: Mas | None = None
+
+    def begin(self, mas: Mas) -> None:
+        """Take the run."""
+        self.mas = mas
+
+    def print(self, agent: str, text: str) -> None:
+        """Note the metres of the newest line of this text."""
+        assert self.mas is not None
+        assert self.mas.ros.world is not None
+        self.driven[text] = self.mas.ros.world.ground_truth.odometer()
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Nothing is to be said."""
+        raise AssertionError(text)
+
+
+@pytest.mark.slow
+def test_the_patrol_stands_still_while_it_is_suspended() -> None:
+    # All that the robot drives between "Low Battery" and "returned" are the four metres of the way to the dock.
+    console = Odometer()
+    launch(
+        HERE / "patrol.mas2j",
+        RunOptions(fast=True, seed=0, seconds=140.0),
+        console,
+        console.begin,
+        own_process=False,
+    )
+    driven = console.driven["returned"] - console.driven["Current Diagnostic: Low Battery"]
+    assert driven == pytest.approx(4.0, abs=0.3)
+
+
+@pytest.mark.slow
+def test_the_household() -> None:
+    result = run("house", 200.0)
+    tasks = [event.data["task"] for event in result.ground_truth.events_of("task")]
+    of_a_round = [
+        "vacuum carpet living_room",
+        "mop floor kitchen",
+        "scrub tub bathroom",
+        "mop floor bathroom",
+    ]
+    assert len(tasks) >= 8
+    assert tasks == [of_a_round[number % 4] for number in range(len(tasks))]
+    places = [(2, 0), (2, 2), (0, 2), (0, 2)]
+    for event, place in zip(result.ground_truth.events_of("task")[:4], places, strict=True):
+        assert distance(event, *place) <= 0.05
+    assert "[robot] recharging" in result.lines
+    assert "[robot] returned" in result.lines
+    after = result.lines[result.lines.index("[robot] returned") :]
+    assert any("Vacuum" in line or "Mop" in line for line in after)
