@@ -44,6 +44,31 @@ def test_each_room_has_its_tasks_and_takes_its_time() -> None:
     in_lab(body, None)
 
 
+def test_work_rests_while_the_intention_is_suspended() -> None:
+    async def body(lab: Lab) -> None:
+        tasks = heard(lab)
+        cleaner = await lab.make(ArtCleaning)
+        cleaning = lab.begin(cleaner, "clean", 3)
+        await lab.sleep(0.4)
+        cleaning.execution.pause()
+        await lab.sleep(10)
+        assert tasks == ["scrub tub bathroom"]
+        cleaning.execution.resume()
+        await lab.sleep(0.59)
+        assert tasks == ["scrub tub bathroom"]
+        await lab.sleep(0.02)
+        assert tasks == ["scrub tub bathroom", "mop floor bathroom"]
+        for _ in range(3):
+            cleaning.execution.pause()
+            await lab.sleep(0.5)
+            cleaning.execution.resume()
+            await lab.sleep(0.5)
+        await cleaning.done
+        assert round(lab.clock.elapsed, 2) == 10 + 3 * 0.5 + 3.5
+
+    in_lab(body, None)
+
+
 def test_the_world_logs_each_task_with_the_true_place() -> None:
     async def body(lab: Lab) -> None:
         assert lab.world is not None

@@ -62,20 +62,30 @@ class ArtCleaning(RosArtifact):
         """Go on to the next room; after the last comes the first."""
         self.update_property("atRoom", (self.value("atRoom") + 1) % len(ROOMS))
 
-    @operation
+    @operation(pausable=True)
     async def clean(self, room: int) -> None:
         """Tell the tasks of *room* one after the other, and take the time they need.
 
+        While the intention is suspended the work rests: a robot that has left to recharge mops no floor.
         Fails with ``unknown_room(N)``.
         """
         if room not in TASKS:
             self.fail(f"there is no room {room}; rooms are 0 to {len(ROOMS) - 1}", "unknown_room", room)
         for number, (task, thing) in enumerate(TASKS[room]):
             if number:
-                await self.sleep(BETWEEN_TASKS)
+                await self._work(BETWEEN_TASKS)
             self.update_property(task, thing, ROOMS[room])
             self._publish(f"{task} {thing} {ROOMS[room].replace(' ', '_')}".lower())
-        await self.sleep(CLEANING)
+        await self._work(CLEANING)
+
+    async def _work(self, seconds: float) -> None:
+        """Take so many seconds, pauses not counted."""
+        while seconds > 0.0:
+            await self.sleep(seconds)
+            over = self.clock.now()
+            paused = await self.pause_point()
+            # What was paused while the sleep went on is still to be done.
+            seconds = round(paused - (self.clock.now() - over), 6)
 
     def _publish(self, task: str) -> None:
         if self._tasks is not None:
