@@ -1,0 +1,106 @@
+"""Runs on real ROS graphs: the world is one process, the agents are another, and the world's file judges.
+
+What a graph is made of (master, peers) comes from the contract suite.
+"""
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "contracts")]
+
+from graphs import InProcesses, ProcessPeer
+from masters import Master
+from presence import is_wanted, need
+from processes import Agents, WorldProcess
+
+KINDS = ("ros1", "ros2")
+MARKS = {"ros1": [pytest.mark.ros1, pytest.mark.slow], "ros2": [pytest.mark.ros2, pytest.mark.slow]}
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave the folder out where no real graph is: the contract suite says so once, and loudly."""
+    return None if any(is_wanted(kind, config) for kind in KINDS) else True
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Run every test on each kind of graph that is there, or on the kind that it names with `only`."""
+    if "kind" in metafunc.fixturenames:
+        only = metafunc.definition.get_closest_marker("only")
+        asked = only.args if only else KINDS
+        kinds = [pytest.param(k, marks=MARKS[k]) for k in asked if is_wanted(k, metafunc.config)]
+        if not kinds:
+            reason = f"this is a test for {' and '.join(asked)}"
+            kinds = [pytest.param(asked[0], marks=pytest.mark.skip(reason=reason))]
+        metafunc.parametrize("kind", kinds, scope="session")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the marker `only` known."""
+    config.addinivalue_line("markers", "only(kinds): run a test on these kinds of graph alone")
+
+
+@pytest.fixture(scope="session")
+def master(
+    kind: str, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Master | None]:
+    """The ROS 1 master of all tests; None on ROS 2."""
+    need(kind, request.config)
+    if kind != "ros1":
+        yield None
+        return
+    made = Master(tmp_path_factory.mktemp("master"))
+    made.start()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="session")
+def environment(kind: str, master: Master | None, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Variables that keep a run in a graph of its own on this machine."""
+    if master is not None:
+        return master.environment
+    return {
+        "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_LOG_DIR": str(tmp_path_factory.mktemp("ros_log")),
+    }
+
+
+@pytest.fixture
+def peer(kind: str, environment: dict[str, str]) -> Iterator[Callable[[str], ProcessPeer]]:
+    """Makes further nodes, each a process of its own; they end with the test."""
+    graph = InProcesses(kind, environment)
+
+    def make(name: str) -> Any:
+        return graph.peer(name)
+
+    yield make
+    graph.close()
+
+
+@pytest.fixture
+def world(kind: str, environment: dict[str, str], tmp_path: Path) -> Iterator[WorldProcess]:
+    """The yard: an open floor with one robot at the origin, as a process of its own."""
+    made = WorldProcess(kind, environment, tmp_path)
+    made.wait_until_open()
+    yield made
+    made.stop()
+
+
+@pytest.fixture
+def run_agents(kind: str, environment: dict[str, str], tmp_path: Path) -> Iterator[Callable[..., Agents]]:
+    """Starts agent programs of the folder `programs`, each as a process of its own."""
+    started: list[Agents] = []
+
+    def run(program: str, *options: str) -> Agents:
+        started.append(Agents(program, kind, environment, options))
+        return started[-1]
+
+    yield run
+    for each in started:
+        each.stop()

@@ -1,0 +1,9 @@
+// Drives half a metre as soon as there is a robot.
+!drive.
+
++!drive
+  <- .print("begins");
+     makeArtifact("Wheels", "ArtCmdVel", [odometry_timeout(60)]);
+     moveForward(0.5);
+     .print("arrived");
+     .stopMAS.

@@ -1,0 +1,50 @@
+"""What people read while something is not there yet, and that it works when it comes."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from judging import distance
+from masters import Master
+from presence import need
+from processes import Agents, WorldProcess
+
+CURE = "Start it with `roscore`, or set ROS_MASTER_URI to where it runs."
+
+
+@pytest.fixture
+def late_master(kind: str, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Master]:
+    """A master that the test starts."""
+    need(kind, request.config)
+    made = Master(tmp_path)
+    yield made
+    made.close()
+
+
+@pytest.mark.only("ros1")
+def test_a_master_that_is_late_is_awaited_in_plain_words(
+    kind: str, late_master: Master, tmp_path: Path
+) -> None:
+    processes = (
+        agents := Agents("short.asl", kind, late_master.environment),
+        world := WorldProcess(kind, late_master.environment, tmp_path),
+    )
+    told = [
+        f"[ros] waiting for the ROS master at {late_master.uri}",
+        f"[ros] the ROS master at {late_master.uri} is missing; still trying. {CURE}",
+        f"[ros] found the ROS master at {late_master.uri}",
+    ]
+    try:
+        agents.until_line("begins")
+        for process in processes:
+            process.until_error("is missing")
+            assert process.errors == told[:2]
+        late_master.start()
+        assert agents.end() == 0
+        assert agents.lines == ["[short] begins", "[short] arrived"]
+        assert distance(world.close().latest(), (0.5, 0.0)) <= 0.02
+        for process in processes:
+            assert process.errors == told
+    finally:
+        for process in processes:
+            process.stop()
