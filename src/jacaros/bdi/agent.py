@@ -23,16 +23,17 @@ from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import settle
+from jacaros.terms.plans import is_body
 from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, undo, unify
 from jacaros.terms.values import (
     BY_SELF,
     Functor,
     Term,
+    Var,
     annotations_of,
     arguments_of,
     atom,
     bare,
-    deref,
     functor,
     functor_of,
     structure,
@@ -224,21 +225,12 @@ class Agent(Circumstance):
         Raises:
             Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
         """
-        term = settle(term)
+        term = resolve(term)
         symbol = functor_of(term)
         if symbol is None or symbol.kind:
-            raise Failure(
-                (
-                    ERROR,
-                    atom(
-                        "body_var_without_value"
-                        if term.__class__ not in ATOMIC and _is_free(term)
-                        else "body_var_not_literal"
-                    ),
-                )
-            )
+            raise Failure((ERROR, atom(_no_goal(term))))
         goal = (trigger(operator, kind, symbol), *arguments_of(term))
-        annotations = annotations_of(resolve(term))
+        annotations = annotations_of(term)
         return Posted(goal, own_annotations(annotations)) if annotations else goal
 
     def test_goal_from(self, term: Term) -> Any:
@@ -319,5 +311,8 @@ class Agent(Circumstance):
         AnswerByPlan(self, message, symbol, arguments).begin()
 
 
-def _is_free(term: Term) -> bool:
-    return bool(free_variables(deref(term)))
+def _no_goal(term: Term) -> str:
+    """The error of a term that is posted as a goal and is none."""
+    if bare(term).__class__ is Var:
+        return "body_var_without_value"
+    return "body_var_with_op" if is_body(term) else "body_var_not_literal"

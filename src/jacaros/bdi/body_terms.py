@@ -12,9 +12,22 @@ from jacaros.compiler.reflection import Reflection
 from jacaros.compiler.runtime import Failure
 from jacaros.compiler.triggers import trigger
 from jacaros.compiler.unit import CodeUnit
-from jacaros.terms.plans import is_body
+from jacaros.terms.plans import PLAN as PLAN_TERM
+from jacaros.terms.plans import RULE, TRIGGER, is_body
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import BY_SELF, Term, annotations_of, arguments_of, atom, functor, functor_of
+from jacaros.terms.values import (
+    ACTION,
+    BY_SELF,
+    PLAN,
+    Term,
+    Var,
+    annotations_of,
+    arguments_of,
+    atom,
+    bare,
+    functor,
+    functor_of,
+)
 
 ERROR = functor("error", 1)
 _BODY = trigger("+", "", functor("body", 0, namespace="jacaros"))
@@ -34,9 +47,10 @@ def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: Any) ->
     if is_body(term):
         return _run_body(agent, term, frame, next_step)
     symbol = functor_of(term)
-    if symbol is None:
-        raise Failure((ERROR, atom("body_var_without_value")))
-    if symbol.kind:
+    if symbol is None or symbol in (PLAN_TERM, TRIGGER, RULE):
+        unknown = bare(term).__class__ is Var
+        raise Failure((ERROR, atom("body_var_without_value" if unknown else "body_var_not_literal")))
+    if symbol.kind in (ACTION, PLAN):
         return _run_body(agent, term, frame, next_step)
     return agent.begin_act(symbol, arguments_of(term), annotations_of(term), next_step)  # type: ignore[attr-defined]
 

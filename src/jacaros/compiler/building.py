@@ -234,7 +234,11 @@ def _step(fn: FunctionBuilder, step: nodes.Node) -> str:
     if isinstance(step, nodes.BeliefChange):
         return _step_of(fn, step.operator, step.operand)
     if isinstance(step, nodes.ExternalAction):
-        return _step_of(fn, "", step.action)
+        return (
+            build(fn, step.action)
+            if isinstance(step.action, nodes.Variable)
+            else _step_of(fn, "", step.action)
+        )
     if isinstance(step, nodes.If):
         rest = () if step.otherwise is None else (step.otherwise,)
         return _step_of(fn, "if", step.condition, step.then, *rest)

@@ -175,7 +175,8 @@ def _belief_change(node: nodes.BeliefChange, lookup: Lookup) -> Term:
 
 
 def _external(node: nodes.ExternalAction, lookup: Lookup) -> Term:
-    return plans.step("", lower(node.action, lookup))
+    action = lower(node.action, lookup)
+    return action if isinstance(node.action, nodes.Variable) else plans.step("", action)
 
 
 def _constraint(node: nodes.Constraint, lookup: Lookup) -> Term:

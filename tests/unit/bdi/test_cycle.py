@@ -348,3 +348,24 @@ def test_the_stack_of_an_intention_tells_its_goal_and_what_is_left_to_do() -> No
         +!g(X) <- .intention(_, running, [im(_, { +!g(Y) }, { _; B }, _)|_], current); .print(Y); .print(B); .wait(X).
         """
     ) == ["1", ".print(Y); .print(B); .wait(1)"]
+
+
+def test_terms_that_are_no_goals_or_bodies_fail_with_the_reason() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- !t({ +!a }); !t(7); !t("a"); !u({ .print(a) }); !u(3); Y = h(3)[q]; !Y[k].
+        +!t(X) <- X.
+        +!u(X) <- !X.
+        -!t(_)[error(E)] <- .print(t, " ", E).
+        -!u(_)[error(E)] <- .print(u, " ", E).
+        +!h(N)[|R] <- .print(N, R).
+        """
+    ) == [
+        "t body_var_not_literal",
+        "t body_var_not_literal",
+        "t body_var_not_literal",
+        "u body_var_with_op",
+        "u body_var_not_literal",
+        "3[k,q,source(self)]",
+    ]
