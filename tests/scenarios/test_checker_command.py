@@ -1,6 +1,9 @@
 """The checkers as programs, on ground truth files."""
 
 import json
+import os
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -40,6 +43,25 @@ def judged(folder: str, *arguments: str) -> subprocess.CompletedProcess[str]:
 def test_a_good_run_passes(folder: str, tmp_path: Path) -> None:
     write(run_of(CHECKED[folder]).ground_truth, tmp_path / "truth.jsonl")
     done = judged(folder, str(tmp_path / "truth.jsonl"))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith("passed\n")
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_readme_work(tmp_path: Path) -> None:
+    readme = (EXAMPLES / "02_square" / "README.md").read_text(encoding="utf-8")
+    (command,) = re.findall(r"^To judge it: `(.*)`", readme, re.MULTILINE)
+    shutil.copytree(EXAMPLES / "02_square", tmp_path / "square")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["sh", "-c", command],
+        cwd=tmp_path / "square",
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.endswith("passed\n")
 

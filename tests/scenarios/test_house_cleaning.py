@@ -58,6 +58,17 @@ def test_the_battery_may_get_low_anywhere(level: float, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_the_bathroom_floor_is_mopped_after_the_recharge_when_the_tub_was_scrubbed_before(
+    tmp_path: Path,
+) -> None:
+    world = world_with(tmp_path, HOUSE, "level: 100", "level: 37.8")
+    truth = run(PROJECT, "rounds(1)", world).ground_truth
+    story = [event.data.get("task", event.kind) for event in truth.events_of("task", "charging")]
+    assert story[2:4] == ["scrub tub bathroom", "charging"]
+    assert story[-1] == "mop floor bathroom"
+
+
+@pytest.mark.slow
 def test_the_program_alone_runs_in_the_world_of_the_command_line() -> None:
     alone = run("05_house_cleaning/robot.asl", "rounds(1)", HOUSE)
     assert check(alone.ground_truth, rounds=1, recharges=0).passed

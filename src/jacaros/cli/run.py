@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
 from jacaros.mas.console import Console, StandardConsole
 from jacaros.mas.launch import launch
@@ -43,6 +44,12 @@ from jacaros.mas.options import ROS_KINDS, RunOptions
     metavar="FILE.html",
     help="Write the run as a page to look at in a browser.",
 )
+@click.option(
+    "--ground-truth",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write what truly happens in the world as JSON lines.",
+)
 @click.option("--view", is_flag=True, help="Show the world in the terminal.")
 @click.option("--quiet", is_flag=True, help="Tell warnings and errors only.")
 def command(
@@ -56,6 +63,7 @@ def command(
     namespace: str,
     record: Path | None,
     replay: Path | None,
+    ground_truth: Path | None,
     view: bool,
     quiet: bool,
 ) -> int:
@@ -65,7 +73,7 @@ def command(
     output.
     """  # fmt: skip
     check_file(file)
-    watched = record is not None or replay is not None or view
+    watched = view or any(output is not None for output in (record, replay, ground_truth))
     options = RunOptions(
         fast=clock == "fast",
         seed=seed,
@@ -79,16 +87,14 @@ def command(
     console = StandardConsole("warning" if quiet else "info")
     if not watched:
         return launch(file, options, console)
-    return _launch_watched(file, options, console, record, replay, view)
+    return _launch_watched(file, options, console, Outputs(record, replay, ground_truth, view))
 
 
-def _launch_watched(
-    file: Path, options: RunOptions, console: Console, record: Path | None, replay: Path | None, view: bool
-) -> int:
+def _launch_watched(file: Path, options: RunOptions, console: Console, outputs: Outputs) -> int:
     # Imported here: numpy, rich and the simulator are for those who want to see something.
     from jacaros.cli.watching import Watching
 
-    with Watching(console, record, replay, view) as watching:
+    with Watching(console, outputs) as watching:
         begin: Callable[[Mas], None] = watching.begin
         return launch(file, options, watching, begin)
 

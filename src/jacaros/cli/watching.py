@@ -1,4 +1,4 @@
-"""Recording, replay page and terminal view of a run."""
+"""Recording, replay page, ground truth and terminal view of a run."""
 
 from functools import partial
 from pathlib import Path
@@ -6,12 +6,16 @@ from types import TracebackType
 
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.meta_events import observe_goals
+from jacaros.cli.outputs import Outputs
+from jacaros.errors import UsageError
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.replay import write_replay
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
 from jacaros.mas.console import Console
 from jacaros.mas.mas import Mas
+from jacaros.sim import World
+from jacaros.sim.process import GroundTruthFile
 
 _STATES = {
     "executing": "pursued",
@@ -25,28 +29,33 @@ class Watching:
 
     Args:
         console: where the lines go.
-        record: file for the recording, or None.
-        replay: file for the page, or None.
-        view: show the world in the terminal.
+        outputs: what else is to be made of the run.
     """
 
-    def __init__(self, console: Console, record: Path | None, replay: Path | None, view: bool) -> None:
+    def __init__(self, console: Console, outputs: Outputs) -> None:
         self._console = console
-        self._replay = replay
+        self._outputs = outputs
+        record, replay = outputs.record, outputs.replay
         self._recorder = Recorder(record, keep=replay is not None) if record or replay else None
-        self._wants_view = view
+        self._ground_truth: GroundTruthFile | None = None
         self._view: TerminalView | None = None
         self._watch: Watch | None = None
 
     def begin(self, mas: Mas) -> None:
-        """Begin to watch a run that has been made."""
+        """Begin to watch a run that has been made.
+
+        Raises:
+            UsageError: the ground truth is asked for and there is no world to tell it.
+        """
         world = mas.ros.world
+        if self._outputs.ground_truth is not None:
+            self._ground_truth = _ground_truth_file(self._outputs.ground_truth, world, mas)
         drawing = world.description.drawing() if world is not None else {}
         watchers: list[Watcher] = []
         if self._recorder is not None:
             self._recorder.world(drawing)
             watchers.append(self._recorder)
-        if self._wants_view:
+        if self._outputs.view:
             self._view = TerminalView(drawing)
             watchers.append(self._view)
         self._watch = Watch(mas.clock, watchers, world)
@@ -84,5 +93,16 @@ class Watching:
             self._view.close()
         if self._recorder is not None:
             self._recorder.close()
-            if self._replay is not None and error is None:
-                write_replay(self._recorder.recording, self._replay)
+            if self._outputs.replay is not None and error is None:
+                write_replay(self._recorder.recording, self._outputs.replay)
+        if self._ground_truth is not None:
+            self._ground_truth.__exit__(kind, error, trace)
+
+
+def _ground_truth_file(path: Path, world: World | None, mas: Mas) -> GroundTruthFile:
+    if world is None:
+        raise UsageError(
+            "the world of this run is a process of its own, or the real one; "
+            "jacaros sim has --ground-truth for a world that it runs"
+        )
+    return GroundTruthFile(path, world, mas.clock.now() - world.time)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.cli.main import call
+from jacaros.sim import GroundTruth
 
 
 @pytest.fixture
@@ -162,3 +163,14 @@ def test_a_program_without_robots_loads_no_heavy_library(folder: Path) -> None:
     )
     result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert result.stdout == "[hello] hi\n[]\n"
+
+
+def test_a_run_writes_what_truly_happened(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "drive.asl").write_text(
+        '!go. +!go <- makeArtifact("w", "ArtCmdVel"); moveForward(0.5); .stopMAS.', encoding="utf-8"
+    )
+    arguments = ("run", "drive.asl", "--clock", "fast", "--ground-truth", "truth.jsonl")
+    assert outcome(capsys, *arguments) == (0, "", "")
+    truth = GroundTruth.read("truth.jsonl")
+    assert truth.pose().x == pytest.approx(0.5, abs=0.02)
+    assert '"kind": "end"' in Path("truth.jsonl").read_text(encoding="utf-8").splitlines()[-1]
