@@ -12,7 +12,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, cast
 
 import peer as peer_module
 
@@ -81,7 +81,8 @@ class ProcessPeer:
     def __init__(
         self, kind: str, name: str, namespace: str, options: dict[str, Any], environment: dict[str, str]
     ) -> None:
-        program = [sys.executable, *environment.pop("PYTHON_FLAGS", "").split(), peer_module.__file__]
+        flags = ["-X", "faulthandler", *environment.pop("PYTHON_FLAGS", "").split()]
+        program = [sys.executable, *flags, peer_module.__file__]
         self._process = subprocess.Popen(
             [*program, kind, name, *([namespace] if namespace else [])],
             stdin=subprocess.PIPE,
@@ -90,6 +91,8 @@ class ProcessPeer:
             text=True,
             env=os.environ | environment | {"PEER_OPTIONS": json.dumps(options)},
         )
+        streams = (self._process.stdin, self._process.stdout, self._process.stderr)
+        self._stdin, self._stdout, self._stderr = cast("tuple[IO[str], IO[str], IO[str]]", streams)
         self._replies: queue.Queue[dict[str, Any] | None] = queue.Queue()
         self.stray_output: list[str] = []
         self.errors: list[str] = []
@@ -119,35 +122,28 @@ class ProcessPeer:
         return self._process.poll() is not None
 
     def dispose(self) -> None:
+        """Have the peer leave the graph and end; kill it when it does not, and say what it said."""
+        problem: BaseException | None = None
         if not self.is_over():
             self._note_shared_memory()
             try:
                 self._do("close", (), {})
-            except BaseException:
-                self._process.kill()
-                raise
-        assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):
-            self._process.stdin.close()
-        try:
-            self.wait()
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self.wait()
-            raise AssertionError(
-                "the peer does not end after it was closed:\n" + "".join(self.errors)
-            ) from None
-        assert self._process.stdout is not None
-        assert self._process.stderr is not None
-        self._process.stdout.close()
-        self._process.stderr.close()
+                self._stdin.close()
+                self.wait()
+            except (AssertionError, OSError, subprocess.TimeoutExpired) as caught:
+                problem = caught
+                self._process.send_signal(signal.SIGABRT)  # faulthandler shows where it hangs
+        self.wait()
+        for stream in (self._stdin, self._stdout, self._stderr):
+            with contextlib.suppress(BrokenPipeError):
+                stream.close()
+        assert problem is None, f"the peer does not end: {problem}\n" + "".join(self.errors)
 
     def _do(self, command: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         self._number += 1
-        assert self._process.stdin is not None
         line = json.dumps({"id": self._number, "do": command, "args": args, "kwargs": kwargs})
-        self._process.stdin.write(line + "\n")
-        self._process.stdin.flush()
+        self._stdin.write(line + "\n")
+        self._stdin.flush()
         deadline = time.monotonic() + PATIENCE
         while True:
             try:
@@ -163,8 +159,7 @@ class ProcessPeer:
         return answer["result"]
 
     def _read(self) -> None:
-        assert self._process.stdout is not None
-        for line in self._process.stdout:
+        for line in self._stdout:
             if line.startswith("@"):
                 self._replies.put(json.loads(line[1:]))
             else:
@@ -172,9 +167,7 @@ class ProcessPeer:
         self._replies.put(None)
 
     def _read_errors(self) -> None:
-        assert self._process.stderr is not None
-        for line in self._process.stderr:
-            self.errors.append(line)
+        self.errors.extend(self._stderr)
 
     def _note_shared_memory(self) -> None:
         """Remember the files that Fast DDS made for this process; it leaves them behind when killed."""
@@ -225,7 +218,12 @@ class InProcesses:
         assert made.stray_output == [], "standard output belongs to the agents"
 
     def close(self) -> None:
+        problems = []
         for made in list(self._peers):
-            self.dispose(made)
+            try:
+                self.dispose(made)
+            except AssertionError as problem:
+                problems.append(str(problem))
         for path in self._leftovers:
             Path(path).unlink(missing_ok=True)
+        assert not problems, "\n".join(problems)

@@ -1,4 +1,4 @@
-"""A plain rospy node, without any of our code: what the rest of a ROS 1 system looks like to us.
+"""A plain rospy node (of ours it has the service class alone): what the rest of a ROS 1 system is to us.
 
 It echoes /native/in to /native/out, latches /native/map and serves /native/add; with an argument it calls
 that service with 20 and 22 and prints the sum.

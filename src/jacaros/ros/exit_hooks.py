@@ -15,7 +15,7 @@ from types import FrameType
 from typing import Any
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-LONGEST_WAIT = 2.0
+LONGEST_WAIT = 3.0
 """Seconds that the end of the process may be held up by hooks and by sending their messages."""
 
 

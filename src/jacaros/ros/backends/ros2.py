@@ -20,6 +20,7 @@ import rclpy.duration  # type: ignore[import-not-found]
 import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.qos  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
+import rclpy.task  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import QOS, SERVICES, TOPICS, TRANSFORMS, Backend, Handler, Sample
 from jacaros.ros.backends.ros2_types import RosidlSchema
@@ -33,7 +34,9 @@ from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE
 from jacaros.ros.waiting import within
 
 SENDING = 0.5
-"""Seconds that closing waits for each publisher's last messages to be acknowledged."""
+"""Seconds that closing waits for the last messages to be acknowledged; a dead receiver never does it."""
+STOPPING = 1.0
+"""Seconds that closing waits for the executor's thread."""
 
 
 class Ros2Publisher:
@@ -65,10 +68,10 @@ class Ros2Publisher:
         if not self._closed and self._node.exit_hooks.admits():
             self._publisher.publish(message)
 
-    def finish(self) -> None:
-        """Wait until the reliable subscriptions have what was published."""
+    def finish(self, seconds: float) -> None:
+        """Wait until the reliable subscriptions have what was published, but not longer than *seconds*."""
         if not self._closed:
-            self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=SENDING))
+            self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=max(0.0, seconds)))
 
     def close(self) -> None:
         """Leave the topic."""
@@ -219,6 +222,7 @@ class Ros2Backend(Node):
         self._context: Any = rclpy.Context()
         self._executor: Any = None
         self._thread: threading.Thread | None = None
+        self._stopped: Any = rclpy.task.Future()
         self.rcl: Any = None
         self._members: list[Ros2Publisher | Ros2Subscription | Ros2Service | Ros2Client] = []
 
@@ -290,9 +294,9 @@ class Ros2Backend(Node):
         self._thread.start()
 
     def _spin(self) -> None:
-        while self._context.ok() and not self.exit_hooks.ran:
+        while self._context.ok() and not self._stopped.done():
             try:
-                self._executor.spin()
+                self._executor.spin_until_future_complete(self._stopped)
             except rclpy.executors.ExternalShutdownException:
                 return
             except Exception as problem:  # a fault in one callback must not make the node deaf
@@ -303,13 +307,16 @@ class Ros2Backend(Node):
         """Wait until the last messages have arrived, then end rclpy before the interpreter ends."""
         if self.rcl is None:
             return
+        deadline = time.monotonic() + SENDING
         for member in list(self._members):
             if isinstance(member, Ros2Publisher):
-                member.finish()
+                member.finish(deadline - time.monotonic())
         time.sleep(0.02)  # best-effort messages are acknowledged by nobody
-        self._executor.shutdown(timeout_sec=1.0)
+        # The executor's thread stops itself: shutting an executor down under a spinning thread is a race.
+        self._executor.create_task(self._stopped.set_result, None)
         if self._thread is not None:
-            self._thread.join(1.0)
+            self._thread.join(STOPPING)
+        self._executor.shutdown(timeout_sec=0.0)
         for member in self._members:
             with suppress(Exception):  # whatever is wrong with one, the others are to be closed
                 member.close()
