@@ -2,6 +2,7 @@
 # make test    everything, ROS 1 and ROS 2 included (installs what that needs on Debian 12)
 # make quick   what to run before a commit: style, types, layers, unit tests
 # make bench   figures of speed
+# make reference   the reference pages and pictures that follow from the code
 #
 # PYTHON=python3.12 make demo     with another interpreter (3.11 or newer)
 # make test PARTS="unit docs"     some parts only; `.venv/bin/python tools/test_all.py --list` names them
@@ -9,7 +10,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test quick bench clean
+.PHONY: demo test quick reference bench clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -19,6 +20,11 @@ test: $(VENV)/.installed-dev
 
 quick: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/test_all.py style types layers unit
+
+# The reference pages that follow from the code, and the pictures.
+reference: $(VENV)/.installed
+	$(VENV)/bin/python tools/make_reference.py
+	$(VENV)/bin/python tools/make_pictures.py
 
 bench: $(VENV)/.installed
 	tools/bench.sh

@@ -42,7 +42,7 @@ def words_behind(program: str) -> list[tuple[str, list[str]]]:
 
 @pytest.mark.parametrize(("where", "words"), words_behind("jacaros"))
 def test_the_command_line_knows_what_pages_show(where: str, words: list[str]) -> None:
-    words = [word for word in words if word not in ("<", ">", ">>") and not word.startswith("2>")]
+    words = [word for word in words if ">" not in word]
     context = click.Context(jacaros, info_name="jacaros")
     name, command, rest = jacaros.resolve_command(context, words)
     assert command is not None

@@ -1,0 +1,49 @@
+"""The reference pages that follow from the code are up to date."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pages import ROOT
+
+from jacaros.artifacts.registry import BUILT_IN
+from jacaros.cli.main import COMMANDS
+from jacaros.sim.world_file import shipped_worlds
+
+REFERENCE = ROOT / "docs" / "reference"
+
+
+@pytest.fixture(scope="module")
+def fresh(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("reference")
+    subprocess.run([sys.executable, ROOT / "tools" / "make_reference.py", folder], check=True)
+    return folder
+
+
+@pytest.mark.parametrize("page", ["cli.md", "artifacts.md"])
+def test_a_page_is_what_the_code_says(page: str, fresh: Path) -> None:
+    same = (REFERENCE / page).read_text(encoding="utf-8") == (fresh / page).read_text(encoding="utf-8")
+    assert same, f"docs/reference/{page} is out of date: run `make reference`"
+
+
+def test_every_command_and_artifact_is_described() -> None:
+    cli = (REFERENCE / "cli.md").read_text(encoding="utf-8")
+    assert [name for name in COMMANDS if f"## jacaros {name}\n" not in cli] == []
+    artifacts = (REFERENCE / "artifacts.md").read_text(encoding="utf-8")
+    assert [name for name in BUILT_IN if f"## {name}\n" not in artifacts] == []
+
+
+def test_every_world_of_the_package_is_named() -> None:
+    worlds = (REFERENCE / "worlds.md").read_text(encoding="utf-8")
+    assert [name for name in shipped_worlds() if f"`{name}`" not in worlds] == []
+
+
+def test_every_dependency_is_weighed() -> None:
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    wanted = [*project["dependencies"], *project["optional-dependencies"]["dev"]]
+    names = [text.partition(">")[0] for text in wanted]
+    page = (ROOT / "docs" / "dependencies.md").read_text(encoding="utf-8")
+    assert [name for name in names if name not in page] == []

@@ -1,0 +1,163 @@
+"""Write the reference pages that the code itself knows best: docs/reference/cli.md and artifacts.md.
+
+make_reference.py [FOLDER]      FOLDER instead of docs/reference; a test compares the two
+"""
+
+import inspect
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from jacaros.artifacts.registry import BUILT_IN
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.ros.wheels import WheeledArtifact
+from jacaros.cli.main import COMMANDS, jacaros
+from jacaros.env import Artifact, describe
+
+ROOT = Path(__file__).resolve().parent.parent
+NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
+READING = """## Reading sensors
+
+Artifacts that show what a sensor says take these options. Without any, every message that says something new becomes an
+event.
+
+* `mode(verbose)`: tell by itself. `mode(on_demand)`: tell only when asked, by operations such as `getCurrentOdom`.
+* `rate(Hz)`: at most so many updates a second. The newest value of a pause is told when the pause is over, so the last
+  message of a burst is late at most, never lost.
+* `dead_band(D)`: tell a value only when a number in it differs by more than D from the one told before; a list has one
+  figure for each number. Equal values are never told twice.
+"""
+LINKS = {
+    "ReadingPolicy": "[reading sensors](#reading-sensors)",
+    "WheeledArtifact": "[all artifacts that drive](#all-artifacts-that-drive)",
+}
+"""Classes that only authors of artifacts know."""
+SECTIONS = {"Options:": "Options", "Properties:": "Properties"}
+
+
+def main(folder: Path) -> None:
+    """Write both pages."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, lines in (("cli.md", command_line()), ("artifacts.md", artifacts())):
+        (folder / name).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+
+
+def command_line() -> Iterator[str]:
+    """The page about the command."""
+    yield NOTE
+    yield "# The command line\n"
+    yield (ROOT / "tools" / "cli_contract.md").read_text(encoding="utf-8")
+    context = click.Context(jacaros, info_name="jacaros")
+    for name in COMMANDS:
+        command = jacaros.get_command(context, name)
+        assert command is not None
+        yield f"## jacaros {name}\n"
+        yield f"{inspect.cleandoc(command.help or '')}\n"
+        own = click.Context(command, parent=context, info_name=name)
+        yield f"```text\n{command.get_usage(own)}\n```\n"
+        options = [each for each in command.params if isinstance(each, click.Option)]
+        if options:
+            yield "| option | meaning |\n|---|---|"
+            yield "\n".join(map(_option, options)) + "\n"
+
+
+def _option(option: click.Option) -> str:
+    """A row of a table; written here, so that it does not depend on the version of the library."""
+    if isinstance(option.type, click.Choice):
+        value = " " + "\\|".join(map(str, option.type.choices))
+    else:
+        value = "" if option.is_flag else f" {option.metavar or 'N'}"
+    default = (
+        f" By default `{option.default}`."
+        if option.show_default
+        else " Must be given."
+        if option.required
+        else ""
+    )
+    return f"| `{option.opts[0]}{value}` | {_cell(option.help or '')}{default} |"
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def artifacts() -> Iterator[str]:
+    """The page about the ready-made artifacts."""
+    yield NOTE
+    yield "# Artifacts that come with the package\n"
+    yield (
+        'An agent makes one by its name: `makeArtifact("wheels", "ArtCmdVel", [rate(5)], Id)`. The names of the thesis, '
+        "such as `jason.architecture.ArtCmdVel`, mean the same. Outputs are marked with a minus sign. In another project's "
+        "folder, `jacaros describe NAME` tells the same of its own artifacts.\n"
+    )
+    yield READING
+    yield "## All artifacts for robots\n"
+    yield from _documentation(RosArtifact)
+    yield "## All artifacts that drive\n"
+    yield from _documentation(WheeledArtifact)
+    for name in sorted(BUILT_IN):
+        yield f"## {name}\n"
+        yield from _documentation(BUILT_IN[name])
+        yield from _operations(BUILT_IN[name])
+
+
+def _operations(artifact_type: type[Artifact]) -> Iterator[str]:
+    own = [each for each in describe(artifact_type).operations if each.kind == "operation"]
+    shared = _shared_with(artifact_type)
+    if shared is not None:
+        inherited = {each.usage for each in describe(shared).operations}
+        own = [each for each in own if each.usage not in inherited]
+        yield f"It has all operations of [{shared.__name__}](#{shared.__name__.lower()}).\n"
+    if own:
+        yield "| operation | what it does |\n|---|---|"
+        rows = [
+            f"| `{_cell(each.usage)}` | {_cell(_prose(each.text))} |"
+            for each in sorted(own, key=lambda o: o.usage)
+        ]
+        yield "\n".join(rows) + "\n"
+
+
+def _shared_with(artifact_type: type[Artifact]) -> type[Artifact] | None:
+    """The nearest ready-made artifact that it extends."""
+    return next((each for each in artifact_type.__mro__[1:] if each.__name__ in BUILT_IN), None)
+
+
+def _documentation(artifact_type: type[Artifact]) -> Iterator[str]:
+    """The docstring of a class as Markdown; what is for authors of artifacts only is left out."""
+    for part in inspect.cleandoc(artifact_type.__doc__ or "").split("\n\n"):
+        head, _, rest = part.partition("\n")
+        if head in ("Attributes:",) or part.startswith("A subclass"):
+            continue
+        if head in SECTIONS:
+            yield f"{SECTIONS[head]}:\n"
+            yield "\n".join(_entries(rest)) + "\n"
+        else:
+            yield f"{_prose(part)}\n"
+
+
+def _entries(text: str) -> Iterator[str]:
+    """The entries of a section: lines that are indented further belong to the entry before."""
+    entries: list[str] = []
+    for line in inspect.cleandoc(text).splitlines():
+        if line.startswith(" ") and entries:
+            entries[-1] += " " + line.strip()
+        else:
+            entries.append(line.strip())
+    for entry in entries:
+        name, colon, meaning = entry.partition(": ")
+        yield f"* `{name}`: {_prose(meaning)}" if colon else f"* {_prose(entry)}"
+
+
+def _prose(text: str) -> str:
+    """From the marks of docstrings to those of Markdown."""
+    text = re.sub(r"``([^`]+)``", r"`\1`", text).replace(".  ", ". ")
+    for name, link in LINKS.items():
+        text = text.replace(f"`{name}`", link)
+    return re.sub(r"(?<![\w*])\*(\w+)\*(?![\w*])", r"`\1`", text)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "reference")
