@@ -63,6 +63,7 @@ def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: Any) -> 
     if plan.first is not None:
         inner: Frame = [plan.first, (_BODY,), BY_SELF, agent.trail.serial, plan, *([None] * plan.size)]
         agent.current.frames.append(inner)
+        return plan.first(agent, inner)
     return None
 
 

@@ -33,6 +33,7 @@ class Circumstance:
         alive: every intention that is not over, by id.
         current: the intention whose step is being made.
         atomic: the intention that has an atomic plan on its stack, or None.
+        atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
         inbox, percepts: what was received and noticed, and not yet looked at.
         tasks: housekeeping for the beginning of the next cycle.
         suspended_events: goal events whose goal was suspended before it became an intention.
@@ -64,6 +65,7 @@ class Circumstance:
         self.alive: dict[int, Intention] = {}
         self.current: Intention | None = None
         self.atomic: Intention | None = None
+        self.atomic_over = False
         self.inbox: deque[SpeechAct] = deque()
         self.percepts: deque[list[Percept]] = deque()
         self.tasks: deque[Callable[[], None]] = deque()
@@ -104,6 +106,7 @@ class Circumstance:
         self.alive.pop(intention.id, None)
         if self.atomic is intention:
             self.atomic = None
+            self.atomic_over = False
         if intention.waiting is not None:
             waiting, intention.waiting = intention.waiting, None
             waiting.cancel()

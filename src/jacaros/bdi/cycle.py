@@ -135,7 +135,7 @@ def _external(agent: Circumstance, event: Event) -> bool:
     if trigger.failing:
         intention.handlers.append(0)
     if frame[PLAN].atomic:
-        agent.atomic = intention
+        agent.atomic, agent.atomic_over = intention, False
     if agent.meta:
         meta_events.goal_state(agent, goal, annotations, "pending")
         meta_events.goal_state(agent, goal, annotations, "executing")
@@ -202,7 +202,7 @@ def _add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> None:
     else:
         frames.append(frame)
     if frame[PLAN].atomic:
-        agent.atomic = intention
+        agent.atomic, agent.atomic_over = intention, False
     if agent.meta and trigger.kind and not trigger.failing:
         meta_events.goal_state(agent, frame[GOAL], frame[2], "executing")
 
@@ -298,6 +298,8 @@ def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # no
     trail = agent.trail
     while True:
         fuel -= 1
+        if agent.atomic_over:
+            agent.atomic, agent.atomic_over = None, False
         frame = frames[-1]
         step = frame[0]
         goal: Any = None
@@ -378,7 +380,7 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
             meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved")
             meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
         if agent.atomic is intention and not intention.is_atomic():
-            agent.atomic = None
+            agent.atomic_over = True
     if frames:
         return True
     agent.finish(intention)

@@ -234,7 +234,7 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
     while intention.handlers and intention.handlers[-1] >= index:
         intention.handlers.pop()
     if agent.atomic is intention and not intention.is_atomic():
-        agent.atomic = None
+        agent.atomic, agent.atomic_over = None, False
 
 
 def succeed_goal(agent: Circumstance, goal: Term) -> bool:

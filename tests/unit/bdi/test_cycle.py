@@ -369,3 +369,24 @@ def test_terms_that_are_no_goals_or_bodies_fail_with_the_reason() -> None:
         "u body_var_not_literal",
         "3[k,q,source(self)]",
     ]
+
+
+def test_after_an_atomic_plan_its_intention_makes_one_more_step_before_the_others() -> None:
+    assert printed(
+        """
+        !a. !b.
+        +!a <- .print(a0); !s; .print(a1); .print(a2).
+        @l[atomic] +!s <- .print(s1); .print(s2).
+        +!b <- .print(b1); .print(b2); .print(b3).
+        """
+    ) == ["a0", "s1", "s2", "a1", "b1", "a2", "b2", "b3"]
+
+
+def test_a_body_held_by_a_variable_makes_its_first_step_in_the_same_turn() -> None:
+    assert printed(
+        """
+        !a. !b.
+        +!a <- B = {.print(a1); .print(a2)}; B; .print(a3).
+        +!b <- .print(b1); .print(b2); .print(b3); .print(b4); .print(b5).
+        """
+    ) == ["a1", "b1", "a2", "b2", "a3", "b3", "b4", "b5"]
