@@ -22,7 +22,12 @@
   <- makeArtifact(Name, Type, Parameters).
 
 // It is there already, another agent was faster: just as well.
--!create_artifact(Name, _, _)[env_failure_reason(makeArtifactFailure("artifact_already_present", Name))].
+-!create_artifact(_, _, _)[env_failure_reason(Reason)]
+   : Reason = makeArtifactFailure("artifact_already_present", _).
+
+// Any other reason concerns who wanted the artifact.
+-!create_artifact(_, _, _)[error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
 
 // Find an artifact; one that is not there yet has five seconds to come.
 +?artifact(Name, Id)
@@ -34,6 +39,9 @@
 -?artifact(Name, Id, Tries) : Tries > 1
   <- .wait(100);
      ?artifact(Name, Id, Tries - 1).
+
+-?artifact(_, _, _)[error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
 
 /* The artifacts of the thesis, by the names of its plans: make with create_..., find with tool... */
 
