@@ -37,7 +37,8 @@ def summarise(recording: Recording, took: float) -> None:
     """Print what the robot did, as the world saw it."""
     frames = recording.frames
     levels = [frame.robots[0][3] for frame in frames]
-    charges = sum(1 for _, kind, _ in recording.events if kind == "charging")
+    # Turning on the spot in the dock, it stands there a moment more, nearly full: that is no recharge.
+    charges = sum(1 for _, kind, data in recording.events if kind == "charging" and data["level"] < 50)
     bumps = sum(1 for _, kind, _ in recording.events if kind in ("bump", "collision"))
     print(f"""
 simulated time   {recording.duration:.0f} s in {took:.1f} s, {recording.duration / took:.0f} times as fast as life
