@@ -277,6 +277,8 @@ class Agent(Circumstance):
         """What an internal action that may suspend gave: go on, fail, or wait."""
         if result is False:
             raise Fail
+        if result is SUSPENDED:
+            return SUSPENDED
         if isinstance(result, Waiting) and not (result.ended and result.failure is None):
             result.attach(frame, next_step)
             if result.ended:

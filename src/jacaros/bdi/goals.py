@@ -6,8 +6,8 @@ from typing import Any
 from jacaros.bdi import cycle, meta_events
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
-from jacaros.bdi.failure import nowhere
-from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
+from jacaros.bdi.failure import nowhere, release_bindings
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.compiler.runtime import literal_of
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term
@@ -275,10 +275,12 @@ def fail_goal(agent: Circumstance, goal: Term) -> bool:
             _fail_pending(agent, intention)
             continue
         own = own or intention is agent.current
-        cut(agent, intention, index + 1)
+        frame = intention.frames[index]
+        release_bindings(frame[GOAL], frame[SERIAL])
+        cut(agent, intention, index)
         if intention in agent.intentions:
             agent.intentions.remove(intention)
-        _post_failure(agent, intention)
+        _post(agent, intention, cycle.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], nowhere()))
     for event in goal_events(agent, goal):
         _remove_event(agent, event)
         intention = agent.new_intention(event.cause)
@@ -292,11 +294,6 @@ def _fail_pending(agent: Circumstance, intention: Intention) -> None:
     if event is not None:
         _remove_event(agent, event)
         _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, nowhere()))
-
-
-def _post_failure(agent: Circumstance, intention: Intention) -> None:
-    """The failure of the goal on top is handled like any other, but carries no error annotation."""
-    _post(agent, intention, cycle.fail_intention(agent, intention, nowhere()))
 
 
 def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:

@@ -8,7 +8,7 @@ from jacaros.bdi.context import Context
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.compiler.lowering import lower
-from jacaros.compiler.runtime import Failure, literal_of
+from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
 from jacaros.terms.plans import make_body, trigger
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
@@ -211,9 +211,7 @@ def succeed_goal(ctx: Context, goal: Term) -> Any:
 @internal_action(".fail_goal", arity=1, suspends=True)
 def fail_goal(ctx: Context, goal: Term) -> Any:
     """``.fail_goal(G)``: matching goals end as failed; the failure event carries no ``error``."""
-    if goals.fail_goal(ctx.agent, _goal(goal)):
-        return ctx.suspend("failed")
-    return None
+    return SUSPENDED if goals.fail_goal(ctx.agent, _goal(goal)) else None
 
 
 def _ended(ctx: Context, own: bool) -> Any:
@@ -222,10 +220,9 @@ def _ended(ctx: Context, own: bool) -> Any:
         return None
     agent, current = ctx.agent, ctx.intention
     assert current is not None
-    waiting = ctx.suspend("succeeded")
     if goals._goes_on(agent, current):
         agent.make_ready(current)
-    return waiting
+    return SUSPENDED
 
 
 @internal_action(".done", arity=0, suspends=True)
