@@ -29,13 +29,13 @@ def frame_of(agent: Circumstance, intention: Intention, goal: Term) -> int | Non
         if (
             trigger.kind == "!"
             and trigger.operator == "+"
-            and _matches(agent, goal, literal_of(frame[GOAL], frame[2]))
+            and matches(agent, goal, literal_of(frame[GOAL], frame[2]))
         ):
             return index
     return None
 
 
-def _matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
+def matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
     trail = agent.trail
     mark = len(trail)
     found = unify(pattern, literal, trail)
@@ -59,7 +59,7 @@ def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
         if (
             event is not None
             and _is_goal(event)
-            and _matches(agent, goal, literal_of(event.goal, event.annotations))
+            and matches(agent, goal, literal_of(event.goal, event.annotations))
         ):
             found.append(intention)
     return found
@@ -74,7 +74,7 @@ def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
     return [
         e
         for e in (*agent.events, *agent.suspended_events)
-        if e.intention is None and _is_goal(e) and _matches(agent, goal, literal_of(e.goal, e.annotations))
+        if e.intention is None and _is_goal(e) and matches(agent, goal, literal_of(e.goal, e.annotations))
     ]
 
 
@@ -117,7 +117,7 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
         if (
             event.intention is not None
             and _is_goal(event)
-            and _matches(agent, goal, literal_of(event.goal, event.annotations))
+            and matches(agent, goal, literal_of(event.goal, event.annotations))
         ):
             _remove_event(agent, event)
             drop_intention(agent, event.intention)
@@ -190,7 +190,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
 def resume_goal(agent: Circumstance, goal: Term) -> None:
     """The reverse of `suspend_goal`."""
     for event in list(agent.suspended_events):
-        if event.intention is None and _matches(agent, goal, literal_of(event.goal, event.annotations)):
+        if event.intention is None and matches(agent, goal, literal_of(event.goal, event.annotations)):
             agent.suspended_events.remove(event)
             agent.events.append(event)
             agent.architecture.ready()
@@ -252,14 +252,14 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
             cut(agent, intention, index)
         if running:
             own = True
-        elif _goes_on(agent, intention) and not queued:
+        elif goes_on(agent, intention) and not queued:
             agent.make_ready(intention)
     for event in goal_events(agent, goal):
         _remove_event(agent, event)
     return own
 
 
-def _goes_on(agent: Circumstance, intention: Intention) -> bool:
+def goes_on(agent: Circumstance, intention: Intention) -> bool:
     if not intention.frames:
         agent.finish(intention)
         return False

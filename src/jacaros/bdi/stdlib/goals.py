@@ -190,7 +190,7 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
         if why is not None and ctx.unify(reason, why):
             yield
     for _ in goals.goal_events(ctx.agent, goal):
-        if any(goals._matches(ctx.agent, goal, _event(e)) for e in ctx.agent.suspended_events) and ctx.unify(
+        if any(goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.suspended_events) and ctx.unify(
             reason, atom("suspended")
         ):
             yield
@@ -220,7 +220,7 @@ def _ended(ctx: Context, own: bool) -> Any:
         return None
     agent, current = ctx.agent, ctx.intention
     assert current is not None
-    if goals._goes_on(agent, current):
+    if goals.goes_on(agent, current):
         agent.make_ready(current)
     return SUSPENDED
 
