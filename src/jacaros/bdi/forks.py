@@ -8,7 +8,7 @@ from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import GOAL, STEP, Frame, Intention
-from jacaros.compiler.runtime import SUSPENDED
+from jacaros.compiler.runtime import SUSPENDED, Remaining
 from jacaros.terms.unifier import ATOMIC, rename
 from jacaros.terms.values import Annotated, Term, Var
 
@@ -63,6 +63,8 @@ def _copied(frames: list[Frame]) -> list[Frame]:
 
 
 def _renamed(value: Term, names: dict[Var, Var]) -> Term:
+    if isinstance(value, Remaining):
+        return value.copy()
     return (
         rename(value, names)
         if value.__class__ in (tuple, Var, Annotated) and value.__class__ not in ATOMIC

@@ -394,7 +394,7 @@ def _for(compiler: BodyCompiler, step: nodes.For, name: str, next_name: str) -> 
         new = [n for n in names_in(step.condition) if n not in enter.values]
         used = [n for n in new if frame.counts.get(n, 0) > 1]
         call = question(enter, step.condition, used)
-        enter.line(f"frame[{answers}] = {call}")
+        enter.line(f"frame[{answers}] = Remaining({call})")
         enter.line(f"return {round_name}(agent, frame)")
     compiler.unit.add(enter.writer)
     entry = dict(frame.states)

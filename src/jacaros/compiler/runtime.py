@@ -311,6 +311,31 @@ CLOSED = frozenset({float, String, Functor})
 """Values that never unify with a structure."""
 
 
+class Remaining:
+    """The answers of a ``for`` that are still to come: searched for one by one, and plain data when asked for.
+
+    Whoever copies or stores an intention takes `items`; the search is over then.
+    """
+
+    __slots__ = ("_search",)
+
+    def __init__(self, search: Iterator[tuple[Term, ...]]) -> None:
+        self._search = search
+
+    def __iter__(self) -> Iterator[tuple[Term, ...]]:
+        return self._search
+
+    def items(self) -> list[tuple[Term, ...]]:
+        """All answers to come, with the values of the variables that the loop binds."""
+        found = [tuple(resolve(value) for value in answer) for answer in self._search]
+        self._search = iter(found)
+        return found
+
+    def copy(self) -> "Remaining":
+        """The same answers, for a copy of the intention."""
+        return Remaining(iter(self.items()))
+
+
 def join_branch(agent: Any, frame: list[Any]) -> Any:
     """The step behind the last one of a branch of ``|&|`` or ``|||``."""
     return agent.join_branch(frame)
@@ -356,7 +381,7 @@ _FUNCTIONS = (
     unify_annotations,
     unknown,
 )
-_CLASSES = (Annotated, Fail, InternalError, Functor, String, Trail, Var)
+_CLASSES = (Annotated, Fail, InternalError, Remaining, Functor, String, Trail, Var)
 
 NAMES: dict[str, Any] = {
     **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},

@@ -40,3 +40,12 @@ def test_a_fork_inside_a_loop_is_made_anew_each_time() -> None:
         "b2",
         "end",
     ]
+
+
+def test_a_loop_around_a_fork_goes_on_in_the_branch_that_goes_on() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- for (.member(X, [1,2,3])) { (.print(a, X) ||| .wait(50)); .print(round(X)) }; .print(end).
+        """
+    ) == ["a1", "round(1)", "a2", "round(2)", "a3", "round(3)", "end"]
