@@ -1,0 +1,77 @@
+"""Numbered odometry messages, one after the other, and how long each took to come back as a command."""
+
+import statistics
+from collections.abc import Callable
+
+COUNT = 600
+WARM_UP = 100
+PERIOD = 0.01
+"""Seconds between two messages: a sensor with 100 Hz."""
+
+PATIENCE = 1.0
+"""Seconds after which a message counts as lost."""
+
+WAYS = ("agent", "bare")
+"""Through the agent's plan, and through an echo written with the client library alone."""
+
+
+class Pings:
+    """Which message goes next, by which way, and what has come back.
+
+    The two ways take turns, so that whatever else the machine does meets both.
+
+    Args:
+        now: seconds of a steady clock.
+        send: publishes an odometry message with a number on the way's topic.
+    """
+
+    def __init__(self, now: Callable[[], float], send: Callable[[str, float], None]) -> None:
+        self._now, self._send = now, send
+        self._sent: dict[str, tuple[float, float]] = {}
+        self._number = 0
+        self.times: dict[str, list[float]] = {way: [] for way in WAYS}
+        self.lost = 0
+
+    @property
+    def over(self) -> bool:
+        """Whether enough messages have been sent."""
+        return self._number >= len(WAYS) * (COUNT + WARM_UP)
+
+    def next(self) -> None:
+        """Send the next message, unless the last one is still on its way."""
+        for way, (_, began) in list(self._sent.items()):
+            if self._now() - began < PATIENCE:
+                return
+            self.lost += 1
+            del self._sent[way]
+        self._number += 1
+        way = WAYS[self._number % len(WAYS)]
+        self._sent[way] = (float(self._number), self._now())
+        self._send(way, float(self._number))
+
+    def returned(self, way: str, number: float) -> None:
+        """Take a command; those that answer an earlier message do not count."""
+        arrived = self._now()
+        sent = self._sent.get(way)
+        if sent is not None and sent[0] == number:
+            del self._sent[way]
+            if self._number > len(WAYS) * WARM_UP:
+                self.times[way].append(arrived - sent[1])
+
+    def report(self, kind: str) -> str:
+        """Two lines for people."""
+        lines = []
+        for way in WAYS:
+            times = sorted(self.times[way])
+            if not times:
+                lines.append(f"{kind:8} {way:6} nothing came back")
+                continue
+            figures = (statistics.median(times), times[int(0.9 * len(times))], times[int(0.99 * len(times))])
+            texts = "  ".join(
+                f"{name} {1000 * figure:6.2f} ms"
+                for name, figure in zip(("median", "90 %", "99 %"), figures, strict=True)
+            )
+            lines.append(f"{kind:8} {way:6} {texts}   ({len(times)} messages)")
+        if self.lost:
+            lines.append(f"{kind:8} {self.lost} messages lost")
+        return "\n".join(lines)

@@ -1,0 +1,61 @@
+"""Bare rospy: the pings (`ros1.py ping`), and the echo to compare with (`ros1.py echo`)."""
+
+import sys
+import threading
+import time
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from pings import PERIOD, Pings
+
+
+def echo() -> None:
+    """Answer on /bare/cmd_vel."""
+    rospy.init_node("bare_echo")
+    publisher = rospy.Publisher("/bare/cmd_vel", Twist, queue_size=10)
+
+    def reply(message: Odometry) -> None:
+        command = Twist()
+        command.linear.x = message.pose.pose.position.x
+        publisher.publish(command)
+
+    rospy.Subscriber("/bare/odom", Odometry, reply, queue_size=10)
+    rospy.spin()
+
+
+def ping() -> None:
+    """Measure both ways."""
+    rospy.init_node("pinger")
+    publishers = {
+        "agent": rospy.Publisher("/odom", Odometry, queue_size=10),
+        "bare": rospy.Publisher("/bare/odom", Odometry, queue_size=10),
+    }
+
+    def send(way: str, number: float) -> None:
+        message = Odometry()
+        message.pose.pose.position.x = number
+        publishers[way].publish(message)
+
+    pings = Pings(time.perf_counter, send)
+    lock = threading.Lock()
+
+    def returned(message: Twist, way: str) -> None:
+        with lock:
+            pings.returned(way, message.linear.x)
+
+    replies = [
+        rospy.Subscriber("/cmd_vel", Twist, returned, "agent", queue_size=10),
+        rospy.Subscriber("/bare/cmd_vel", Twist, returned, "bare", queue_size=10),
+    ]
+    while not all(p.get_num_connections() for p in (*publishers.values(), *replies)):
+        time.sleep(0.1)
+    while not pings.over:
+        with lock:
+            pings.next()
+        time.sleep(PERIOD)
+    print(pings.report("ros1"))
+
+
+if __name__ == "__main__":
+    {"echo": echo, "ping": ping}[sys.argv[1]]()
