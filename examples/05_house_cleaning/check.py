@@ -19,6 +19,8 @@ ROUND = (
 """The rooms with their tasks; in the hallway, where a round ends, there is nothing to do."""
 
 HALLWAY = (0.0, 0.0)
+PLACES = {"living_room": (2.0, 0.0), "kitchen": (2.0, 2.0), "bathroom": (0.0, 2.0)}
+"""The corner of each room that is cleaned, in metres."""
 
 
 def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
@@ -32,6 +34,8 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 1) -> Verdict:
         text, where = event.data["task"], event.data["room"]
         verdict.expect(text == f"{task} {room}", f"task {number + 1} was '{text}', not '{task} {room}'")
         verdict.expect(where == room, f"the robot did '{text}' in the {where}")
+        far = distance(event, *PLACES[room])
+        verdict.expect(far <= 0.3, f"the robot did '{text}' {far:.1f} m from the corner of the {room}")
 
     # A round is over when the robot is in the hallway: after the last task, and before the first one of the next.
     ends = [event.time for event in tasks[len(ROUND) - 1 :: len(ROUND)]]

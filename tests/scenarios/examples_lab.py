@@ -1,6 +1,7 @@
 """The examples as tests see them: run in this process, judged by their own checkers, and falsified."""
 
 import importlib.util
+import shutil
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -8,6 +9,10 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+from jacaros.mas.deployment import Deployment
+from jacaros.mas.launch import launch
+from jacaros.mas.mas import Mas
+from jacaros.mas.options import RunOptions
 from jacaros.mas.project import load_deployment
 from jacaros.sim import Event, GroundTruth, Sample
 from jacaros.testing import RunResult, run_project
@@ -46,12 +51,8 @@ def run_of(project: str) -> RunResult:
 
 def run(project: str, beliefs: str = "", world: Path | None = None, seed: int = 0) -> RunResult:
     """Run an example whose agent has further beliefs, or in another world."""
-    deployment = load_deployment(EXAMPLES / project)
-    if beliefs:
-        agent = deployment.agents[0]
-        deployment = replace(deployment, agents=(replace(agent, beliefs=beliefs),))
     began = time.perf_counter()
-    result = run_project(deployment, seed=seed, world=world, seconds=LONGEST)
+    result = run_project(example(project, beliefs), seed=seed, world=world, seconds=LONGEST)
     took = time.perf_counter() - began
     print(
         f"{project}: {result.seconds:.1f} simulated seconds in {took:.2f} s, {result.seconds / took:.0f} times as fast"
@@ -60,6 +61,65 @@ def run(project: str, beliefs: str = "", world: Path | None = None, seed: int = 
     assert result.exit_code == 0
     assert result.seconds < LONGEST
     return result
+
+
+def example(project: str, beliefs: str) -> Deployment:
+    """An example whose agent has further beliefs."""
+    deployment = load_deployment(EXAMPLES / project)
+    if not beliefs:
+        return deployment
+    return replace(deployment, agents=(replace(deployment.agents[0], beliefs=beliefs),))
+
+
+def spoilt(folder: Path, project: str, old: str, new: str) -> Path:
+    """A copy of an example with one place of its program changed; gives the copied project file."""
+    original = EXAMPLES / project
+    copy = folder / "example"
+    shutil.copytree(original.parent, copy)
+    program = copy / "robot.asl"
+    text = program.read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    program.write_text(text.replace(old, new), encoding="utf-8")
+    return copy / original.name
+
+
+class Stop:
+    """The console of a run that ends when an agent prints a certain text.
+
+    Attributes:
+        doing: what the robot truly did then: ``driving``, ``turning`` or ``standing``.
+    """
+
+    def __init__(self, beginning: str) -> None:
+        self.doing = "nothing"
+        self._beginning = beginning
+        self._mas: Mas | None = None
+
+    def begin(self, mas: Mas) -> None:
+        """Take the run."""
+        self._mas = mas
+
+    def print(self, agent: str, text: str) -> None:
+        """Look at the robot and end the run if this is the text."""
+        if text.startswith(self._beginning):
+            assert self._mas is not None
+            assert self._mas.ros.world is not None
+            robot = self._mas.ros.world.robot()
+            turning = "turning" if abs(robot.turn_rate) > 0.1 else "standing"
+            self.doing = "driving" if abs(robot.speed) > 0.05 else turning
+            self._mas.end(0)
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Nothing is to be said."""
+        raise AssertionError(text)
+
+
+def doing_at(beginning: str, project: str, beliefs: str, world: Path) -> str:
+    """What the robot truly does when its agent prints a text with this *beginning* for the first time."""
+    console = Stop(beginning)
+    options = RunOptions(fast=True, seed=0, world=world, seconds=LONGEST)
+    launch(example(project, beliefs), options, console, console.begin, own_process=False)
+    return console.doing
 
 
 def world_with(folder: Path, original: Path, old: str, new: str) -> Path:

@@ -3,10 +3,11 @@
 from pathlib import Path
 
 import pytest
-from examples_lab import checker, falsified, run, run_of, world_with
+from examples_lab import checker, doing_at, falsified, run, run_of, spoilt, world_with
 
 import jacaros.sim
 from jacaros.sim import Event, GroundTruth
+from jacaros.testing import run_project
 
 PROJECT = "05_house_cleaning/house_cleaning.jcm"
 HOUSE = Path(jacaros.sim.__file__).parent / "worlds" / "house.yaml"
@@ -36,23 +37,25 @@ def test_the_agent_tells_the_tasks() -> None:
     assert lines[-1] == "[robot] The house is clean: 4 rounds, the battery charged 1 times."
 
 
-LEVELS = {
-    24.5: "on the way to the living room",
-    26: "in the living room",
-    28: "on the way to the kitchen",
-    32: "in the kitchen",
-    37.8: "between scrubbing the tub and mopping the floor",
-    38.5: "in the bathroom",
-    39.5: "on leaving the bathroom",
-    43: "on the way to the hallway",
-}
-"""Percent at the beginning, and where the battery gets low then."""
+LEVELS = [
+    pytest.param(23.5, "driving", id="on the way to the living room"),
+    pytest.param(25, "standing", id="vacuuming the carpet"),
+    pytest.param(26, "turning", id="swinging in the living room"),
+    pytest.param(28, "driving", id="on the way to the kitchen"),
+    pytest.param(31.5, "standing", id="mopping the kitchen"),
+    pytest.param(37.8, "standing", id="between scrubbing the tub and mopping the floor"),
+    pytest.param(38.5, "standing", id="mopping the bathroom"),
+    pytest.param(39.5, "turning", id="leaving the bathroom"),
+    pytest.param(42, "driving", id="on the way to the hallway"),
+]
+"""Percent at the beginning, and what the robot is doing when its agent sees that the battery is low."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS, ids=LEVELS.get)
-def test_the_battery_may_get_low_anywhere(level: float, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("level", "doing"), LEVELS)
+def test_the_battery_may_get_low_anywhere(level: float, doing: str, tmp_path: Path) -> None:
     world = world_with(tmp_path, HOUSE, "level: 100", f"level: {level}")
+    assert doing_at("battery low", PROJECT, "rounds(1)", world) == doing
     result = run(PROJECT, "rounds(1)", world)
     assert check(result.ground_truth, rounds=1).complaints == []
 
@@ -75,6 +78,15 @@ def test_the_program_alone_runs_in_the_world_of_the_command_line() -> None:
 
 
 # The checker on runs that went otherwise.
+
+
+@pytest.mark.slow
+def test_the_checker_sees_a_robot_that_does_not_go_back_into_the_room(tmp_path: Path) -> None:
+    project = spoilt(tmp_path, PROJECT, "     !return;\n", "")
+    world = world_with(tmp_path, HOUSE, "level: 100", "level: 37.8")
+    result = run_project(project, world=world, seconds=68)
+    complaints = check(result.ground_truth, rounds=1).complaints
+    assert complaints == ["the robot did 'mop floor bathroom' 1.4 m from the corner of the bathroom"]
 
 
 def tasks(truth: GroundTruth) -> list[Event]:

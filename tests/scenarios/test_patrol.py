@@ -3,9 +3,10 @@
 from pathlib import Path
 
 import pytest
-from examples_lab import EXAMPLES, checker, falsified, run, run_of, world_with
+from examples_lab import EXAMPLES, checker, doing_at, falsified, run, run_of, spoilt, world_with
 
 from jacaros.sim import Event, GroundTruth, Sample
+from jacaros.testing import run_project
 
 PROJECT = "04_patrol/patrol.jcm"
 module = checker("04_patrol")
@@ -37,21 +38,22 @@ def test_the_report_agrees_with_what_happened() -> None:
     assert sum(line.startswith("[robot] round ") for line in lines) == corners
 
 
-LEVELS = {
-    24.5: "in the middle of a side",
-    28.5: "braking before a corner",
-    30.5: "arriving at a corner",
-    31.5: "in a turn",
-    32.5: "at the end of a turn",
-    33.5: "behind a corner",
-}
-"""Percent at the beginning, and where the battery gets low then."""
+LEVELS = [
+    pytest.param(24.5, "driving", id="in the middle of a side"),
+    pytest.param(26.5, "driving", id="braking before a corner"),
+    pytest.param(28.5, "driving", id="arriving at a corner"),
+    pytest.param(29.5, "turning", id="in a turn"),
+    pytest.param(30.5, "turning", id="at the end of a turn"),
+    pytest.param(31.5, "driving", id="leaving a corner"),
+]
+"""Percent at the beginning, and what the robot is doing when its agent sees that the battery is low."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS, ids=LEVELS.get)
-def test_the_battery_may_get_low_anywhere(level: float, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("level", "doing"), LEVELS)
+def test_the_battery_may_get_low_anywhere(level: float, doing: str, tmp_path: Path) -> None:
     world = world_with(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", "level: 100", f"level: {level}")
+    assert doing_at("battery low", PROJECT, "shift(1)", world) == doing
     result = run(PROJECT, "shift(1)", world)
     assert check(result.ground_truth, cycles=1).complaints == []
 
@@ -63,8 +65,6 @@ def test_the_program_alone_runs_in_the_world_of_the_command_line() -> None:
 
 
 def test_the_agent_gives_up_when_the_dock_gives_no_current(tmp_path: Path) -> None:
-    from jacaros.testing import run_project
-
     text = (EXAMPLES / "04_patrol/patrol.yaml").read_text(encoding="utf-8")
     world = tmp_path / "world.yaml"
     world.write_text(
@@ -76,6 +76,22 @@ def test_the_agent_gives_up_when_the_dock_gives_no_current(tmp_path: Path) -> No
 
 
 # The checker on runs that went otherwise.
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ("     .resume(patrol).", "     .print(lost).", "no corner was visited after the last recharge"),
+        ("     operationRecharge; ", "     .wait(1000); ", "before the battery was full"),
+        ("-+next(Corner mod 4 + 1)", "-+next((Corner + 1) mod 4 + 1)", "after corner 1 came corner 3"),
+        ('diagnostics("Low Battery")', 'diagnostics("Medium Battery")', "which is not low"),
+        ("dock(1, 1).", "dock(1, 0.3).", "0 recharges, not 1"),
+    ],
+)
+def test_the_checker_sees_a_program_that_is_wrong(old: str, new: str, complaint: str, tmp_path: Path) -> None:
+    result = run_project(spoilt(tmp_path, PROJECT, old, new), seconds=200)
+    assert any(complaint in each for each in check(result.ground_truth, cycles=1).complaints)
 
 
 def test_the_checker_sees_too_few_recharges() -> None:
