@@ -22,6 +22,8 @@ def main() -> int:
     """Run the patrol as anybody can, then tell what happened."""
     RUNS.mkdir(exist_ok=True)
     command = ["run", PROJECT, "--clock", "fast", "--seed", "1", "--record", RECORD, "--replay", REPLAY]
+    if sys.stderr.isatty():
+        command.append("--view")
     print(f"$ jacaros {shlex.join(command)}\n", flush=True)
     began = time.perf_counter()
     code = subprocess.run(
