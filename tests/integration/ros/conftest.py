@@ -1,6 +1,7 @@
 """Runs on real ROS graphs: the world is one process, the agents are another, and the world's file judges.
 
-What a graph is made of (master, peers) comes from the contract suite.
+What a graph is made of (master, peers) comes from the contract suite, the examples and their checkers from
+the scenario tests.
 """
 
 import os
@@ -11,7 +12,9 @@ from typing import Any
 
 import pytest
 
-sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "contracts")]
+sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / "contracts"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "scenarios"))
 
 from graphs import InProcesses, ProcessPeer
 from masters import Master
@@ -19,6 +22,8 @@ from presence import is_wanted, need
 from processes import Agents, WorldProcess
 
 KINDS = ("ros1", "ros2")
+PROGRAMS = Path(__file__).parent / "programs"
+WORLDS = Path(__file__).parent / "worlds"
 MARKS = {"ros1": [pytest.mark.ros1, pytest.mark.slow], "ros2": [pytest.mark.ros2, pytest.mark.slow]}
 
 
@@ -84,21 +89,35 @@ def peer(kind: str, environment: dict[str, str]) -> Iterator[Callable[[str], Pro
 
 
 @pytest.fixture
-def world(kind: str, environment: dict[str, str], tmp_path: Path) -> Iterator[WorldProcess]:
-    """The yard: an open floor with one robot at the origin, as a process of its own."""
-    made = WorldProcess(kind, environment, tmp_path)
-    made.wait_until_open()
-    yield made
-    made.stop()
+def run_world(
+    kind: str, environment: dict[str, str], tmp_path: Path
+) -> Iterator[Callable[[str | Path], WorldProcess]]:
+    """Starts a world, given by its file or name, as a process of its own."""
+    started: list[WorldProcess] = []
+
+    def run(world: str | Path) -> WorldProcess:
+        started.append(WorldProcess(world, kind, environment, tmp_path))
+        started[-1].until_open()
+        return started[-1]
+
+    yield run
+    for each in started:
+        each.stop()
 
 
 @pytest.fixture
-def run_agents(kind: str, environment: dict[str, str], tmp_path: Path) -> Iterator[Callable[..., Agents]]:
-    """Starts agent programs of the folder `programs`, each as a process of its own."""
+def world(run_world: Callable[[str | Path], WorldProcess]) -> WorldProcess:
+    """The yard: an open floor with one robot at the origin."""
+    return run_world(WORLDS / "yard.yaml")
+
+
+@pytest.fixture
+def run_agents(kind: str, environment: dict[str, str]) -> Iterator[Callable[[str | Path], Agents]]:
+    """Starts agents, given by a project file or a program of the folder `programs`, as a process of their own."""
     started: list[Agents] = []
 
-    def run(program: str, *options: str) -> Agents:
-        started.append(Agents(program, kind, environment, options))
+    def run(project: str | Path) -> Agents:
+        started.append(Agents(PROGRAMS / project, kind, environment))
         return started[-1]
 
     yield run

@@ -3,6 +3,7 @@
 import signal
 import time
 from collections.abc import Callable
+from itertools import pairwise
 
 from graphs import ProcessPeer
 from judging import distance, stands, standstill
@@ -68,4 +69,4 @@ def test_sigkill_stops_the_robot_and_a_new_process_goes_on_from_there(
     assert again.lines[1:] == ["[far] arrived"]
     path = world.close().path()
     assert distance(path[-1], (3.0, 0.0)) <= 0.05
-    assert all(after.x >= before.x - 0.01 for before, after in zip(path, path[1:], strict=False))
+    assert all(after.x >= before.x - 0.01 for before, after in pairwise(path))

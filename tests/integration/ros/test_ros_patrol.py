@@ -1,55 +1,66 @@
-"""A patrol with recharging over a real graph, and through a restart of the ROS master."""
+"""Patrols over a real graph: the example, judged by its own checker, and one through a restart of the master."""
 
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
+from examples_lab import EXAMPLES, checker
 from graphs import ProcessPeer
 from judging import visits
 from masters import Master
 from processes import Agents, WorldProcess, wait_until
 
-from jacaros.sim.ground_truth import GroundTruth
+from jacaros.sim import GroundTruth
+from jacaros.testing import Verdict
+from jacaros.testing.docking import judge_recharging, stays
+
+RUN_DOWN_SOON = {
+    "level: 100": "level: 27",
+    "charge_per_second: 10": "charge_per_second: 40",
+}
+"""What makes the example's battery one for tests in real time."""
 
 CORNERS = {"0": (0.0, 0.0), "1": (1.0, 0.0), "2": (1.0, 1.0), "3": (0.0, 1.0)}
+"""Corners of the patrol in the yard."""
 
 
 def charges(truth: GroundTruth) -> int:
-    """How often the battery was charged to its full."""
-    return len(truth.events_of("charged"))
+    """How often the robot came to the dock and charged its battery to the full."""
+    return sum(stay.charged for stay in stays(truth))
 
 
-def assert_charged_in_the_dock_only(truth: GroundTruth) -> None:
-    assert not truth.events_of("battery_empty")
-    docked = False
-    for event in truth.events_of("docked", "undocked", "charging"):
-        docked = event.kind == "docked" or (docked and event.kind != "undocked")
-        assert docked or event.kind == "undocked", event
-
-
-def assert_no_corner_left_out(truth: GroundTruth) -> None:
-    order = visits(truth, CORNERS)
-    assert all(int(after) == (int(before) + 1) % 4 for before, after in pairwise(order)), order
-
-
-def corners_after_the_last_charge(truth: GroundTruth) -> int:
-    """How many corners the robot has come to since its battery was last full."""
-    full = truth.events_of("charged")[-1].time
+def since_the_last_charge(truth: GroundTruth) -> GroundTruth:
+    """The path since the battery was last full."""
     later = GroundTruth(truth.robots)
     for sample in truth.path():
-        if sample.time > full:
+        if sample.time > truth.events_of("charged")[-1].time:
             later.record_sample(truth.robots[0], sample)
-    return len(visits(later, CORNERS))
+    return later
 
 
-def test_a_patrol_goes_on_after_two_charges(world: WorldProcess, run_agents: Callable[..., Agents]) -> None:
-    agents = run_agents("patrol.asl")
+def test_the_patrol_goes_on_after_two_charges(
+    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents], tmp_path: Path
+) -> None:
+    text = (EXAMPLES / "04_patrol/patrol.yaml").read_text(encoding="utf-8")
+    for old, new in RUN_DOWN_SOON.items():
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    (tmp_path / "patrol.yaml").write_text(text, encoding="utf-8")
+    example = checker("04_patrol")
+
+    world = run_world(tmp_path / "patrol.yaml")
+    agents = run_agents(EXAMPLES / "04_patrol/patrol.jcm")
     world.until_truth(lambda truth: charges(truth) == 2, "two charges")
-    world.until_truth(lambda truth: corners_after_the_last_charge(truth) >= 1, "a corner after them")
+    world.until_truth(
+        lambda truth: example.visits(since_the_last_charge(truth).path()), "a corner after them"
+    )
     agents.stop()
-    truth = world.close()
-    assert_charged_in_the_dock_only(truth)
-    assert_no_corner_left_out(truth)
+    verdict = example.check(world.close(), cycles=2)
+    print(*verdict.lines(), sep="\n")
+    assert verdict.complaints == []
+    assert agents.errors == []
+    assert world.errors == []
 
 
 @pytest.mark.only("ros1")
@@ -74,8 +85,12 @@ def test_a_patrol_outlives_the_ros_master(
     late.subscribe("/odom", "nav_msgs/msg/Odometry")
     wait_until(lambda: late.received("/odom"), "odometry reaches a node that came after the master")
     world.until_truth(lambda truth: charges(truth) == 1, "a charge after it")
-    world.until_truth(lambda truth: corners_after_the_last_charge(truth) >= 1, "a corner after that")
+    world.until_truth(lambda truth: visits(since_the_last_charge(truth), CORNERS), "a corner after that")
     agents.stop()
+
     truth = world.close()
-    assert_charged_in_the_dock_only(truth)
-    assert_no_corner_left_out(truth)
+    verdict = Verdict()
+    judge_recharging(verdict, truth, low=50.0)
+    assert verdict.complaints == []
+    order = visits(truth, CORNERS)
+    assert all(int(after) == (int(before) + 1) % 4 for before, after in pairwise(order)), order

@@ -1,21 +1,20 @@
-"""The square of one metre over a real graph."""
+"""The example of the square over a real graph, judged by the example's own checker."""
 
 from collections.abc import Callable
 
-from judging import distance, heading_error, nearest_pass
+from examples_lab import EXAMPLES, checker
 from processes import Agents, WorldProcess
 
-CORNERS = ((1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
 
-
-def test_the_square_is_driven_and_closes(world: WorldProcess, run_agents: Callable[..., Agents]) -> None:
-    agents = run_agents("square.asl")
+def test_the_square_is_driven_and_closes(
+    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
+) -> None:
+    world = run_world("empty")
+    agents = run_agents(EXAMPLES / "02_square/square.jcm")
     assert agents.end() == 0
-    assert agents.lines == [f"[square] corner {number}" for number in (1, 2, 3, 4)]
-    truth = world.close()
-    for corner in CORNERS:
-        assert nearest_pass(truth, corner) <= 0.05, corner
-    back = truth.latest()
-    assert distance(back, (0.0, 0.0)) <= 0.05
-    assert heading_error(back, 0.0) <= 3.0
-    assert 3.9 <= truth.odometer() <= 4.1
+    verdict = checker("02_square").check(world.close())
+    print(*verdict.lines(), sep="\n")
+    assert verdict.complaints == []
+    assert [line.split(" done")[0] for line in agents.lines] == [f"[robot] side {n}" for n in (1, 2, 3, 4)]
+    assert agents.errors == []
+    assert world.errors == []

@@ -1,6 +1,6 @@
 """What people read while something is not there yet, and that it works when it comes."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -9,6 +9,8 @@ from masters import Master
 from presence import need
 from processes import Agents, WorldProcess
 
+PROGRAMS = Path(__file__).parent / "programs"
+YARD = Path(__file__).parent / "worlds" / "yard.yaml"
 CURE = "Start it with `roscore`, or set ROS_MASTER_URI to where it runs."
 
 
@@ -26,8 +28,8 @@ def test_a_master_that_is_late_is_awaited_in_plain_words(
     kind: str, late_master: Master, tmp_path: Path
 ) -> None:
     processes = (
-        agents := Agents("short.asl", kind, late_master.environment),
-        world := WorldProcess(kind, late_master.environment, tmp_path),
+        agents := Agents(PROGRAMS / "short.asl", kind, late_master.environment),
+        world := WorldProcess(YARD, kind, late_master.environment, tmp_path),
     )
     told = [
         f"[ros] waiting for the ROS master at {late_master.uri}",
