@@ -58,8 +58,14 @@ lowest(100).                    // percent, the least that it ever had in the do
 
 // Something went wrong: the robot missed the dock, or something stood in its way.
 -!recharge[error_msg(Text)]
-  <- .print("I cannot recharge: ", Text);
-     .stopMAS(0, 1).
+  <- !give_up(Text).
+
+-!patrol[error_msg(Text)]
+  <- !give_up(Text).
+
++!give_up(Text)
+  <- .print("I need help: ", Text);
+     .stopMAS(0, 1).            // the exit code tells that it went wrong
 
 +!remember(Percent) : lowest(Least) & Percent < Least
   <- -+lowest(Percent).

@@ -69,10 +69,16 @@ recharges(0).
      operationRecharge;
      -+recharges(N + 1).
 
-// Something went wrong: the dock was missed, or the way was blocked.
+// Something went wrong: the robot missed the dock, or something stood in its way.
 -!recharge[error_msg(Text)]
-  <- .print("I cannot recharge: ", Text);
-     .stopMAS(0, 1).
+  <- !give_up(Text).
+
+-!clean_house[error_msg(Text)]
+  <- !give_up(Text).
+
++!give_up(Text)
+  <- .print("I need help: ", Text);
+     .stopMAS(0, 1).            // the exit code tells that it went wrong
 
 // It was cleaning: back into that room.
 +!return : cleaning(Room) & room(_, Room, X, Y)

@@ -72,7 +72,15 @@ def test_the_agent_gives_up_when_the_dock_gives_no_current(tmp_path: Path) -> No
     )
     result = run_project(EXAMPLES / PROJECT, world=world, seconds=300)
     assert result.exit_code == 1
-    assert result.lines[-1].startswith("[robot] I cannot recharge: the robot's battery gets no current")
+    assert result.lines[-1].startswith("[robot] I need help: the robot's battery gets no current")
+
+
+def test_the_agent_gives_up_when_something_stands_in_its_way(tmp_path: Path) -> None:
+    wall = "walls:\n  - box: {from: [1, -0.1], to: [1.1, 0.1]}\n"
+    world = world_with(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", "walls:\n", wall)
+    result = run_project(EXAMPLES / PROJECT, world=world, seconds=60)
+    assert result.exit_code == 1
+    assert result.lines == ["[robot] I need help: the robot does not get on"]
 
 
 # The checker on runs that went otherwise.
