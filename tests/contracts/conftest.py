@@ -1,6 +1,5 @@
 """The graphs that the one contract suite runs on."""
 
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs,
 
 from graphs import InMemory, InProcesses
 from masters import Master
-from presence import is_wanted, need
+from presence import is_wanted, need, ros2_environment
 
 KINDS = ("memory", "ros1", "ros2")
 
@@ -55,15 +54,6 @@ def graph(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     yield made
     made.close()
     master.close()
-
-
-def ros2_environment(folder: Path) -> dict[str, str]:
-    """A domain that no other run uses at the same time, on this machine alone."""
-    return {
-        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "ROS_LOG_DIR": str(folder / "log"),
-    }
 
 
 @pytest.fixture(scope="session")

@@ -5,6 +5,7 @@ import contextlib
 import json
 import os
 import queue
+import re
 import signal
 import subprocess
 import sys
@@ -171,11 +172,25 @@ class ProcessPeer:
 
     def _note_shared_memory(self) -> None:
         """Remember the files that Fast DDS made for this process; it leaves them behind when killed."""
-        try:
-            maps = Path(f"/proc/{self._process.pid}/maps").read_text()
-        except OSError:
-            return
-        self.shared_memory |= {word for word in maps.split() if word.startswith("/dev/shm/fastdds_")}
+        self.shared_memory |= shared_memory(self._process.pid)
+
+
+def shared_memory(process: int | str) -> set[str]:
+    """Files in shared memory that Fast DDS has made for a process; 2 calls them fastrtps_…, 3 fastdds_…"""
+    try:
+        maps = Path(f"/proc/{process}/maps").read_text()
+    except OSError:  # it has ended, or it is somebody else's
+        return set()
+    return set(re.findall(r"/dev/shm/(?:sem\.)?fast(?:rtps|dds)_\S+", maps))
+
+
+def in_use() -> set[str]:
+    """Such files of all living processes: one port is common to all domains of the machine."""
+    used: set[str] = set()
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdigit():
+            used |= shared_memory(folder.name)
+    return used
 
 
 class InProcesses:
@@ -224,6 +239,6 @@ class InProcesses:
                 self.dispose(made)
             except AssertionError as problem:
                 problems.append(str(problem))
-        for path in self._leftovers:
+        for path in self._leftovers - in_use():
             Path(path).unlink(missing_ok=True)
         assert not problems, "\n".join(problems)

@@ -1,7 +1,9 @@
 """Which real graphs are there, and what becomes of tests on those that are not."""
 
 import importlib.util
+import os
 import sys
+from pathlib import Path
 
 import pytest
 from masters import Master
@@ -33,3 +35,12 @@ def need(kind: str, config: pytest.Config) -> None:
     if config.getoption(f"--require-{kind}"):
         pytest.fail(f"{kind} is required, but there is {problem}")
     pytest.skip(f"{kind.upper()} IS NOT TESTED: {problem}")
+
+
+def ros2_environment(folder: Path) -> dict[str, str]:
+    """A domain that no other run uses at the same time, on this machine alone."""
+    return {
+        "ROS_DOMAIN_ID": str(1 + os.getpid() % 100),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_LOG_DIR": str(folder / "log"),
+    }

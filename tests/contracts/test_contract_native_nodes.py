@@ -24,11 +24,14 @@ def native(graph: Any) -> Iterator[None]:
         program(graph), env=os.environ | graph.environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     )
     assert process.stdout is not None
-    assert process.stdout.readline() == b"ready\n"
-    yield
-    process.terminate()
-    process.wait(20)
-    process.stdout.close()
+    try:
+        while (line := process.stdout.readline()) != b"ready\n":  # Fast DDS 2 may report something there
+            assert line, "the plain node ended"
+        yield
+    finally:
+        process.terminate()
+        process.wait(20)
+        process.stdout.close()
 
 
 def test_a_plain_node_echoes_our_message(graph: Any, pair: Pair, native: None) -> None:
@@ -71,4 +74,4 @@ def test_a_plain_node_calls_our_service(graph: Any, pair: Pair, topic: str) -> N
         timeout=60,
         check=False,
     )
-    assert answer.stdout == b"42\n"
+    assert answer.stdout.splitlines()[-1] == b"42"

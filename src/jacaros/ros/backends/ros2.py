@@ -23,6 +23,7 @@ import rclpy.signals  # type: ignore[import-not-found]
 import rclpy.task  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import QOS, SERVICES, TOPICS, TRANSFORMS, Backend, Handler, Sample
+from jacaros.ros.backends.ros2_output import leave_standard_output_alone
 from jacaros.ros.backends.ros2_types import RosidlSchema
 from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceUnavailable, UnknownInterface
 from jacaros.ros.handoff import Handoff, in_thread, post
@@ -276,6 +277,7 @@ class Ros2Backend(Node):
         return client
 
     def _join(self) -> None:
+        leave_standard_output_alone()
         # Signals are ours: rclpy's handlers would end the context before the exit hooks have published.
         no_signals = rclpy.signals.SignalHandlerOptions.NO
         rclpy.init(

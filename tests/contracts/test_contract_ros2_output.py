@@ -1,0 +1,51 @@
+"""ROS 2 alone: the middleware's own reports do not end up among the agents' lines."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from presence import is_wanted, ros2_environment
+
+pytestmark = pytest.mark.ros2
+
+PROGRAM = """
+import resource, signal
+from jacaros.clock import WallClock, run
+from jacaros.ros.open import open_backend
+
+# No room for shared memory: Fast DDS complains, and goes on with the network.
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
+
+async def main():
+    backend = open_backend("ros2", WallClock(), "node")
+    await backend.start()
+    backend.publisher("/a", "std_msgs/msg/String")
+    await backend.close()
+    print("[agent] done")
+
+run(main, WallClock())
+"""
+
+
+def test_complaints_of_the_middleware_go_to_standard_error(
+    tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    if not is_wanted("ros2", request.config):
+        pytest.skip("no ROS 2 here; see test_contract_presence")
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env=os.environ | ros2_environment(tmp_path),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    for name in re.findall(r"segment (fast(?:rtps|dds)_\w+)", done.stderr + done.stdout):
+        Path("/dev/shm", name).unlink(missing_ok=True)  # the empty file that it could not enlarge
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "[agent] done\n"
+    assert "RTPS" in done.stderr
