@@ -30,7 +30,11 @@ def native(graph: Any) -> Iterator[None]:
         yield
     finally:
         process.terminate()
-        process.wait(20)
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:  # a plain rclpy node sometimes misses its signal
+            process.kill()
+            process.wait()
         process.stdout.close()
 
 
