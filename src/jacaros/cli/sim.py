@@ -40,6 +40,7 @@ def command(
         )
     time: Clock = VirtualClock() if clock == "fast" else WallClock()
     loaded = World.load(Path(world) if Path(world).is_file() else world, seed)
+    loaded.ground_truth.keep = 1000
 
     async def main() -> None:
         await serve(loaded, open_backend(ros, time, "world"), time, seconds, ground_truth)

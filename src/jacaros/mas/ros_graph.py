@@ -20,6 +20,10 @@ DEFAULT_WORLD = "empty"
 """The world of a project that names none: an open floor with one robot."""
 
 
+_GROUND_TRUTH = 100_000
+"""Points of a robot's path that are kept in memory: some hours of motion."""
+
+
 class RosGraph:
     """Opens backend and world of a run.
 
@@ -111,6 +115,7 @@ class RosGraph:
 
         source = self._source if self._source is not None else DEFAULT_WORLD
         self.world = World.load(source, self._options.seed)
+        self.world.ground_truth.keep = _GROUND_TRUTH
         self._node = SimNode(self.world, backend, self._clock)
         self._node.start()
 

@@ -56,6 +56,8 @@ class GroundTruth:
     Attributes:
         events: all events, oldest first.
         world: the drawing of the world (see `jacaros.sim.description.WorldDescription.drawing`).
+        keep: how many points of each path and how many events are kept at least, None for all.  Whoever lets a world
+            run for days sets it; listeners are told of everything all the same.
     """
 
     def __init__(self, robots: Iterable[str] = (), world: Record | None = None) -> None:
@@ -64,6 +66,7 @@ class GroundTruth:
         self._paths: dict[str, list[Sample]] = {robot: [] for robot in robots}
         self._latest: dict[str, Sample] = {}
         self._listeners: list[Callable[[Record], None]] = []
+        self.keep: int | None = None
 
     @property
     def robots(self) -> list[str]:
@@ -118,12 +121,15 @@ class GroundTruth:
     def record_event(self, event: Event) -> None:
         """Take note of an event."""
         self.events.append(event)
+        self._forget(self.events)
         if self._listeners:
             self._tell({**event._asdict(), "kind": "event", "event": event.kind})
 
     def record_sample(self, robot: str, sample: Sample) -> None:
         """Add a point to the path of *robot*."""
-        self._paths.setdefault(robot, []).append(sample)
+        path = self._paths.setdefault(robot, [])
+        path.append(sample)
+        self._forget(path)
         self._latest[robot] = sample
         if self._listeners:
             self._tell({"kind": "sample", "robot": robot, **sample._asdict()})
@@ -131,6 +137,11 @@ class GroundTruth:
     def update_latest(self, robot: str, sample: Sample) -> None:
         """Say where *robot* is now without adding a point to its path."""
         self._latest[robot] = sample
+
+    def _forget(self, items: list[Any]) -> None:
+        """Drop what is too old, now and then: seldom enough to cost nothing."""
+        if self.keep is not None and len(items) >= 2 * self.keep:
+            del items[: -self.keep]
 
     def _tell(self, record: Record) -> None:
         for listener in tuple(self._listeners):
