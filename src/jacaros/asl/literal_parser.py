@@ -134,8 +134,7 @@ class LiteralParser(Cursor, ABC):
             return ()
         opener = self.advance()
         if self.token.kind == ")":
-            # So goals are written in the JaCaROS thesis, and in most other languages.
-            self.warn(
+            self.forgive(
                 "the brackets are empty", self.span_of(opener), "without arguments leave them out: p, not p()"
             )
             self.advance()

@@ -66,9 +66,8 @@ class PlanParser(BodyParser):
             return None
         if self.peek().kind == "<-":
             colon = self.advance()
-            # So the programs in the JaCaROS thesis are printed.
-            self.warn(
-                "the context behind ':' is missing; the plan is taken as one without a context",
+            self.forgive(
+                "the context behind ':' is missing",
                 self.span_of(colon),
                 "leave out the ':', or write ': true'",
             )

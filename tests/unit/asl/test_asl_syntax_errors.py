@@ -208,10 +208,12 @@ def test_labels_of_subplans_are_apart_from_those_of_the_program():
         ("+!g <- !h().", "+!g <- !h.", "the brackets are empty"),
     ],
 )
-def test_ways_of_writing_in_the_thesis_are_warned_of(text: str, plain: str, message: str):
-    program, (warning,) = load_program("x", text)
-    assert (warning.severity, warning.message.split(";")[0]) == ("warning", message)
-    assert program.plans == load_program("x", plain)[0].plans
+def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text: str, plain: str, message: str):
+    old = '+!make <- makeArtifact("m", "jason.architecture.ArtCmdVel"). '
+    program, (warning,) = load_program("x", old + text)
+    assert (warning.severity, warning.message) == ("warning", message)
+    assert program.plans == load_program("x", old + plain)[0].plans
+    assert [diagnostic.message for diagnostic in errors(text)] == [message]
 
 
 def test_warnings_come_with_the_errors_in_the_order_of_the_text():
