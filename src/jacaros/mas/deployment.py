@@ -14,6 +14,12 @@ CARTAGO_ENVIRONMENTS = frozenset(
 )
 """Class names of `.mas2j` files that mean: agents with an artifact environment."""
 
+
+def has_own_artifacts(folder: Path) -> bool:
+    """Whether a project in *folder* has artifacts of its own: a file ``artifacts.py`` or a folder ``artifacts``."""
+    return (folder / "artifacts.py").is_file() or (folder / "artifacts").is_dir()
+
+
 _NO_OPTIONS: Mapping[str, str] = MappingProxyType({})
 
 

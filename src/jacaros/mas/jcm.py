@@ -55,6 +55,8 @@ class _JcmReader(JcmValues):
                 self.section()
             except ProjectPanic:
                 self.to_next_section()
+                if cursor.token.kind == "end":
+                    return  # nothing of the file's own '}' is known: the error may have swallowed it
 
     def section(self) -> None:
         cursor = self.cursor

@@ -17,7 +17,7 @@ from jacaros.compiler.lowering import lower_value
 from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
-from jacaros.mas.deployment import AgentSpec, Deployment
+from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import Directory
 from jacaros.mas.mailboxes import Mailboxes
 from jacaros.mas.options import RunOptions
@@ -109,7 +109,7 @@ class Mas:
             self.console.log(diagnostic.render(), "warning")
         programs = self._programs.load_all(self.deployment.agents)
         await self.ros.start()
-        if self._has_environment and (self.deployment.environment or self.deployment.workspaces):
+        if self._has_environment and self._is_furnished():
             await self.surroundings().furnish(self.deployment)
         agents = list(zip(self.deployment.agents, programs, strict=True))
         hosts = [self._add(spec, program) for spec, program in agents]
@@ -118,6 +118,11 @@ class Mas:
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self._when_idle()
+
+    def _is_furnished(self) -> bool:
+        """Whether the environment is made at the start, also to tell mistakes in the project's own artifacts."""
+        declared = self.deployment.environment or self.deployment.workspaces
+        return bool(declared) or has_own_artifacts(self.deployment.base_path)
 
     def surroundings(self) -> "Surroundings":
         """The environment, opened when it is first asked for."""

@@ -22,6 +22,7 @@ from jacaros.mas.deployment import (
     FocusSpec,
     ProjectError,
     WorkspaceSpec,
+    has_own_artifacts,
 )
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ class TypeFinder:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._find: Callable[[str], type[Artifact]] | None = None
-        if (folder / "artifacts.py").is_file() or (folder / "artifacts").is_dir():
+        if has_own_artifacts(folder):
             self._prepare()
 
     def __call__(self, type_name: str) -> "type[Artifact]":
