@@ -1,0 +1,321 @@
+"""Mistakes, and what people read about them: the whole text on standard error, with place and cure."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+JACAROS = str(Path(sys.executable).parent / "jacaros")
+
+NO_ROSPY = """\
+jacaros: the ros1 backend needs the Python library rospy, which cannot be imported (No module named 'rosgraph'). \
+On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by \
+`/usr/bin/python3 -m venv --system-site-packages`; tools/install_ros1.sh does both. \
+On a robot with its own ROS 1, source its setup file first.
+"""
+NO_RCLPY = """\
+jacaros: the ros2 backend needs the Python library rclpy, which cannot be imported (No module named 'rclpy'). \
+On Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. \
+On a robot with its own ROS 2, source its setup file first.
+"""
+
+COUNTER = """\
+from jacaros.env import Artifact, operation
+
+
+class Counter(Artifact):
+    def init(self, start: int = 0) -> None:
+        self.define_property("count", start)
+
+    @operation
+    def check(self, limit: int) -> None:
+        if self.value("count") > limit:
+            self.fail("too many", "too_many", self.value("count"))
+"""
+
+
+class Project:
+    """A folder with the files of a mistaken user."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def write(self, name: str, text: str) -> None:
+        (self._folder / name).write_text(dedent(text), encoding="utf-8")
+
+    def run(self, *arguments: str, **environment: str) -> tuple[int, str, str]:
+        """Call ``jacaros`` in the folder; exit code, standard output and standard error with plain paths."""
+        done = subprocess.run(
+            [JACAROS, *arguments],
+            cwd=self._folder,
+            env=os.environ | environment,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+        assert "Traceback" not in done.stderr
+        return done.returncode, done.stdout, done.stderr.replace(f"{self._folder}/", "")
+
+    def run_file(self, name: str) -> tuple[int, str, str]:
+        """Run a project file until nobody has anything to do."""
+        return self.run("run", name, "--clock", "fast", "--until-idle")
+
+
+def told(code: int, errors: str) -> tuple[int, str, str]:
+    """What a call gives that ends with *code* and says *errors*, after the agents have printed nothing."""
+    return code, "", dedent(errors)
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    return Project(tmp_path)
+
+
+def test_a_syntax_error_in_a_program(project: Project) -> None:
+    project.write(
+        "robot.asl",
+        """\
+        !start.
+
+        +!start : ready
+          <- .print("a");
+             .print("b"
+             .print("c").
+        """,
+    )
+    assert project.run_file("robot.asl") == told(
+        1,
+        """\
+        robot.asl:6:6: error: '(' is not closed: ')' is expected before '.print'
+          6 |      .print("c").
+            |      ^^^^^^
+        hint: it was opened at line 5, column 12
+        """,
+    )
+
+
+def test_a_syntax_error_in_a_jcm_file(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    project.write(
+        "house.jcm",
+        """\
+        mas house {
+            agent robot : robot.asl
+            workspace kitchen {
+                artifact clock Clock(1)
+            }
+        }
+        """,
+    )
+    assert project.run_file("house.jcm") == told(
+        1,
+        """\
+        house.jcm:4:24: error: ':' is expected, not 'Clock'
+          4 |         artifact clock Clock(1)
+            |                        ^^^^^
+        hint: artifact name : Class(arguments)
+        """,
+    )
+
+
+def test_a_syntax_error_in_a_mas2j_file(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    project.write("house.mas2j", "MAS house {\n    agents: robot\n}\n")
+    assert project.run_file("house.mas2j") == told(
+        1,
+        """\
+        house.mas2j:3:1: error: a ';' is expected behind the agent 'robot'
+          3 | }
+            | ^
+        hint: each agent of the list ends with ';'
+        """,
+    )
+
+
+def test_an_unknown_artifact_class_in_a_program(project: Project) -> None:
+    project.write("robot.asl", '!start.\n+!start\n  <- makeArtifact("odom", "ArtOdometri").\n')
+    assert project.run_file("robot.asl") == told(
+        0,
+        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
+        "no artifact type is called ArtOdometri; "
+        "did you mean ArtOdometry or ArtOdometryOnDemand or ArtCmdVelAndOdometry? (robot.asl:3)\n",
+    )
+
+
+def test_an_unknown_artifact_class_in_a_jcm_file(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    project.write("artifacts.py", COUNTER)
+    project.write(
+        "house.jcm",
+        """\
+        mas house {
+            agent robot : robot.asl
+            workspace kitchen {
+                artifact visitors : Countr(1)
+            }
+        }
+        """,
+    )
+    assert project.run_file("house.jcm") == told(
+        1,
+        """\
+        house.jcm:4:18: error: no artifact type is called Countr; did you mean Counter?
+          4 |         artifact visitors : Countr(1)
+            |                  ^^^^^^^^
+        """,
+    )
+
+
+def test_an_unknown_operation(project: Project) -> None:
+    project.write("artifacts.py", COUNTER)
+    project.write("robot.asl", '!start.\n+!start\n  <- makeArtifact("visitors", "Counter");\n     chek(3).\n')
+    assert project.run_file("robot.asl") == told(
+        0,
+        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
+        "no artifact of workspace /main has an operation chek/1; did you mean check/1 of 'visitors'? "
+        "(robot.asl:4)\n",
+    )
+
+
+def test_an_argument_of_the_wrong_type(project: Project) -> None:
+    project.write("artifacts.py", COUNTER)
+    project.write("robot.asl", '!start.\n+!start\n  <- makeArtifact("c", "Counter");\n     check("many").\n')
+    assert project.run_file("robot.asl") == told(
+        0,
+        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
+        'operation check/1 of artifact c: parameter limit (number 1) wants an integer, got "many" '
+        "(robot.asl:4)\n",
+    )
+
+
+def test_an_argument_of_the_wrong_type_for_a_declared_artifact(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    project.write("artifacts.py", COUNTER)
+    project.write(
+        "house.jcm",
+        """\
+        mas house {
+            agent robot : robot.asl
+            workspace kitchen {
+                artifact visitors : Counter("none")
+            }
+        }
+        """,
+    )
+    assert project.run_file("house.jcm") == told(
+        1,
+        """\
+        house.jcm:4:18: error: artifact visitors (Counter) cannot be made: operation init/1 of artifact visitors: \
+parameter start (number 1) wants an integer, got "none"
+          4 |         artifact visitors : Counter("none")
+            |                  ^^^^^^^^
+        """,
+    )
+
+
+def test_an_unknown_option_of_an_artifact(project: Project) -> None:
+    project.write(
+        "robot.asl", '!start.\n+!start\n  <- makeArtifact("battery", "ArtSimBattery", [drian(2)], _).\n'
+    )
+    assert project.run_file("robot.asl") == told(
+        0,
+        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
+        "artifact battery (ArtSimBattery) cannot be made: ArtSimBattery has no option 'drian'; "
+        "it knows dock_timeout, drain, level, namespace, source, topic (robot.asl:3)\n",
+    )
+
+
+def test_a_mistake_in_the_projects_own_artifacts(project: Project) -> None:
+    project.write("artifacts.py", COUNTER.replace("(Artifact):", "(Artifact)"))
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    assert project.run_file("robot.asl") == told(1, "jacaros: artifacts.py:4: expected ':'\n")
+
+
+def test_an_operation_that_fails_reaches_the_plan_with_its_reason(project: Project) -> None:
+    project.write("artifacts.py", COUNTER)
+    project.write(
+        "robot.asl",
+        """\
+        !start.
+
+        +!start
+          <- makeArtifact("visitors", "Counter", [7]);
+             !check(3);
+             .print("and on").
+
+        +!check(Limit)
+          <- check(Limit).
+
+        -!check(Limit)[error(Error), error_msg(Text), env_failure_reason(Reason), code(Code), code_line(Line)]
+          <- .print(Error, "; ", Text, "; ", Reason, "; ", Code, "; ", Line).
+        """,
+    )
+    assert project.run_file("robot.asl") == (
+        0,
+        "[robot] action_failed; too many; too_many(7); check(3); 9\n[robot] and on\n",
+        "",
+    )
+
+
+@pytest.mark.parametrize(("kind", "message"), [("ros1", NO_ROSPY), ("ros2", NO_RCLPY)])
+@pytest.mark.parametrize("command", [("run", "robot.asl"), ("sim", "empty")])
+def test_a_missing_ros(project: Project, kind: str, message: str, command: tuple[str, str]) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    # Where the libraries are installed, these stand before them and are missing all the same.
+    for library in ("rosgraph", "rclpy"):
+        text = f"raise ModuleNotFoundError(\"No module named '{library}'\", name='{library}')\n"
+        project.write(f"{library}.py", text)
+    assert project.run(*command, "--ros", kind, PYTHONPATH=".") == told(1, message)
+
+
+def test_the_fast_clock_with_a_real_graph(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    assert project.run("run", "robot.asl", "--ros", "ros1", "--clock", "fast") == told(
+        2,
+        "jacaros: the virtual clock (--clock fast) cannot run with a real ROS graph (--ros ros1): its nodes "
+        "live in real time; use --clock real\n",
+    )
+
+
+def test_a_file_that_is_not_there(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    assert project.run("run", "robott.asl") == told(
+        2,
+        "jacaros: there is no file robott.asl; did you mean robot.asl?\n",
+    )
+
+
+def test_a_world_that_is_not_there(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    assert project.run("run", "robot.asl", "--world", "nowhere") == told(
+        1,
+        "jacaros: nowhere:1:1: there is no such world file\n"
+        "  cure: give the path of a world file, or one of the shipped worlds: "
+        "empty, house, patrol, two_robots\n",
+    )
+
+
+def test_a_mistake_in_a_world_file(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    project.write("yard.yaml", "robots:\n  - name: a\n    pos: {x: 1}\n")
+    assert project.run("run", "robot.asl", "--world", "yard.yaml") == told(
+        1,
+        "jacaros: yard.yaml:3:5: item 1 of 'robots' has no key 'pos'\n"
+        "    3 |     pos: {x: 1}\n"
+        "            ^\n"
+        "  cure: did you mean 'pose'?\n",
+    )
+
+
+def test_a_misspelt_command_line_option(project: Project) -> None:
+    project.write("robot.asl", "!start. +!start <- .print(done).")
+    assert project.run("run", "robot.asl", "--colck", "fast") == told(
+        2,
+        "Usage: jacaros run [OPTIONS] FILE\n"
+        "Try 'jacaros run --help' for help.\n\n"
+        "Error: No such option '--colck'. Did you mean '--clock'?\n",
+    )
