@@ -237,7 +237,7 @@ class Agent(Circumstance):
         """The test goal for a query known only at run time; fails without plans for it."""
         goal = self.goal_from("+", "?", term)
         plain = goal.goal if goal.__class__ is Posted else goal
-        if self.selects[plain[0]] is None:
+        if not self.may_handle(plain[0]):
             raise Fail
         return goal
 

@@ -45,7 +45,7 @@ def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations 
 
 def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
     """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
-    unplanned = agent.selects[goal[0]] is None
+    unplanned = not agent.may_handle(goal[0])
     if apart or agent.options.new_focus:
         if unplanned and not agent.event_waits:
             return None
@@ -248,7 +248,7 @@ def external_change(
 ) -> None:
     """Raise the external event of a belief change, if anybody cares."""
     kind = trigger(operator, "", symbol)
-    if agent.selects[kind] is not None or agent.event_waits:
+    if agent.may_handle(kind) or agent.event_waits:
         agent.post(Event((kind, *row), None, annotations, cause))
     if agent.condition_waits:
         agent.tasks.append(_nothing)

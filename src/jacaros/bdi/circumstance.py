@@ -45,6 +45,9 @@ class Circumstance:
         goal_observer: told of the state, text and number of each goal that changes, or None.
         plans_made: number of plans so far, for the labels of those that have none.
         bodies: compiled forms of plan bodies held by variables.
+        goal_conditions: whether plans have goal conditions, which are tested in every cycle.
+        subplans: whether plans have plans of their own.
+        outer_frame: frame of the plan whose sub-plans are being tried.
         cycles: number of steps made.
         stopped: the agent is over.
     """
@@ -76,6 +79,9 @@ class Circumstance:
         self.pending_asks: dict[str, Any] = {}
         self.meta = False
         self.goal_observer: Callable[[str, str, int], None] | None = None
+        self.goal_conditions = False
+        self.subplans = False
+        self.outer_frame: Any = None
         self.cycles = 0
         self.stopped = False
         self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}
@@ -110,6 +116,10 @@ class Circumstance:
         if intention.waiting is not None:
             waiting, intention.waiting = intention.waiting, None
             waiting.cancel()
+
+    def may_handle(self, kind: Trigger) -> bool:
+        """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
+        return self.subplans or self.selects[kind] is not None
 
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and tell those who wait for it."""

@@ -6,13 +6,15 @@ of this one, so it stays with an intention as long as nothing else wants a cycle
 
 from typing import Any
 
-from jacaros.bdi import failure, meta_events, speech_acts
+from jacaros.bdi import failure, meta_events, speech_acts, subplans
 from jacaros.bdi.belief_update import apply_percepts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.failure import FailureReason
 from jacaros.bdi.forks import branch_failed
 from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.stack import cut
+from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
 from jacaros.errors import InternalError
 from jacaros.terms.text import text
@@ -32,6 +34,8 @@ def run(agent: Circumstance, fuel: int) -> bool:
                 handle_event(agent)
             else:
                 _handle_atomic_event(agent, agent.atomic)
+        if agent.goal_conditions:
+            _end_achieved_goals(agent)
         intention = _select_intention(agent)
         if intention is not None:
             fuel = _execute(agent, intention, fuel)
@@ -60,6 +64,24 @@ def _housekeeping(agent: Circumstance) -> None:
         agent.tasks.popleft()()
     if agent.condition_waits:
         _check_conditions(agent)
+
+
+def _end_achieved_goals(agent: Circumstance) -> None:
+    """Goals whose goal condition holds are achieved, whatever their plans are at."""
+    for intention in list(agent.alive.values()):
+        for index, frame in enumerate(intention.frames):
+            achieved = frame[PLAN].goal_condition
+            if achieved is not None and achieved(agent, frame):
+                queued = intention in agent.intentions
+                cut(agent, intention, index)
+                if intention.frames:
+                    queued = queued or not pop_finished(agent, intention)
+                else:
+                    agent.finish(intention)
+                    queued = True
+                if not queued:
+                    agent.make_ready(intention)
+                break
 
 
 def _check_conditions(agent: Circumstance) -> None:
@@ -121,10 +143,11 @@ def _external(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
     goal, annotations = event.goal, event.annotations
     trigger = goal[0]
+    reacted = agent.subplans and trigger.kind == "" and _react(agent, event)
     frame = select_plan(agent, goal, annotations)
     if frame is None:
         if trigger.kind == "" or trigger.operator == "^":
-            return False
+            return reacted
         intention = agent.new_intention(event.cause)
         posted = _unplanned(agent, intention, goal, annotations)
         if posted is not None:
@@ -143,10 +166,28 @@ def _external(agent: Circumstance, event: Event) -> bool:
     return True
 
 
-def select_plan(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
-    """Rules RelPl, ApplPl and SelAppl: the frame of the first applicable plan."""
+def _react(agent: Circumstance, event: Event) -> bool:
+    """Every intention whose plans have a sub-plan for an external event reacts to it."""
+    reactions = subplans.react(agent, event.goal, event.annotations)
+    for owner, outer, frame in reactions:
+        intention = agent.new_intention(event.cause)
+        intention.frames.append(frame)
+        intention.outer = (owner, outer)
+        agent.make_ready(intention)
+    return bool(reactions)
+
+
+def select_plan(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, intention: Intention | None = None
+) -> Frame | None:
+    """Rules RelPl, ApplPl and SelAppl: the frame of the first applicable plan, sub-plans of *intention* first."""
     select = agent.selects[goal[0]]
     agent.trail.serial += 1
+    if agent.subplans and intention is not None:
+        inner = subplans.select_in_scope(agent, intention, goal, annotations)
+        if inner is not None:
+            agent.trail.clear()
+            return inner
     if select is None:
         return None
     frame = select(agent, goal, annotations)
@@ -159,7 +200,7 @@ def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annot
     """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
     while True:
         trigger = goal[0]
-        frame = select_plan(agent, goal, annotations)
+        frame = select_plan(agent, goal, annotations, intention)
         if frame is not None:
             _add_frame(agent, intention, frame)
             return True
@@ -195,7 +236,7 @@ def _add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> None:
     trigger = frame[GOAL][0]
     if frames and trigger.operator == "+" and trigger.kind and agent.options.tail_calls:
         caller = frames[-1]
-        if caller[STEP] is None and caller[GOAL][0] is trigger:
+        if caller[STEP] is None and caller[GOAL][0] is trigger and _may_be_replaced(caller):
             frames[-1] = frame
         else:
             frames.append(frame)
@@ -205,6 +246,12 @@ def _add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> None:
         agent.atomic, agent.atomic_over = intention, False
     if agent.meta and trigger.kind and not trigger.failing:
         meta_events.goal_state(agent, frame[GOAL], frame[2], "executing")
+
+
+def _may_be_replaced(caller: Frame) -> bool:
+    """Whether nothing is left for a plan to do once its last formula is called."""
+    plan = caller[PLAN]
+    return plan.goal_condition is None and not plan.subplans
 
 
 def _unplanned(
@@ -227,7 +274,9 @@ def fail_goal(
     trigger = goal[0]
     if agent.meta:
         meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
-    if trigger.on_fail is not None and agent.selects[trigger.on_fail] is not None:
+    if trigger.on_fail is not None and subplans.handles(
+        agent, intention, len(intention.frames), trigger.on_fail
+    ):
         intention.handlers.append(len(intention.frames))
         return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
     return fail_intention(agent, intention, reason)
@@ -371,6 +420,10 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         frame = frames[-1]
         if frame[0] is not None:
             break
+        achieved = frame[PLAN].goal_condition
+        if achieved is not None and not achieved(agent, frame):
+            Waiting(agent, intention, atom("goal_condition")).attach(frame, None)
+            return False
         trigger = frame[GOAL][0]
         if trigger.failing:
             del frames[intention.handlers.pop() :]

@@ -8,6 +8,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
 from jacaros.bdi.internal_action import ActionError, WrongArguments
+from jacaros.bdi.subplans import handles
 from jacaros.compiler.bodies import StepInfo
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import Fail, Failure, literal_of
@@ -266,7 +267,7 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
         if trigger.failing:
             index = handlers.pop() - 1
             continue
-        if trigger.on_fail is not None and agent.selects[trigger.on_fail] is not None:
+        if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
             event = reason.with_goal(frame[ANNOTATIONS])
             release_bindings(frame[GOAL], frame[SERIAL])
             intention.handlers.append(index)
@@ -284,7 +285,7 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
         if trigger.failing:
             index = handlers.pop() - 1
             continue
-        if trigger.on_fail is not None and agent.selects[trigger.on_fail] is not None:
+        if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
             return True
         index -= 1
     return False

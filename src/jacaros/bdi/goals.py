@@ -8,6 +8,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.failure import nowhere, release_bindings
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
+from jacaros.bdi.stack import cut, pending_event, remove_event
 from jacaros.compiler.runtime import literal_of
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term
@@ -41,11 +42,6 @@ def matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
     found = unify(pattern, literal, trail)
     undo(trail, mark)
     return found
-
-
-def pending_event(agent: Circumstance, intention: Intention) -> Event | None:
-    """The event of the queue that an intention waits for, if any."""
-    return next((e for e in (*agent.events, *agent.suspended_events) if e.intention is intention), None)
 
 
 def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
@@ -105,29 +101,22 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
     event = pending_event(agent, intention)
     if event is not None:
-        _remove_event(agent, event)
+        remove_event(agent, event)
     agent.finish(intention)
 
 
 def drop_events(agent: Circumstance, goal: Term) -> None:
     """Events of matching goals vanish, with the intentions that posted them."""
     for event in goal_events(agent, goal):
-        _remove_event(agent, event)
+        remove_event(agent, event)
     for event in list(agent.events):
         if (
             event.intention is not None
             and _is_goal(event)
             and matches(agent, goal, literal_of(event.goal, event.annotations))
         ):
-            _remove_event(agent, event)
+            remove_event(agent, event)
             drop_intention(agent, event.intention)
-
-
-def _remove_event(agent: Circumstance, event: Event) -> None:
-    kept = [e for e in agent.events if e is not event]
-    agent.events.clear()
-    agent.events.extend(kept)
-    agent.suspended_events = [e for e in agent.suspended_events if e is not event]
 
 
 def drop_goal(agent: Circumstance, goal: Term) -> None:
@@ -221,22 +210,6 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
 # --- ending goals from outside -----------------------------------------------------------------------------
 
 
-def cut(agent: Circumstance, intention: Intention, index: int) -> None:
-    """Take the frame at *index* and all above off the stack, and whatever the intention waits for."""
-    if intention.waiting is not None:
-        waiting, intention.waiting = intention.waiting, None
-        waiting.cancel()
-    event = pending_event(agent, intention)
-    if event is not None:
-        _remove_event(agent, event)
-    intention.parked = False
-    del intention.frames[index:]
-    while intention.handlers and intention.handlers[-1] >= index:
-        intention.handlers.pop()
-    if agent.atomic is intention and not intention.is_atomic():
-        agent.atomic, agent.atomic_over = None, False
-
-
 def succeed_goal(agent: Circumstance, goal: Term) -> bool:
     """End matching goals as achieved: their callers go on.  True when the running intention is concerned."""
     own = False
@@ -247,7 +220,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
-                _remove_event(agent, event)
+                remove_event(agent, event)
         else:
             cut(agent, intention, index)
         if running:
@@ -255,7 +228,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
         elif goes_on(agent, intention) and not queued:
             agent.make_ready(intention)
     for event in goal_events(agent, goal):
-        _remove_event(agent, event)
+        remove_event(agent, event)
     return own
 
 
@@ -282,7 +255,7 @@ def fail_goal(agent: Circumstance, goal: Term) -> bool:
             agent.intentions.remove(intention)
         _post(agent, intention, cycle.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], nowhere()))
     for event in goal_events(agent, goal):
-        _remove_event(agent, event)
+        remove_event(agent, event)
         intention = agent.new_intention(event.cause)
         _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, nowhere()))
     return own
@@ -292,7 +265,7 @@ def _fail_pending(agent: Circumstance, intention: Intention) -> None:
     """A sub-goal that was posted and not taken up yet fails in its place."""
     event = pending_event(agent, intention)
     if event is not None:
-        _remove_event(agent, event)
+        remove_event(agent, event)
         _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, nowhere()))
 
 

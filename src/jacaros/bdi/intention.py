@@ -32,6 +32,7 @@ class Intention:
         dropped: it is over; whoever still holds it lets it go.
         cause: why it was adopted.
         forks: the forks it is a branch of, outermost first, with the number of the branch.
+        outer: intention and frame whose sub-plan reacts here to something outside, or None.
         on_failed: called when it ends in failure, in place of the usual warning.
     """
 
@@ -43,6 +44,7 @@ class Intention:
         "handlers",
         "id",
         "on_failed",
+        "outer",
         "parked",
         "suspended",
         "waiting",
@@ -57,6 +59,7 @@ class Intention:
         self.waiting: Any = None
         self.dropped = False
         self.cause = cause
+        self.outer: tuple[Intention, Frame] | None = None
         self.forks: tuple[tuple[Any, int], ...] = ()
         self.on_failed: Callable[[], None] | None = None
 

@@ -6,7 +6,7 @@ from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import Rule
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.compiler.lowering import fresh_names, lower
-from jacaros.compiler.plan import Plan, label_of
+from jacaros.compiler.plan import Plan, label_of, with_subplans
 from jacaros.compiler.reflection import Reflection
 from jacaros.compiler.runtime import Failure
 from jacaros.terms.plans import PLAN, RULE, TRIGGER, is_body
@@ -26,18 +26,6 @@ from jacaros.terms.values import (
 ERROR = functor("error", 1)
 
 
-def _warn_of_what_is_missing(agent: Circumstance, node: nodes.Plan) -> None:
-    """Goal conditions and sub-plans are read, and come in a later version."""
-    span = node.span
-    where = f"{span.file.name}:{span.line}: " if span is not None else ""
-    for present, what in (
-        (node.goal_condition is not None, "a goal condition '<:'"),
-        (node.subplans, "sub-plans"),
-    ):
-        if present:
-            agent.architecture.log("warning", f"{where}{what} of this plan has no effect yet")
-
-
 def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
     """Whether two plans are equal, labels aside."""
     return (left.trigger, left.context, left.body) == (right.trigger, right.context, right.body)
@@ -47,11 +35,18 @@ def add_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
     """Take in plans of a program, behind those held."""
     plans = []
     for node in plan_nodes:
-        _warn_of_what_is_missing(agent, node)
         agent.plans_made += 1
-        plans.append(Plan(node, label_of(node, agent.plans_made)))
+        plan = Plan(node, label_of(node, agent.plans_made))
+        plans.append(with_subplans(plan, agent.plans_made))
     agent.library.extend(plans)
+    _look_at_plans(agent)
+
+
+def _look_at_plans(agent: Circumstance) -> None:
+    """What the mind needs to know of its plans as a whole."""
     agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
+    agent.subplans = agent.library.has_subplans()
+    agent.goal_conditions = agent.library.has_goal_conditions()
 
 
 def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:
@@ -81,8 +76,8 @@ def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) 
     agent.plans_made += 1
     plan = Plan(node, label_of(node, agent.plans_made))
     plan.source = (SOURCE, source)
-    agent.library.add(plan, first)
-    agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
+    agent.library.add(with_subplans(plan, agent.plans_made), first)
+    _look_at_plans(agent)
 
 
 def remove_plan(agent: Circumstance, wanted: Term) -> bool:

@@ -46,17 +46,29 @@ class PlanLibrary:
 
     def relevant(self, trigger: Trigger) -> list[Plan]:
         """The candidate plans of an event kind, those with a variable as trigger among them."""
-        return [
-            plan
-            for plan in self.plans
-            if plan.node.trigger.operator == trigger.operator
-            and plan.node.trigger.kind == trigger.kind
-            and _concerns(plan, trigger)
-        ]
+        return [plan for plan in self.plans if concerns(plan, trigger)]
+
+    def has_subplans(self) -> bool:
+        """Whether any plan has plans of its own."""
+        return any(plan.subplans for plan in self.plans)
+
+    def has_goal_conditions(self) -> bool:
+        """Whether any plan, or plan of a plan, has a goal condition."""
+        return any(_has_goal_condition(plan) for plan in self.plans)
 
     def has_meta_plans(self) -> bool:
         """Whether any plan reacts to changes of goal states (``^!g``)."""
         return any(plan.node.trigger.operator == "^" for plan in self.plans)
+
+
+def _has_goal_condition(plan: Plan) -> bool:
+    return plan.node.goal_condition is not None or any(_has_goal_condition(inner) for inner in plan.subplans)
+
+
+def concerns(plan: Plan, trigger: Trigger) -> bool:
+    """Whether a plan is a candidate for an event kind."""
+    head = plan.node.trigger
+    return head.operator == trigger.operator and head.kind == trigger.kind and _concerns(plan, trigger)
 
 
 def _concerns(plan: Plan, trigger: Trigger) -> bool:

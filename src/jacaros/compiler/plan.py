@@ -6,6 +6,7 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.compiler.bodies import StepInfo
 from jacaros.compiler.lowering import lower_value
+from jacaros.compiler.triggers import Trigger
 from jacaros.terms.values import Term, annotations_of, atom, bare, functor
 
 ATOMIC_LABEL = atom("atomic")
@@ -25,6 +26,9 @@ class Plan:
         first: the first step function, None for an empty body; set when the plan is compiled.
         steps: what is known of each step function.
         scope: the plan that this one is a sub-plan of, or None.
+        goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
+        subplans: plans for what happens while this one is pursued.
+        subselects: their select functions by event kind, made at the first event.
         source: who told it, as a term ``source(Name)``, or None.
     """
 
@@ -32,6 +36,7 @@ class Plan:
         "annotations",
         "atomic",
         "first",
+        "goal_condition",
         "label",
         "node",
         "order",
@@ -40,6 +45,8 @@ class Plan:
         "slots",
         "source",
         "steps",
+        "subplans",
+        "subselects",
     )
 
     def __init__(self, node: nodes.Plan, label: Term, order: float = 0.0) -> None:
@@ -53,6 +60,9 @@ class Plan:
         self.first: Callable[[Any, list[Any]], Any] | None = None
         self.steps: dict[Callable[..., Any], StepInfo] = {}
         self.scope: Plan | None = None
+        self.goal_condition: Callable[[Any, list[Any]], bool] | None = None
+        self.subplans: list[Plan] = []
+        self.subselects: dict[Trigger, Any] = {}
         self.source: Term = None
 
     def __repr__(self) -> str:
@@ -74,6 +84,15 @@ class Plan:
         if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
             return None
         return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def with_subplans(plan: Plan, number: int) -> Plan:
+    """Give a plan its sub-plans, and those theirs."""
+    for index, node in enumerate(plan.node.subplans):
+        inner = Plan(node, label_of(node, number), float(index))
+        inner.scope = plan
+        plan.subplans.append(with_subplans(inner, number))
+    return plan
 
 
 def label_of(node: nodes.Plan, number: int) -> Term:

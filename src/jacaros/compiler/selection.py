@@ -32,13 +32,15 @@ class SelectCompiler:
         self.arity = arity
         self.bodies: list[tuple[Plan, BodyCompiler, str]] = []
 
-    def select(self, plans: Sequence[Plan]) -> str:
-        """Write the function; returns its name."""
+    def select(self, plans: Sequence[Plan], outer: Plan | None = None) -> str:
+        """Write the function; returns its name.  Sub-plans see the variables of their *outer* plan's frame."""
         name = self.unit.fresh_function("select")
         fn = FunctionBuilder(self.unit)
         fn.at(plans[0].node)
         with fn.writer.block(f"def {name}(agent, goal, annotations):"):
             fn.line("t = agent.trail")
+            if outer is not None:
+                _read_outer(fn, outer, plans)
             for index, plan in enumerate(plans):
                 fn.at(plan.node)
                 if index:
@@ -100,6 +102,9 @@ class SelectCompiler:
         """The innermost point: the plan is applicable, its frame is made and given back."""
         node = plan.node
         counts = occurrences(node.trigger, node.context, node.body, node.goal_condition, node.subplans)
+        if plan.scope is not None:
+            # Sub-plans of this one may ask for what it took over from its outer plan.
+            counts = {name: count + (name in plan.scope.slots) for name, count in counts.items()}
         if any(a.name in _BY_NAME for a in actions_in(node.body)):
             counts = {name: count + 1 for name, count in counts.items()}
         frame = Frame(counts)
@@ -118,6 +123,42 @@ class SelectCompiler:
         rest = frame.size - len(values)
         fixed = [first, "goal", "annotations", "t.serial", fn.constant(plan)]
         fn.line(f"return [{', '.join([*fixed, *values, *(['None'] * rest)])}]")
+
+
+def _read_outer(fn: FunctionBuilder, outer: Plan, plans: Sequence[Plan]) -> None:
+    names = [n for n in names_in(tuple(p.node for p in plans)) if n in outer.slots]
+    if names:
+        fn.line("outer = agent.outer_frame")
+    for name in names:
+        fn.line(f"v_{name} = outer[{outer.slots[name]}]")
+        fn.line(f'if v_{name} is None: v_{name} = outer[{outer.slots[name]}] = Var("{name}")')
+        fn.values[name] = f"v_{name}"
+
+
+def compile_goal_condition(unit: Unit, plan: Plan) -> str:
+    """Write the test of a goal condition: ``holds(agent, frame)``; it leaves no bindings behind."""
+    name = unit.fresh_function("achieved")
+    fn = FunctionBuilder(unit)
+    node = plan.node.goal_condition
+    assert node is not None
+    fn.at(node)
+
+    def then() -> None:
+        fn.line("undo(t, n0)")
+        fn.line("return True")
+
+    with fn.writer.block(f"def {name}(agent, frame):"):
+        fn.line("t = agent.trail")
+        fn.line("n0 = len(t)")
+        for variable in names_in(node):
+            if variable in plan.slots:
+                fn.line(f"v_{variable} = frame[{plan.slots[variable]}]")
+                fn.line(f'if v_{variable} is None: v_{variable} = Var("{variable}")')
+                fn.values[variable] = f"v_{variable}"
+        condition(fn, node, then)
+        fn.line("return False")
+    unit.add(fn.writer)
+    return name
 
 
 def compile_rule(unit: Unit, rule: nodes.Rule) -> str:

@@ -9,7 +9,7 @@ from jacaros.asl import nodes
 from jacaros.compiler import runtime
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
-from jacaros.compiler.selection import SelectCompiler, compile_rule
+from jacaros.compiler.selection import SelectCompiler, compile_goal_condition, compile_rule
 from jacaros.compiler.triggers import Trigger
 from jacaros.compiler.writer import Writer
 from jacaros.terms.values import Functor, String, Term
@@ -69,13 +69,18 @@ def _prefix(value: Term) -> str:
 
 
 def compile_select(
-    trigger: Trigger, plans: Sequence[Plan], actions: Mapping[str, ActionInfo]
+    trigger: Trigger, plans: Sequence[Plan], actions: Mapping[str, ActionInfo], outer: Plan | None = None
 ) -> tuple[Select, str]:
-    """The select function of an event kind, and the generated text."""
+    """The select function of an event kind, and the generated text; *outer* is the plan that sub-plans belong to."""
     unit = CodeUnit(plans[0].file, actions)
     compiler = SelectCompiler(unit, trigger.functor.arity)
-    name = compiler.select(plans)
+    name = compiler.select(plans, outer)
+    conditions = {
+        plan: compile_goal_condition(unit, plan) for plan in plans if plan.node.goal_condition is not None
+    }
     unit.execute()
+    for plan, achieved in conditions.items():
+        plan.goal_condition = unit.globals[achieved]
     for plan, body, first in compiler.bodies:
         plan.first = unit.globals[first] if first != "None" else None
         plan.steps = {unit.globals[step]: info for step, info in body.infos.items()}

@@ -7,6 +7,7 @@ from jacaros.bdi import goals
 from jacaros.bdi.context import Context
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.bdi.stack import cut
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
 from jacaros.terms.plans import make_body, trigger
@@ -230,9 +231,24 @@ def done(ctx: Context) -> Any:
     """End the own goal as achieved."""
     current = ctx.intention
     assert current is not None
+    if current.outer is not None and not any(frame[GOAL][0].kind for frame in current.frames):
+        return _outer_done(ctx, current)
     index = max(i for i, frame in enumerate(current.frames) if frame[GOAL][0].kind or i == 0)
-    goals.cut(ctx.agent, current, index)
+    cut(ctx.agent, current, index)
     return _ended(ctx, own=True)
+
+
+def _outer_done(ctx: Context, current: Intention) -> Any:
+    """In a sub-plan that reacts to something, the goal is that of the plan around it."""
+    assert current.outer is not None
+    owner, frame = current.outer
+    if not owner.dropped and any(frame is other for other in owner.frames):
+        queued = owner in ctx.agent.intentions
+        cut(ctx.agent, owner, next(i for i, other in enumerate(owner.frames) if other is frame))
+        if goals.goes_on(ctx.agent, owner) and not queued:
+            ctx.agent.make_ready(owner)
+    ctx.agent.finish(current)
+    return SUSPENDED
 
 
 @internal_action(".fail", suspends=True)
