@@ -10,6 +10,7 @@ from jacaros.bdi.waiting import Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import rename
 from jacaros.terms.values import (
+    PLAIN,
     Functor,
     String,
     Term,
@@ -17,6 +18,7 @@ from jacaros.terms.values import (
     atom,
     bare,
     functor,
+    functor_of,
     is_list,
     list_items,
     make_list,
@@ -49,7 +51,8 @@ def _deliver(
 
 def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
     sender = own_name if message.sender == "self" else message.sender
-    return from_sender(content, sender) if bare(content).__class__ in (tuple, Functor) else content
+    symbol = functor_of(content)
+    return from_sender(content, sender) if symbol is not None and symbol.kind == PLAIN else content
 
 
 class _Question:
