@@ -140,7 +140,8 @@ class Run:
         }
         work = deque(stages["work"])
         self._side_by_side(deque(stages["install"]), work)
-        self._side_by_side(deque(), deque(stages["real-time"]))
+        # One after the other: graphs of one machine share memory and processors, and these parts measure time.
+        self._work(deque(stages["real-time"]), deque())
 
     def _side_by_side(self, first: deque[Part], common: deque[Part]) -> None:
         workers = [
