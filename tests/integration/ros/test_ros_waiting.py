@@ -1,6 +1,6 @@
 """What people read while something is not there yet, and that it works when it comes."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -50,3 +50,19 @@ def test_a_master_that_is_late_is_awaited_in_plain_words(
     finally:
         for process in processes:
             process.stop()
+
+
+def test_a_robot_that_is_late_is_awaited_in_plain_words(
+    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
+) -> None:
+    agents = run_agents("short.asl")
+    agents.until_error("is missing")
+    [told] = agents.errors
+    assert told == (
+        "[Wheels] the topic /odom (nav_msgs/msg/Odometry) is missing; still listening. "
+        "Is the node that publishes it running?"
+    )
+    world = run_world(YARD)
+    assert agents.end() == 0
+    assert agents.lines == ["[short] begins", "[short] arrived"]
+    assert distance(world.close().latest(), (0.5, 0.0)) <= 0.02

@@ -178,3 +178,44 @@ def test_another_topic_is_an_option_and_an_unknown_option_is_refused() -> None:
         assert lab.logged == []
 
     in_lab(body, "two_robots")
+
+
+def test_a_topic_that_nobody_publishes_is_told_after_some_seconds() -> None:
+    async def body(lab: Lab) -> None:
+        await lab.make(ArtOdometry, Structure("topic", ("odomm",)), name="compass")
+        await lab.sleep(2.9)
+        assert lab.logged == []
+        await lab.sleep(10)
+        [told] = lab.logged
+        assert told == (
+            "[compass] the topic /odomm (nav_msgs/msg/Odometry) is missing; still listening. "
+            "Is the node that publishes it running?"
+        )
+
+    in_lab(body)
+
+
+def test_a_topic_that_came_or_is_not_wanted_any_more_is_not_told() -> None:
+    async def body(lab: Lab) -> None:
+        await lab.make(ArtOdometry)
+        given_up = await lab.make(ArtOdometry, Structure("topic", ("odomm",)))
+        await lab.sleep(1)
+        lab.workspace.dispose_artifact(given_up)
+        await lab.sleep(10)
+        assert lab.logged == []
+
+    in_lab(body)
+
+
+def test_a_missing_topic_is_not_told_while_the_graph_itself_is_away() -> None:
+    async def body(lab: Lab) -> None:
+        lab.backend.set_connected(False)  # type: ignore[attr-defined]
+        await lab.make(ArtOdometry)
+        await lab.sleep(10)
+        lab.backend.set_connected(True)  # type: ignore[attr-defined]
+        await lab.sleep(2.9)
+        assert lab.logged == []
+        await lab.sleep(6)
+        assert len(lab.logged) == 1
+
+    in_lab(body, None)

@@ -4,6 +4,7 @@
 file                                   what it holds
 ====================================== ==============================================================
 `ros_artifact`, `options`, `reading`   what all share: topics, options, policies for sensors
+`missing`                              report of a topic that nobody publishes
 `odometry`, `laser`, `tutorial`        sensors, and a service
 `velocity`, `wheels`                   motion operations
 `motion`, `lane`                       one motion from request to end; one motion at a time

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Protocol, TypeVar
 
+from jacaros.artifacts.ros.missing import MissingTopic
 from jacaros.artifacts.ros.options import Reader, WrongOption, read_arguments, text
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
 from jacaros.env.artifact import Artifact, internal_operation
@@ -114,9 +115,12 @@ class RosArtifact(Artifact):
     ) -> Subscription:
         """Have *callback* called for the messages of the robot's *topic* until the artifact is disposed.
 
-        The callback runs on the loop but outside of any operation: it changes properties by `receive`.
+        The callback runs on the loop but outside of any operation: it changes properties by `start`.  A topic
+        that nobody publishes is told in the log after a few seconds; listening goes on.
         """
-        return self._kept(self.ros.subscription(self.robot_topic(topic), type_name, callback, qos))
+        made = self._kept(self.ros.subscription(self.robot_topic(topic), type_name, callback, qos))
+        self._kept(MissingTopic(self.ros, self.clock, made, type_name, self.log))
+        return made
 
     def client(self, service: str, type_name: str) -> Client:
         """Call the service until the artifact is disposed."""
