@@ -43,10 +43,10 @@ def stands(truth: GroundTruth, since: float) -> bool:
 
 
 def standstill(truth: GroundTruth, braking: float) -> float:
-    """When the robot came to its present rest, in the world's time.
+    """When the robot came to its present rest at the latest, in the world's time.
 
-    The path has ten samples a second; between the last one in motion and the rest the robot braked
-    evenly, by *braking* metres per second squared.
+    The path has ten samples a second; after the last one in motion the robot braked by *braking* metres per
+    second squared, or harder.
     """
     last = truth.latest()
     moving: Sequence[Sample] = [sample for sample in truth.path() if sample.odometer < last.odometer]

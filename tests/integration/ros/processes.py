@@ -57,6 +57,11 @@ class Program:
         """Whether the process has ended."""
         return self._process.poll() is not None
 
+    @property
+    def complaints(self) -> list[str]:
+        """The lines of standard error; that a topic was late on a busy machine is none."""
+        return [line for line in self.errors if "still listening" not in line]
+
     def until(self, condition: Callable[[], object], what: str) -> None:
         """Wait for a condition that the process brings about; fails at once when it ends before."""
 

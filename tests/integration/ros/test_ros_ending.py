@@ -38,10 +38,12 @@ def test_sigterm_stops_the_robot(
     assert commands[-1] == 0.0, "the last word is zero"
     first_zero = len(commands) - next(n for n, speed in enumerate(reversed(commands)) if speed)
     zero_at = time.time() - watcher.samples("/cmd_vel")[first_zero]["age"]
-    assert zero_at - ended <= COMMANDED_ZERO
     truth = world.close()
+    stood_at = standstill(truth, RAMP) - world.time_of(ended)
+    print(f"SIGTERM: zero commanded after {zero_at - ended:.2f} s, standing after {stood_at:.2f} s")
     assert not truth.events_of("command_timeout"), "it was told to stop"
-    assert standstill(truth, RAMP) - world.time_of(ended) <= STANDING
+    assert zero_at - ended <= COMMANDED_ZERO
+    assert stood_at <= STANDING
     assert truth.odometer() < 1.8
 
 
@@ -54,6 +56,7 @@ def test_sigkill_stops_the_robot_and_a_new_process_goes_on_from_there(
     assert agents.end() == -signal.SIGKILL
     world.until_truth(lambda truth: stands(truth, ended), "the robot stands")
     [missed] = world.truth.events_of("command_timeout")
+    print(f"SIGKILL: stopped by the base after {missed.time - ended:.2f} s")
     assert missed.time - ended <= COMMANDED_ZERO
     # The base brakes at once when it misses commands, without a ramp.
     resting = world.truth.latest()

@@ -59,7 +59,7 @@ def test_the_patrol_goes_on_after_two_charges(
     verdict = example.check(world.close(), cycles=2)
     print(*verdict.lines(), sep="\n")
     assert verdict.complaints == []
-    assert agents.errors == []
+    assert agents.complaints == []
     assert world.errors == []
 
 

@@ -16,5 +16,5 @@ def test_the_square_is_driven_and_closes(
     print(*verdict.lines(), sep="\n")
     assert verdict.complaints == []
     assert [line.split(" done")[0] for line in agents.lines] == [f"[robot] side {n}" for n in (1, 2, 3, 4)]
-    assert agents.errors == []
+    assert agents.complaints == []
     assert world.errors == []
