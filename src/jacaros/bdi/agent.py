@@ -4,7 +4,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.bdi import belief_update, body_terms, cycle, forks, formulas, goals, meta_events, plan_changes
+from jacaros.bdi import (
+    belief_update,
+    body_terms,
+    cycle,
+    deadlines,
+    forks,
+    formulas,
+    goals,
+    meta_events,
+    plan_changes,
+)
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.answers import AnswerByPlan
 from jacaros.bdi.architecture import Architecture
@@ -101,9 +111,9 @@ class Agent(Circumstance):
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
             raise ActionError("a goal must be a literal")
-        self.post(
-            Event((trigger("+", "!", symbol), *arguments), None, own_annotations(annotations), goal_cause)
-        )
+        kind = trigger("+", "!", symbol)
+        event = Event((kind, *arguments), None, own_annotations(annotations), goal_cause)
+        meta_events.post_new_goal(self, event)
         self.architecture.ready()
 
     run = cycle.run
@@ -215,9 +225,13 @@ class Agent(Circumstance):
             return self.architecture.random.random() * limit
         return settle(term)
 
-    def annotated_goal(self, goal: tuple[Any, ...], items: tuple[Term, ...], tail: Term) -> Posted:
+    def annotated_goal(
+        self, goal: tuple[Any, ...], items: tuple[Term, ...], tail: Term, separate: bool = False
+    ) -> Posted:
         """A goal that is posted with annotations."""
-        return Posted(goal, own_annotations(items, tail))
+        annotations = own_annotations(items, tail)
+        deadlines.watch(self, goal, annotations, separate)
+        return Posted(goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term) -> Any:
         """The goal that a term denotes.
@@ -249,7 +263,8 @@ class Agent(Circumstance):
         names: dict[Any, Any] = {}
         arguments = tuple(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:])
         current = self.current
-        self.post(Event((goal[0], *arguments), None, annotations, current.cause if current else None))
+        event = Event((goal[0], *arguments), None, annotations, current.cause if current else None)
+        meta_events.post_new_goal(self, event)
 
     def begin_act(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: Any

@@ -41,6 +41,11 @@ class _Always(dict[str, int]):
         return 2
 
 
+def is_body_frame(frame: Frame) -> bool:
+    """Whether a frame runs a body held by a variable, not a plan of its own."""
+    return frame[1][0] is _BODY
+
+
 def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: Any) -> Any:
     """A variable as a body formula: a plan body, or an action."""
     term = resolve(value)

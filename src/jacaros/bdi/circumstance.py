@@ -62,6 +62,7 @@ class Circumstance:
         self.trail = Trail()
         self.beliefs = BeliefBase()
         self.library = PlanLibrary(actions)
+        self.library.report = lambda text: architecture.log("error", text)
         self.selects: Selects = self.library.selects
         self.events: deque[Event] = deque()
         self.intentions: deque[Intention] = deque()

@@ -160,7 +160,6 @@ def _external(agent: Circumstance, event: Event) -> bool:
     if frame[PLAN].atomic:
         agent.atomic, agent.atomic_over = intention, False
     if agent.meta:
-        meta_events.goal_state(agent, goal, annotations, "pending")
         meta_events.goal_state(agent, goal, annotations, "executing")
     agent.make_ready(intention)
     return True

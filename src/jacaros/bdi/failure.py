@@ -4,6 +4,7 @@ actions become failures of goals."""
 from typing import Any
 
 from jacaros.asl import nodes
+from jacaros.asl.formatter import format_term
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
@@ -105,7 +106,12 @@ class _StepPlace:
 
     def annotations(self) -> tuple[Term, ...]:
         lookup, _ = self.code
-        term = resolve(lower(self.node, lambda name: lookup[name] if name in lookup else Var(name)))
+        term = lower(self.node, lambda name: lookup[name] if name in lookup else Var(name))
+        try:
+            term = resolve(term)
+        except ArithmeticFault:
+            # The formula holds the very expression that has no value: it is shown as it is written.
+            term = String(format_term(self.node)) if isinstance(self.node, nodes.Term) else String("")
         return _code(term, self.node.span, self.plan.file)
 
     def where(self) -> str:

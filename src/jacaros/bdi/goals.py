@@ -6,7 +6,7 @@ from typing import Any
 from jacaros.bdi import cycle, meta_events
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
-from jacaros.bdi.failure import nowhere, release_bindings
+from jacaros.bdi.failure import FailureReason, nowhere, release_bindings
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.stack import cut, pending_event, remove_event
 from jacaros.compiler.runtime import literal_of
@@ -23,12 +23,13 @@ def goal_literals(intention: Intention) -> list[Term]:
     ]
 
 
-def frame_of(agent: Circumstance, intention: Intention, goal: Term) -> int | None:
-    """Index of the lowest frame that serves a goal matching *goal*; the variables of *goal* are not bound."""
+def frame_of(agent: Circumstance, intention: Intention, goal: Term, lowest: int = 0) -> int | None:
+    """Index of the lowest frame (from *lowest* on) that serves a goal matching *goal*; its variables are not bound."""
     for index, frame in enumerate(intention.frames):
         trigger = frame[GOAL][0]
         if (
-            trigger.kind == "!"
+            index >= lowest
+            and trigger.kind == "!"
             and trigger.operator == "+"
             and matches(agent, goal, literal_of(frame[GOAL], frame[2]))
         ):
@@ -138,6 +139,15 @@ def drop_all_intentions(agent: Circumstance) -> None:
             drop_intention(agent, intention)
 
 
+def drop_all_goal_events(agent: Circumstance) -> None:
+    """All pending events of goals; intentions that posted them vanish."""
+    for event in (*agent.events, *agent.suspended_events):
+        if _is_goal(event):
+            remove_event(agent, event)
+            if event.intention is not None:
+                drop_intention(agent, event.intention)
+
+
 def drop_all_events(agent: Circumstance) -> None:
     """All pending events; intentions that posted them vanish."""
     for event in list(agent.events):
@@ -239,13 +249,17 @@ def goes_on(agent: Circumstance, intention: Intention) -> bool:
     return cycle.pop_finished(agent, intention)
 
 
-def fail_goal(agent: Circumstance, goal: Term) -> bool:
-    """End matching goals as failed: their own handlers run, or those below.  True when the caller itself is concerned."""
+def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = None) -> bool:
+    """End matching goals as failed: their own handlers run, or those below.  True when the caller itself is concerned.
+
+    Without *reason* the failure events carry no error annotation, as in Jason.
+    """
+    reason = reason or nowhere()
     own = False
     for intention in intentions_for(agent, goal):
         index = frame_of(agent, intention, goal)
         if index is None:
-            _fail_pending(agent, intention)
+            _fail_pending(agent, intention, reason)
             continue
         own = own or intention is agent.current
         frame = intention.frames[index]
@@ -253,20 +267,20 @@ def fail_goal(agent: Circumstance, goal: Term) -> bool:
         cut(agent, intention, index)
         if intention in agent.intentions:
             agent.intentions.remove(intention)
-        _post(agent, intention, cycle.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], nowhere()))
+        _post(agent, intention, cycle.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], reason))
     for event in goal_events(agent, goal):
         remove_event(agent, event)
         intention = agent.new_intention(event.cause)
-        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, nowhere()))
+        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, reason))
     return own
 
 
-def _fail_pending(agent: Circumstance, intention: Intention) -> None:
+def _fail_pending(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
     """A sub-goal that was posted and not taken up yet fails in its place."""
     event = pending_event(agent, intention)
     if event is not None:
         remove_event(agent, event)
-        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, nowhere()))
+        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, reason))
 
 
 def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:

@@ -32,6 +32,13 @@ def goal_state(
     agent.tasks.append(lambda: _insert(agent, event))
 
 
+def post_new_goal(agent: Circumstance, event: Event) -> None:
+    """Queue the event of a new goal; it is pending from now on."""
+    if agent.meta:
+        goal_state(agent, event.goal, event.annotations, "pending")
+    agent.post(event)
+
+
 def top_goal_state(agent: Circumstance, intention: Intention, state: str, reason: Term = _NO_REASON) -> None:
     """The same for the topmost goal of an intention."""
     for frame in reversed(intention.frames):

@@ -5,15 +5,16 @@ from jacaros.asl.loader import parse_plans
 from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import Rule
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.internal_action import ActionError
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.compiler.plan import Plan, label_of, with_subplans
 from jacaros.compiler.reflection import Reflection
 from jacaros.compiler.runtime import Failure
 from jacaros.terms.plans import PLAN, RULE, TRIGGER, is_body
+from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
     SELF,
-    SOURCE,
     String,
     Term,
     atom,
@@ -58,8 +59,8 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
     """
     term = resolve(term)
     if term.__class__ is String:
-        text = str(term).strip()
-        for node in parse_plans(text if text.endswith(".") else text + "."):
+        written = str(term).strip()
+        for node in parse_plans(written if written.endswith(".") else written + "."):
             _add_node(agent, node, source, first)
         return
     if is_list(term):
@@ -72,28 +73,35 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
 def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) -> None:
     for held in agent.library.plans:
         if _same(held.node, node):
+            if source not in held.sources:
+                held.sources.append(source)
             return
     agent.plans_made += 1
     plan = Plan(node, label_of(node, agent.plans_made))
-    plan.source = (SOURCE, source)
+    if agent.library.by_label(plan.label) is not None:
+        raise ActionError(f"another plan has the label {text(plan.label)} already")
+    plan.sources = [source]
     agent.library.add(with_subplans(plan, agent.plans_made), first)
     _look_at_plans(agent)
 
 
-def remove_plan(agent: Circumstance, wanted: Term) -> bool:
-    """Take out the plan of that label, or equal to that plan term; False when there is none."""
+def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
+    """Take a source off the plan of that label, or equal to that plan term; without source it goes.
+
+    False when there is no such plan.
+    """
     term = resolve(wanted)
     if term.__class__ is tuple and term[0] is PLAN:
         node = Reflection(shared=False).plan(term)
-        found = next(
-            (p for p in agent.library.plans if _same(p.node, node)),
-            None,
-        )
+        found = next((p for p in agent.library.plans if _same(p.node, node)), None)
     else:
         found = agent.library.by_label(term)
     if found is None:
         return False
-    agent.library.remove(found)
+    if source in found.sources:
+        found.sources.remove(source)
+        if not found.sources:
+            agent.library.remove(found)
     return True
 
 

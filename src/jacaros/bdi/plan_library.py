@@ -1,6 +1,6 @@
 """Plans by trigger, and the select functions made from them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
@@ -14,6 +14,7 @@ class PlanLibrary:
 
     def __init__(self, actions: Mapping[str, ActionInfo]) -> None:
         self.actions = actions
+        self.report: Callable[[str], None] = _ignore
         self.plans: list[Plan] = []
         self.selects = Selects(self)
         self._count = 0
@@ -61,6 +62,10 @@ class PlanLibrary:
         return any(plan.node.trigger.operator == "^" for plan in self.plans)
 
 
+def _ignore(text: str) -> None:
+    del text
+
+
 def _has_goal_condition(plan: Plan) -> bool:
     return plan.node.goal_condition is not None or any(_has_goal_condition(inner) for inner in plan.subplans)
 
@@ -87,7 +92,11 @@ class Selects(dict[Trigger, Select | None]):
         plans = self.library.relevant(trigger)
         select: Select | None = None
         if plans:
-            select, self.sources[trigger] = compile_select(trigger, plans, self.library.actions)
+            try:
+                select, self.sources[trigger] = compile_select(trigger, plans, self.library.actions)
+            except (SyntaxError, RecursionError) as fault:
+                # Python's limits for one function; a program meets them with formulae of some hundred operators.
+                self.library.report(f"the plans for {trigger!r} are too large to be compiled: {fault}")
         self[trigger] = select
         return select
 

@@ -9,6 +9,7 @@ from jacaros.bdi.belief_base import parts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event
 from jacaros.bdi.formulas import solve_formula
+from jacaros.bdi.meta_events import post_new_goal
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import fresh_names, lower_plan
 from jacaros.compiler.runtime import run
@@ -129,7 +130,7 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
         if symbol is None:
             _refuse(agent, message)
         else:
-            agent.post(Event((trigger("+", "!", symbol), *arguments), None, annotations))
+            post_new_goal(agent, Event((trigger("+", "!", symbol), *arguments), None, annotations))
 
 
 def _unachieve(agent: Circumstance, message: SpeechAct) -> None:
@@ -256,7 +257,7 @@ def _tell_how(agent: Circumstance, message: SpeechAct) -> None:
 
 def _untell_how(agent: Circumstance, message: SpeechAct) -> None:
     for content in _contents(message.content):
-        agent.remove_plan(content)  # type: ignore[attr-defined]
+        agent.remove_plan(content, atom(message.sender))  # type: ignore[attr-defined]
 
 
 def plan_term(content: Term) -> bool:

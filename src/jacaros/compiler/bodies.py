@@ -99,7 +99,7 @@ def _achieve(compiler: BodyCompiler, step: nodes.Achieve, name: str, next_name: 
             posted = _goal_expression(fn, "+", "!", goal)
             if goal.annotations is not None:
                 items, tail = annotation_parts(fn, goal.annotations)
-                posted = f"agent.annotated_goal({posted}, {items}, {tail})"
+                posted = f"agent.annotated_goal({posted}, {items}, {tail}, {step.separate})"
         else:
             posted = f'agent.goal_from("+", "!", {build(fn, goal)})'
         if step.separate:
@@ -344,7 +344,8 @@ def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder) -> int:
     names = _free_at_entry(compiler)
     fn.load(frame, names)
     slot = frame.hidden_slot()
-    values = tuple_of([f"frame[{frame.slot(n)}]" for n in names]) if names else "()"
+    # `free_variables` takes the first element of a tuple for a functor.
+    values = tuple_of(["None", *(f"frame[{frame.slot(n)}]" for n in names)])
     fn.line(f"frame[{slot}] = free_variables({values}) if {_any_open(frame, names)} else None")
     return slot
 

@@ -24,7 +24,7 @@ from jacaros.compiler.building import (
     tuple_of,
 )
 from jacaros.compiler.function import FunctionBuilder
-from jacaros.compiler.matching import Then, match, match_all, settle_fresh
+from jacaros.compiler.matching import MAX_DEPTH, Then, match, match_all, settle_fresh
 from jacaros.compiler.reflection import Constant
 from jacaros.compiler.variables import names_in
 
@@ -41,6 +41,9 @@ _TRUE = ("true", "false")
 def condition(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
     """Write the search for answers of *node*, with *then* at its innermost point."""
     fn.at(node)
+    if fn.writer.depth > MAX_DEPTH and not isinstance(node, nodes.Literal | nodes.Variable):
+        in_own_function(fn, node, then)
+        return
     if fn.writer.loops > _MAX_LOOPS and not isinstance(node, (nodes.Relation, nodes.Not)):
         in_own_function(fn, node, then)
         return
@@ -289,14 +292,19 @@ class _Arguments:
     def fast_rows(self, table: str) -> str:
         """An expression for the rows of a table that holds only facts."""
         if not self.known:
-            return f"list(reversed({table}.rows))" if self.fn.snapshot else f"reversed({table}.rows)"
+            return self._lasting(table, f"reversed({table}.rows)")
         keys = [self.terms[i] for i in self.known]
         if len(keys) == len(self.terms):
             return f"{table}.exact({tuple_of(keys)})"
         positions = self.fn.constant(tuple(self.known))
         key = keys[0] if len(keys) == 1 else tuple_of(keys)
-        rows = f"{table}.find({positions}, {key})"
-        return f"list({rows})" if self.fn.snapshot else rows
+        return self._lasting(table, f"{table}.find({positions}, {key})")
+
+    def _lasting(self, table: str, rows: str) -> str:
+        """Rows that may be read while beliefs change: where answers are taken in between two steps."""
+        if self.fn.trampoline:
+            return f"list({rows})"
+        return f"still_held({table}, list({rows}))" if self.fn.snapshot else rows
 
     def match_rest(self, then: Then) -> None:
         """Match the read parts with their patterns."""

@@ -14,6 +14,8 @@ from jacaros.compiler.variables import names_in
 from jacaros.terms.values import CONS
 
 Then = Callable[[], None]
+MAX_DEPTH = 50
+"""Levels of indentation after which code goes on in another way."""
 
 
 def match(
@@ -101,7 +103,18 @@ def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str]
     if not patterns:
         then()
         return
+    if fn.writer.depth > MAX_DEPTH:
+        _match_together(fn, patterns, values, then)
+        return
     match(fn, patterns[0], values[0], lambda: match_all(fn, patterns[1:], values[1:], then))
+
+
+def _match_together(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str], then: Then) -> None:
+    """Match many patterns in one test: Python allows no more than 100 levels of indentation."""
+    expected = tuple_of([build(fn, pattern) for pattern in patterns])
+    with fn.writer.block(f"if unify_rows({expected}, {tuple_of(values)}, t):"):
+        settle_fresh(fn, names_in(*patterns))
+        then()
 
 
 def _match_any(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool) -> None:

@@ -7,7 +7,7 @@ from jacaros.asl import nodes
 from jacaros.compiler.bodies import StepInfo
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.triggers import Trigger
-from jacaros.terms.values import Term, annotations_of, atom, bare, functor
+from jacaros.terms.values import SELF, Term, annotations_of, atom, bare, functor
 
 ATOMIC_LABEL = atom("atomic")
 
@@ -29,7 +29,7 @@ class Plan:
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
         subplans: plans for what happens while this one is pursued.
         subselects: their select functions by event kind, made at the first event.
-        source: who told it, as a term ``source(Name)``, or None.
+        sources: who told it, as atoms; it goes when none is left.
     """
 
     __slots__ = (
@@ -43,7 +43,7 @@ class Plan:
         "scope",
         "size",
         "slots",
-        "source",
+        "sources",
         "steps",
         "subplans",
         "subselects",
@@ -63,7 +63,7 @@ class Plan:
         self.goal_condition: Callable[[Any, list[Any]], bool] | None = None
         self.subplans: list[Plan] = []
         self.subselects: dict[Trigger, Any] = {}
-        self.source: Term = None
+        self.sources: list[Term] = [SELF]
 
     def __repr__(self) -> str:
         return f"Plan({self.label!r})"

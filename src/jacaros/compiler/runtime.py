@@ -336,6 +336,16 @@ class Remaining:
         return Remaining(iter(self.items()))
 
 
+def still_held(table: Any, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term, ...]]:
+    """The rows of a loop over beliefs: one is fixed ahead, those that are deleted before their turn are left out."""
+    source = iter(rows)
+    ahead = next(source, None)
+    while ahead is not None:
+        current = ahead
+        ahead = next((row for row in source if row in table.rows), None)
+        yield current
+
+
 def join_branch(agent: Any, frame: list[Any]) -> Any:
     """The step behind the last one of a branch of ``|&|`` or ``|||``."""
     return agent.join_branch(frame)
@@ -376,9 +386,11 @@ _FUNCTIONS = (
     run,
     solve,
     solve_annotated,
+    still_held,
     undo,
     unify,
     unify_annotations,
+    unify_rows,
     unknown,
 )
 _CLASSES = (Annotated, Fail, InternalError, Remaining, Functor, String, Trail, Var)

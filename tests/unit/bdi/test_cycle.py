@@ -169,7 +169,7 @@ def test_an_observer_hears_of_every_change_of_a_goal() -> None:
     observe_goals(host.agent, lambda state, goal, number: heard.append((state, goal)))
     host.run()
     states = [state for state, goal in heard if goal == "!a"]
-    assert states == ["pending", "executing", "waiting", "executing", "suspended"]
+    assert states == ["executing", "waiting", "executing", "suspended"]
     assert [state for state, goal in heard if goal == "!b"] == ["pending", "executing", "failed"]
 
 
@@ -390,3 +390,76 @@ def test_a_body_held_by_a_variable_makes_its_first_step_in_the_same_turn() -> No
         +!b <- .print(b1); .print(b2); .print(b3); .print(b4); .print(b5).
         """
     ) == ["a1", "b1", "a2", "b2", "a3", "b3", "b4", "b5"]
+
+
+def test_done_ends_a_handler_or_a_belief_plan_and_its_caller_goes_on() -> None:
+    assert printed("!s. +!s <- !g; .print(after). +!g <- .fail. -!g <- .done; .print(no).") == ["after"]
+    assert printed("!g. +!g <- +b; .print(x). +b <- .print(b); .done; .print(no).") == ["b", "x"]
+
+
+def test_the_first_free_variable_is_given_back_between_the_rounds_of_a_loop() -> None:
+    assert printed(
+        """
+        !t. c(0).
+        +!t <- !h(X); .print(X); !k(Y); .print(Y).
+        +!h(X) <- for (.range(I,1,2)) { .print(I); X = I }; .print(X).
+        +!k(X) <- while (c(N) & N < 2) { -+c(N+1); X = N; .print(X) }; .print(X).
+        """
+    ) == ["1", "2", "X<no-value>", "X<no-value>", "0", "1", "Y<no-value>", "Y<no-value>"]
+
+
+def test_beliefs_may_change_while_a_loop_goes_over_them() -> None:
+    assert printed(
+        """
+        !g. p(1). p(2). p(3). p(4). p(5). ok. r(X) :- p(X) & ok.
+        +!g <- for (r(X)) { .print(X); if (X == 1) { -ok } }; for (p(X)) { .print(X); -p(X+2) }; .print(end).
+        """
+    ) == ["1", "1", "2", "4", "5", "end"]
+
+
+def test_a_goal_that_is_not_achieved_by_its_deadline_fails() -> None:
+    assert printed(
+        """
+        !g.
+        +!g <- !h[hard_deadline(50)]; .print(after); !!k[hard_deadline(50)]; !quick[hard_deadline(50)]; .wait(200);
+          .print(end).
+        +!h <- .wait(200); .print(no).
+        -!h[error(E)] <- .print(E).
+        +!k <- !h2.
+        +!h2 <- .wait(200); .print(no).
+        -!k[error(E)] <- .print(k, " ", E).
+        +!quick <- .print(quick).
+        """
+    ) == ["deadline_reached", "after", "quick", "k deadline_reached", "end"]
+
+
+def test_a_formula_without_value_fails_with_its_reason() -> None:
+    assert printed("!g. +!g <- X = 1 div 0. -!g[error(E),code(C)] <- .print(E, " + '" ", C' + ").") == [
+        "arithmetic_error (X = (1 div 0))"
+    ]
+
+
+def test_a_plan_goes_when_its_last_source_takes_it_back() -> None:
+    assert printed(
+        """
+        !g.
+        +!g <- .add_plan({@k +!a <- .print(1)}, bob); .add_plan({@k +!a <- .print(1)}, carl); .remove_plan(k, bob); !a;
+          .remove_plan(k, carl); !a.
+        -!g[error(E)] <- .print(E).
+        """
+    ) == ["1", "no_relevant"]
+
+
+def test_plans_of_any_width_are_compiled() -> None:
+    context = " & ".join(f"X > {i}" for i in range(150))
+    nots = " & ".join(f"not q({i})" for i in range(150))
+    arguments = ",".join(str(i) for i in range(120))
+    assert printed(
+        f"""
+        !s.
+        +!s <- !a(200); !b; !c({arguments}).
+        +!a(X) : {context} <- .print(a).
+        +!b : {nots} <- .print(b).
+        +!c({arguments}) <- .print(c).
+        """
+    ) == ["a", "b", "c"]

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from jacaros.bdi import goals
+from jacaros.bdi.body_terms import is_body_frame
 from jacaros.bdi.context import Context
-from jacaros.bdi.intention import ANNOTATIONS, GOAL, STEP, Intention
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.stack import cut
 from jacaros.compiler.lowering import lower
@@ -159,7 +160,7 @@ def drop_all_events(ctx: Context) -> None:
 @internal_action(".drop_all_desires", arity=0, suspends=True)
 def drop_all_desires(ctx: Context) -> None:
     """All events and all intentions but the calling one vanish."""
-    goals.drop_all_events(ctx.agent)
+    goals.drop_all_goal_events(ctx.agent)
     goals.drop_all_intentions(ctx.agent)
 
 
@@ -233,9 +234,22 @@ def done(ctx: Context) -> Any:
     assert current is not None
     if current.outer is not None and not any(frame[GOAL][0].kind for frame in current.frames):
         return _outer_done(ctx, current)
-    index = max(i for i, frame in enumerate(current.frames) if frame[GOAL][0].kind or i == 0)
-    cut(ctx.agent, current, index)
+    cut(ctx.agent, current, _own_goal(current))
     return _ended(ctx, own=True)
+
+
+def _own_goal(current: Intention) -> int:
+    """Index of the frame that `.done` ends: of the plan that calls it, of the goal around a reacting sub-plan, of the
+    failed goal when a handler calls it."""
+    top = next(
+        i for i in reversed(range(len(current.frames))) if i == 0 or not is_body_frame(current.frames[i])
+    )
+    frame = current.frames[top]
+    if frame[GOAL][0].failing and current.handlers:
+        return current.handlers[-1]
+    if not frame[GOAL][0].kind and frame[PLAN].scope is not None:
+        return next((i for i, other in enumerate(current.frames) if other[PLAN] is frame[PLAN].scope), top)
+    return top
 
 
 def _outer_done(ctx: Context, current: Intention) -> Any:

@@ -13,6 +13,11 @@ from jacaros.terms.text import text
 from jacaros.terms.values import SELF, Term, atom, bare, is_list, list_items, make_list
 
 
+def _source(term: Term) -> Term:
+    """The source that an argument names, the agent itself by default."""
+    return SELF if term is None else bare(term)
+
+
 def _term(plan: Plan) -> Term:
     """A plan as a term, with its label."""
     term = lower_plan(plan.node, fresh_names())
@@ -24,7 +29,7 @@ def add_plan(ctx: Context, plan: Term, source: Term = None, where: Term = None) 
     """``.add_plan(P [,Source [,begin]])``: P is a plan term, a string, or a list of them."""
     first = where is not None and bare(where) is atom("begin")
     try:
-        ctx.agent.add_plan(plan, SELF if source is None else source, first)
+        ctx.agent.add_plan(plan, _source(source), first)
     except NotAPlan as fault:
         raise WrongArguments(str(fault)) from fault
     except AslError as fault:
@@ -34,11 +39,10 @@ def add_plan(ctx: Context, plan: Term, source: Term = None, where: Term = None) 
 @internal_action(".remove_plan", arity=(1, 2))
 def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> bool:
     """``.remove_plan(Label)``: also a list of labels, or a plan term; fails when there is none."""
-    del source
     if is_list(wanted):
-        removed = [ctx.agent.remove_plan(item) for item in list_items(wanted)]
+        removed = [ctx.agent.remove_plan(item, _source(source)) for item in list_items(wanted)]
         return all(removed)
-    return bool(ctx.agent.remove_plan(wanted))
+    return bool(ctx.agent.remove_plan(wanted, _source(source)))
 
 
 @internal_action(".plan_label", arity=2, backtracks=True)
