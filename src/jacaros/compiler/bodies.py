@@ -43,7 +43,6 @@ class BodyCompiler:
     frame: Frame
     prefix: str
     infos: dict[str, StepInfo] = field(default_factory=dict)
-    loops: int = 0
     _count: int = 0
 
     def body(self, steps: tuple[nodes.Step, ...], after: str) -> str:
@@ -119,8 +118,6 @@ def _test(compiler: BodyCompiler, step: nodes.Test, name: str, next_name: str) -
     asked = isinstance(formula, (nodes.Literal, nodes.Variable))
     with fn.writer.block(_head(name)):
         fn.line("t = agent.trail")
-        if compiler.loops and asked:
-            _forget(compiler, fn, step)
         fn.load(compiler.frame, names_in(step))
         bound = _success(compiler, fn, formula, next_name)
         if isinstance(formula, nodes.Literal) and _is_fixed(formula):
@@ -289,8 +286,6 @@ def _if(compiler: BodyCompiler, step: nodes.If, name: str, next_name: str) -> No
     first_else = else_name if has_else else next_name
     with fn.writer.block(_head(name)):
         fn.line("t = agent.trail")
-        if compiler.loops:
-            _forget(compiler, fn, step)
         fn.load(compiler.frame, names_in(step.condition))
         bound = _success(compiler, fn, step.condition, first_then)
         fn.line("if t: undo(t, 0)")
@@ -307,10 +302,12 @@ def _if(compiler: BodyCompiler, step: nodes.If, name: str, next_name: str) -> No
     compiler.frame.states = _joined(after_then, compiler.frame.states)
 
 
-def _forget(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -> None:
-    """In a loop, variables of a step that has several ways on may still hold values of the last round."""
+def _clear_inner(
+    compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node, entry: dict[str, str]
+) -> None:
+    """Variables that get their first value inside a loop have none at the beginning of a round nor after the loop."""
     for variable in names_in(step):
-        if variable not in compiler.frame.states and compiler.frame.counts.get(variable, 0) > 1:
+        if variable not in entry and compiler.frame.counts.get(variable, 0) > 1:
             fn.line(f"frame[{compiler.frame.slot(variable)}] = None")
 
 
@@ -370,15 +367,14 @@ def _while(compiler: BodyCompiler, step: nodes.While, name: str, next_name: str)
     with fn.writer.block(_head(test_name)):
         fn.line("t = agent.trail")
         fn.line(f"if frame[{slot}]: release(frame[{slot}])")
+        _clear_inner(compiler, fn, step, entry)
         fn.load(frame, names_in(step.condition))
         bound = _success(compiler, fn, step.condition, first if step.body.steps else test_name)
         fn.line("if t: undo(t, 0)")
         fn.line(f"frame[0] = {next_name}")
     compiler.unit.add(fn.writer)
     _learn(compiler, bound)
-    compiler.loops += 1
     _branch_body(compiler, step.body, first, test_name)
-    compiler.loops -= 1
     frame.states = entry
 
 
@@ -403,17 +399,22 @@ def _for(compiler: BodyCompiler, step: nodes.For, name: str, next_name: str) -> 
     fn = compiler.begin(step)
     with fn.writer.block(_head(round_name)):
         fn.line(f"if frame[{slot}]: release(frame[{slot}])")
+        _clear_inner(compiler, fn, step, entry)
+        own = frame.hidden_slot() if used else None
+        if own is not None:
+            fn.line(f"if frame[{own}]: release(frame[{own}])")
         targets = tuple_of([f"frame[{frame.slot(n)}]" for n in used]) if used else "_"
         with fn.writer.block(f"for {targets} in frame[{answers}]:"):
+            if own is not None:
+                values = tuple_of(["None", *(f"frame[{frame.slot(n)}]" for n in used)])
+                fn.line(f"frame[{own}] = free_variables({values}) if {_any_open(frame, used)} else None")
             fn.line(f"frame[0] = {first if step.body.steps else round_name}")
             fn.line("return None")
         fn.line(f"frame[{answers}] = None")
         fn.line(f"frame[0] = {next_name}")
     compiler.unit.add(fn.writer)
     _learn(compiler, used)
-    compiler.loops += 1
     _branch_body(compiler, step.body, first, round_name)
-    compiler.loops -= 1
     frame.states = entry
 
 

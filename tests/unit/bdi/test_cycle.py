@@ -463,3 +463,17 @@ def test_plans_of_any_width_are_compiled() -> None:
         +!c({arguments}) <- .print(c).
         """
     ) == ["a", "b", "c"]
+
+
+def test_what_a_loop_binds_is_gone_after_it_and_in_its_next_round() -> None:
+    assert printed("!g. +!g <- for (.member(Z,[W,[3]])) { .print(Z,W); W = f(b) }.")[1] == "[3]W<no-value>"
+    assert printed("!g. p(1). +!g <- for (p(Z)) { Y = Z }; if (p(2)) { Y = 3 }; .print(Y).") == [
+        "Y<no-value>"
+    ]
+    assert printed("!g. p(1). +!g <- if (p(2)) { Y = 2 } else { for (p(Z)) { Y = Z } }; .print(Y).") == [
+        "Y<no-value>"
+    ]
+    assert printed("!g. +!g <- for (.member(X,[1,2])) { if (X == 1) { Y = one }; .print(Y) }.") == [
+        "one",
+        "Y<no-value>",
+    ]
