@@ -27,7 +27,7 @@ from jacaros.bdi.intention import Frame
 from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
-from jacaros.bdi.waiting import Waiting
+from jacaros.bdi.waiting import ACTION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
@@ -46,7 +46,6 @@ from jacaros.terms.values import (
     bare,
     functor,
     functor_of,
-    structure,
 )
 from jacaros.trace import cause
 
@@ -175,10 +174,18 @@ class Agent(Circumstance):
         held = Waiting(self, intention, ended.reason)
         intention.waiting = held
 
-        def on_resume() -> None:
+        def resumed() -> None:
             if intention.waiting is held:
                 intention.waiting = None
                 self._end_wait(ended)
+
+        def on_resume() -> None:
+            # The end of an external action is looked at in the next cycle, as any other; that of a wait has been.
+            if is_action(ended.reason):
+                self.tasks.append(resumed)
+                self.architecture.ready()
+            else:
+                resumed()
 
         held.on_resume = on_resume
 
@@ -275,7 +282,7 @@ class Agent(Circumstance):
         self._acts += 1
         number = self._acts
         why = cause("act", symbol.name, intention.cause) if intention.cause is not None else None
-        waiting = Waiting(self, intention, structure("action", (symbol, *arguments) if arguments else symbol))
+        waiting = Waiting(self, intention, (ACTION, (symbol, *arguments) if arguments else symbol))
         waiting.attach(intention.frames[-1], next_step)
         waiting.on_drop = lambda: self._cancel_act(number)
         waiting.on_suspend = lambda: self.architecture.suspend_act(number)

@@ -4,7 +4,15 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.bdi.intention import Frame, Intention
-from jacaros.terms.values import Term
+from jacaros.terms.values import Term, functor
+
+ACTION = functor("action", 1)
+"""Functor of the reason of those who wait for the end of an external action."""
+
+
+def is_action(reason: Term) -> bool:
+    """Whether what is waited for is an external action."""
+    return reason.__class__ is tuple and reason[0] is ACTION
 
 
 class Waiting:

@@ -70,19 +70,33 @@ def run(question: Answers) -> Iterator[Any]:
     The stack of generators is a list, so depth costs no Python recursion.
     """
     stack: list[Answers] = []
+    opened = [question]
     current, answer = question, None
-    while True:
-        item = next(current, None) if answer is None and not stack else _resume(current, answer)
-        if item is not None and item.__class__ is not tuple:
-            stack.append(current)
-            current, answer = item, None
-        elif stack:
-            current, answer = stack.pop(), item if item is not None else _NO_MORE
-        elif item is None:
-            return
-        else:
-            yield item
-            answer = None
+    try:
+        while True:
+            item = _resume(current, answer)
+            if item is None:
+                # Whatever was opened after it was opened on its behalf.
+                while (last := opened.pop()) is not current:
+                    last.close()
+                if not stack:
+                    return
+                current, answer = stack.pop(), _NO_MORE
+            elif item.__class__ is tuple:
+                if stack:
+                    current, answer = stack.pop(), item
+                else:
+                    yield item
+                    answer = None
+            else:
+                stack.append(current)
+                if not item.gi_suspended:
+                    opened.append(item)
+                current, answer = item, None
+    finally:
+        # A generator holds the one it asks: freed from the first on, a long chain would overflow the C stack.
+        while opened:
+            opened.pop().close()
 
 
 _NO_MORE = object()
