@@ -58,6 +58,10 @@ class Peer:
     def log(self) -> list[str]:
         return self._lines
 
+    def processor_seconds(self) -> float:
+        """What the process has cost so far."""
+        return time.process_time()
+
     def connection(self) -> list[bool]:
         return self._connection
 
@@ -125,7 +129,7 @@ class Peer:
     def samples(self, topic: str) -> list[Any]:
         now = self._clock.now()
         return [
-            {"topic": s.topic, "age": now - s.stamp, "cause": [s.cause.kind, s.cause.what]}
+            {"topic": s.topic, "stamp": s.stamp, "age": now - s.stamp, "cause": [s.cause.kind, s.cause.what]}
             for s in self._received[topic]
         ]
 

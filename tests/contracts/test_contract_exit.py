@@ -85,3 +85,17 @@ def test_a_busy_program_stops_the_robot_at_a_signal(graph: Any, pair: Pair, topi
     driver.signal(signal.SIGTERM)
     assert driver.wait() == 143
     assert_stopped(graph, watcher, topic)
+
+
+@pytest.mark.only("ros1", "ros2")
+def test_a_closed_node_costs_nothing(graph: Any, pair: Pair, topic: str) -> None:
+    _, watcher = pair
+    node = graph.peer("resting")
+    node.advertise(topic, TWIST)
+    watcher.subscribe(topic, TWIST)
+    graph.wait_until(lambda: node.subscription_count(topic) == 1, "they know each other")
+    node.close()
+    graph.pass_time(0.3)  # the ends of its threads
+    before = node.processor_seconds()
+    graph.pass_time(1.0)
+    assert node.processor_seconds() - before < 0.2

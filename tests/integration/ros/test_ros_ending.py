@@ -1,7 +1,6 @@
 """The agents' process ends in the middle of a motion: the robot stops, and a new process goes on."""
 
 import signal
-import time
 from collections.abc import Callable
 from itertools import pairwise
 
@@ -37,7 +36,7 @@ def test_sigterm_stops_the_robot(
     commands = [message["linear"]["x"] for message in watcher.received("/cmd_vel")]
     assert commands[-1] == 0.0, "the last word is zero"
     first_zero = len(commands) - next(n for n, speed in enumerate(reversed(commands)) if speed)
-    zero_at = time.time() - watcher.samples("/cmd_vel")[first_zero]["age"]
+    zero_at = watcher.samples("/cmd_vel")[first_zero]["stamp"]
     truth = world.close()
     stood_at = standstill(truth, RAMP) - world.time_of(ended)
     print(f"SIGTERM: zero commanded after {zero_at - ended:.2f} s, standing after {stood_at:.2f} s")

@@ -6,20 +6,14 @@ Nothing here waits on the loop: joining, registering and calling services happen
 """
 
 import asyncio
-import logging
 import os
-import sys
 import threading
 import time
-import warnings
 from collections import deque
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
-import rosgraph.xmlrpc  # type: ignore[import-not-found]
 import rospy  # type: ignore[import-not-found]
-import rospy.impl.masterslave  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import (
@@ -33,6 +27,11 @@ from jacaros.ros.backend import (
     Sample,
 )
 from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, call_failure, stay_local
+from jacaros.ros.backends.ros1_repairs import (
+    leave_standard_output_alone,
+    let_closed_nodes_rest,
+    let_subscribers_hear,
+)
 from jacaros.ros.backends.ros1_types import GenpySchema
 from jacaros.ros.errors import CallFailed, MessageMismatch, RosError
 from jacaros.ros.handoff import Handoff, LoopEnded, ask, in_thread, post
@@ -310,8 +309,8 @@ class Ros1Backend(Node):
         Ros1Backend._started = True
         self._loop = asyncio.get_running_loop()
         stay_local(self.master_uri)
-        # rospy calls what Python 3.10 deprecated; with warnings as errors its subscribers would stay dumb.
-        warnings.filterwarnings("ignore", "notifyAll", DeprecationWarning)
+        let_subscribers_hear()
+        let_closed_nodes_rest()
         self.exit_hooks.watch_thread()
         self._first_look = self._loop.create_future()
         self.link.start()
@@ -369,7 +368,7 @@ class Ros1Backend(Node):
             f"{self.names.namespace}/unnamed"
         )  # where init_node takes its namespace from
         rospy.init_node(self.names.node_name, argv=[], disable_signals=True)
-        _leave_standard_output_alone()
+        leave_standard_output_alone()
         rospy.on_shutdown(self._note_shutdown)
 
     def _leave(self) -> None:
@@ -412,15 +411,6 @@ class Ros1Backend(Node):
             post(self.loop, self.log, f"node {self.node_name} was shut down from outside: is its name taken?")
             post(self.loop, self.set_connected, False)
             self.link.stop()
-
-
-def _leave_standard_output_alone() -> None:
-    """Turn rospy's reports to standard error: standard output belongs to the agents."""
-    for handler in logging.getLogger("rosout").handlers:
-        if hasattr(handler, "_stdout"):
-            handler._stdout = sys.stderr
-    for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
-        module.print = partial(print, file=sys.stderr)
 
 
 def _offers() -> Offers:
