@@ -359,7 +359,7 @@ def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # no
             except Exception as fault:
                 undo(trail, 0)
                 _report(agent, fault)
-                goal = fail_intention(agent, intention, failure.step_failure(frame, fault))
+                goal = fail_intention(agent, intention, failure.step_failure(frames[-1], fault))
                 if goal is None:
                     break
             if trail:

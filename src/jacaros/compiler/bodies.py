@@ -13,8 +13,10 @@ from jacaros.asl import nodes
 from jacaros.compiler.building import annotation_parts, build, functor_of_literal, tuple_of
 from jacaros.compiler.conditions import accepts, condition, question, resolved
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
+from jacaros.compiler.reflection import Constant
 from jacaros.compiler.triggers import trigger
-from jacaros.compiler.variables import names_in
+from jacaros.compiler.variables import names_in, nodes_in
+from jacaros.terms.unifier import ATOMIC
 from jacaros.terms.values import functor
 
 
@@ -335,15 +337,18 @@ def _free_at_entry(compiler: BodyCompiler) -> list[str]:
     return [name for name, state in compiler.frame.states.items() if state]
 
 
-def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder) -> int:
+def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -> int:
     """Remember which variables are free before a loop; returns the slot where."""
     frame = compiler.frame
     names = _free_at_entry(compiler)
     fn.load(frame, names)
     slot = frame.hidden_slot()
     # `free_variables` takes the first element of a tuple for a functor.
-    values = tuple_of(["None", *(f"frame[{frame.slot(n)}]" for n in names)])
-    fn.line(f"frame[{slot}] = free_variables({values}) if {_any_open(frame, names)} else None")
+    # Variables that a body made at run time shares with its plan.
+    shared = [fn.constant(c.value) for c in nodes_in(Constant, step) if c.value.__class__ not in ATOMIC]
+    values = tuple_of(["None", *(f"frame[{frame.slot(n)}]" for n in names), *shared])
+    test = "True" if shared else _any_open(frame, names)
+    fn.line(f"frame[{slot}] = free_variables({values}) if {test} else None")
     return slot
 
 
@@ -358,7 +363,7 @@ def _while(compiler: BodyCompiler, step: nodes.While, name: str, next_name: str)
     test_name, first = compiler.name(), compiler.name()
     enter = compiler.begin(step)
     with enter.writer.block(_head(name)):
-        slot = _enter_loop(compiler, enter)
+        slot = _enter_loop(compiler, enter, step)
         enter.line(f"return {test_name}(agent, frame)")
     compiler.unit.add(enter.writer)
     entry = dict(frame.states)
@@ -385,7 +390,7 @@ def _for(compiler: BodyCompiler, step: nodes.For, name: str, next_name: str) -> 
     enter = compiler.begin(step)
     enter.snapshot = True
     with enter.writer.block(_head(name)):
-        slot = _enter_loop(compiler, enter)
+        slot = _enter_loop(compiler, enter, step)
         enter.line("t = Trail()")
         enter.line("t.serial = agent.trail.serial")
         new = [n for n in names_in(step.condition) if n not in enter.values]

@@ -13,7 +13,7 @@ from jacaros.compiler.conditions import condition
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.matching import match_all, settle_fresh
 from jacaros.compiler.plan import Plan
-from jacaros.compiler.variables import actions_in, names_in, occurrences
+from jacaros.compiler.variables import names_in, nodes_in, occurrences
 
 _BY_NAME = (".term2string", ".puts", ".print_unifier")
 """Internal actions that reach variables by their names: all variables of the plan are kept for them."""
@@ -105,7 +105,7 @@ class SelectCompiler:
         if plan.scope is not None:
             # Sub-plans of this one may ask for what it took over from its outer plan.
             counts = {name: count + (name in plan.scope.slots) for name, count in counts.items()}
-        if any(a.name in _BY_NAME for a in actions_in(node.body)):
+        if any(a.name in _BY_NAME for a in nodes_in(nodes.InternalAction, node.body)):
             counts = {name: count + 1 for name, count in counts.items()}
         frame = Frame(counts)
         for variable in fn.values:

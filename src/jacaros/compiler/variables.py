@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import fields
+from typing import TypeVar
 
 from jacaros.asl import nodes
 
@@ -43,14 +44,17 @@ def occurrences(*parts: object) -> dict[str, int]:
     return counts
 
 
-def actions_in(node: object) -> Iterator[nodes.InternalAction]:
-    """All internal actions called in a piece of syntax."""
-    if isinstance(node, nodes.InternalAction):
+Kind = TypeVar("Kind", bound=nodes.Node)
+
+
+def nodes_in(kind: type[Kind], node: object) -> Iterator[Kind]:
+    """All nodes of a kind in a piece of syntax."""
+    if isinstance(node, kind):
         yield node
     if isinstance(node, nodes.Node):
         for field in fields(node):
             if field.name != "span":
-                yield from actions_in(getattr(node, field.name))
+                yield from nodes_in(kind, getattr(node, field.name))
     elif isinstance(node, tuple):
         for item in node:
-            yield from actions_in(item)
+            yield from nodes_in(kind, item)

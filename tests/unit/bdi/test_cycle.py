@@ -477,3 +477,8 @@ def test_what_a_loop_binds_is_gone_after_it_and_in_its_next_round() -> None:
         "one",
         "Y<no-value>",
     ]
+
+
+def test_a_body_held_by_a_variable_may_fail_at_once_and_gives_shared_variables_back() -> None:
+    assert printed("!g. +!g <- B = {.fail}; B. -!g[error(E)] <- .print(E).") == ["ia_failed"]
+    assert printed("!g. s(1). +!g <- B = {for (s(X)) {.print(X)}}; B; .print(X).") == ["1", "X<no-value>"]
