@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from graphs import ProcessPeer
 from judging import distance, stands, standstill
-from processes import Agents, WorldProcess
+from processes import Agents, WorldProcess, wait_until
 
 COMMANDED_ZERO = 0.6
 """Seconds from the end of the agents to a commanded velocity of zero."""
@@ -27,7 +27,8 @@ def test_sigterm_stops_the_robot(
 ) -> None:
     watcher = peer("watcher")
     watcher.subscribe("/cmd_vel", "geometry_msgs/msg/Twist", depth=1000)
-    agents = run_agents("far.asl")
+    agents = run_agents("away.asl")
+    wait_until(lambda: watcher.received("/cmd_vel"), "the watcher hears the commands")
     drive_at_full_speed(world, agents)
     ended = agents.signal(signal.SIGTERM)
     assert agents.end() == 128 + signal.SIGTERM
@@ -43,7 +44,6 @@ def test_sigterm_stops_the_robot(
     assert not truth.events_of("command_timeout"), "it was told to stop"
     assert zero_at - ended <= COMMANDED_ZERO
     assert stood_at <= STANDING
-    assert truth.odometer() < 1.8
 
 
 def test_sigkill_stops_the_robot_and_a_new_process_goes_on_from_there(
