@@ -49,12 +49,18 @@ def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations,
     if apart or agent.options.new_focus:
         if unplanned and not agent.event_waits:
             return None
-        agent.post(Event(goal, None, annotations))
+        agent.post(Event(_apart(goal), None, annotations))
         return None
     if unplanned and not (agent.events or agent.intentions or agent.event_waits):
         # Nothing comes in between: the event would only be taken up and passed over.
         return None
     return goal if annotations is BY_SELF else Posted(goal, annotations)
+
+
+def _apart(goal: tuple[Any, ...]) -> tuple[Any, ...]:
+    """An event for another intention, which shares no variables with this one."""
+    names: dict[Var, Var] = {}
+    return (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
 
 
 def _nothing() -> None:

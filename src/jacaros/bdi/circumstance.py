@@ -16,7 +16,7 @@ from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.runtime import literal_of
 from jacaros.compiler.triggers import Trigger
-from jacaros.terms.unifier import Trail, unify
+from jacaros.terms.unifier import Trail, rename, unify
 from jacaros.terms.values import Term
 
 
@@ -135,7 +135,7 @@ class Circumstance:
             if trigger is not None and trigger is not event.goal[0]:
                 continue
             mark = len(self.trail)
-            found = unify(pattern, _event_literal(event), self.trail)
+            found = unify(pattern, rename(_event_literal(event)), self.trail)
             if found:
                 # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
                 del self.trail[mark:]

@@ -146,8 +146,9 @@ def solve_annotated(
                     yield arguments
         else:
             search = entry.search(agent, arguments, trail)
-            while (yield search) is not None:
-                for _ in each_annotation_match(items, tail, entry.head_annotations(), None, trail):
+            while (answer := (yield search)) is not None:
+                held = answer[0] if answer else annotations
+                for _ in each_annotation_match(items, tail, held, None, trail):
                     yield arguments
         undo(trail, mark)
 

@@ -173,8 +173,15 @@ def compile_rule(unit: Unit, rule: nodes.Rule) -> str:
         if parts:
             fn.line(f"{tuple_of(parts)} = arguments")
 
+        def answer() -> None:
+            if rule.head.annotations is None:
+                fn.line("yield ()")
+            else:
+                items, _ = annotation_parts(fn, rule.head.annotations)
+                fn.line(f"yield (resolve_all({items}),)")
+
         def matched() -> None:
-            condition(fn, rule.body, lambda: fn.line("yield ()"))
+            condition(fn, rule.body, answer)
 
         match_all(fn, list(arguments), parts, matched)
         fn.line("if len(t) > n0: undo(t, n0)")

@@ -482,3 +482,18 @@ def test_what_a_loop_binds_is_gone_after_it_and_in_its_next_round() -> None:
 def test_a_body_held_by_a_variable_may_fail_at_once_and_gives_shared_variables_back() -> None:
     assert printed("!g. +!g <- B = {.fail}; B. -!g[error(E)] <- .print(E).") == ["ia_failed"]
     assert printed("!g. s(1). +!g <- B = {for (s(X)) {.print(X)}}; B; .print(X).") == ["1", "X<no-value>"]
+
+
+def test_events_of_another_intention_share_no_variables() -> None:
+    assert (
+        printed("!g. +!g <- ++b(X); .print(a); .print(c); X = 7; .print(X). +b(Y) <- Y = 3; .print(b(Y)).")[
+            -1
+        ]
+        == "7"
+    )
+
+
+def test_annotations_of_a_rule_head_have_the_values_of_the_answer() -> None:
+    assert printed(
+        "!g. p(1). p(2). hd(X)[k(X)] :- p(X). +!g <- .findall(K,hd(_)[k(K)],L); .print(L); ?hd(Y)[|R]; .print(Y, R)."
+    ) == ["[1,2]", "1[k(1)]"]
