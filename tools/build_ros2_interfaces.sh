@@ -3,7 +3,7 @@
 #
 #   tools/build_ros2_interfaces.sh jazzy|kilted VENV
 #
-# Needs a C compiler and cmake. On a robot with its own ROS 2 build the package with colcon instead.
+# Needs C and C++ compilers, cmake and Python's headers. On a robot with its own ROS 2 build the package with colcon instead.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -41,24 +41,30 @@ if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$fingerprint" ]; then
   exit 0
 fi
 
+version=$("$venv/bin/python" -c 'import sys; print(f"{sys.version_info.major}.{sys.version_info.minor}")')
+headers=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
+
+missing=()
 if ! command -v cmake >/dev/null || ! command -v cc >/dev/null || ! command -v c++ >/dev/null; then
-  command -v apt-get >/dev/null || refuse "cmake and C and C++ compilers are needed"
-  say "installing cmake and compilers"
+  missing+=(cmake gcc g++ libc6-dev)
+fi
+if [ ! -f "$headers/Python.h" ]; then missing+=("libpython$version-dev"); fi
+if [ "${#missing[@]}" -gt 0 ]; then
+  command -v apt-get >/dev/null || refuse "cmake, C and C++ compilers and Python's headers are needed"
+  say "installing ${missing[*]}"
   as_root=()
   if [ "$(id -u)" != 0 ]; then
-    command -v sudo >/dev/null || refuse "cmake and C and C++ compilers are needed; not root, and there is no sudo"
+    command -v sudo >/dev/null || refuse "${missing[*]} are needed; not root, and there is no sudo"
     as_root=(sudo)
   fi
   "${as_root[@]}" apt-get update -q >&2
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends cmake gcc g++ libc6-dev >&2
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}" >&2
 fi
 
 say "installing the generators"
 "$venv/bin/python" -m pip install -q --disable-pip-version-check "${generators[@]}" empy==3.3.4 catkin-pkg ninja >&2
 
 say "repairing the wheels' cmake files"
-version=$("$venv/bin/python" -c 'import sys; print(f"{sys.version_info.major}.{sys.version_info.minor}")')
-headers=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
 numpy=$("$venv/bin/python" -c 'import numpy; print(next(iter(numpy.__path__)))')
 builder=/opt/python/cp${version/./}-cp${version/./}       # where the wheels' build machine had its Python
 { grep -rl "$builder" "$venv/share" --include='*.cmake' || true; } | xargs -r sed -i \

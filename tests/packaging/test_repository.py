@@ -32,6 +32,7 @@ HOSTS = {
     "keepachangelog.com",
     "semver.org",
     "www.apache.org",
+    "www.eprosima.com",  # the name of an XML language
     "www.w3.org",
 }
 """Hosts that an address in the repository may name."""
