@@ -26,6 +26,7 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
     if event is not None:
         remove_event(agent, event)
     intention.parked = False
+    intention.suspended = None
     del intention.frames[index:]
     while intention.handlers and intention.handlers[-1] >= index:
         intention.handlers.pop()

@@ -497,3 +497,14 @@ def test_annotations_of_a_rule_head_have_the_values_of_the_answer() -> None:
     assert printed(
         "!g. p(1). p(2). hd(X)[k(X)] :- p(X). +!g <- .findall(K,hd(_)[k(K)],L); .print(L); ?hd(Y)[|R]; .print(Y, R)."
     ) == ["[1,2]", "1[k(1)]"]
+
+
+def test_ending_a_goal_of_a_suspended_intention_lets_its_caller_go_on_at_once() -> None:
+    assert printed(
+        """
+        !g. !k.
+        +!g <- !h; .print(a).
+        +!h <- .wait(100); .print(no).
+        +!k <- .wait(1); .suspend(h); .succeed_goal(h); .print(k); .wait(10); .print(k2).
+        """
+    ) == ["k", "a", "k2"]
