@@ -40,6 +40,10 @@ STOPPING = 1.0
 """Seconds that closing waits for the executor's thread."""
 
 
+SETTLING = 0.25
+"""Seconds between finding a server and the first request: what it answers before it knows the client is lost."""
+
+
 class Ros2Publisher:
     """Publisher of `Ros2Backend`."""
 
@@ -159,6 +163,7 @@ class Ros2Client:
         self._type_name = type_name
         self._client: Any = node.rcl.create_client(node.schema.message_class(type_name), name)
         self._pending = PendingCalls(name)
+        self._acquainted = False
         self._closed = False
 
     @property
@@ -182,8 +187,16 @@ class Ros2Client:
         return await call_when_offered(node.clock, node.log, what, attempt, timeout)
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
+        clock = self._node.clock
+        deadline = None if rest is None else clock.now() + rest
         if not self.ready:
+            self._acquainted = False
             raise ServiceUnavailable(f"nobody offers service {self.name}")
+        if not self._acquainted:
+            await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
+            self._acquainted = True
+        if self._closed:
+            raise CallFailed(f"the client of service {self.name} was closed during the call")
         answer = self._pending.new()
 
         def finished(future: Any) -> None:
@@ -194,7 +207,7 @@ class Ros2Client:
         call = self._client.call_async(message)
         call.add_done_callback(finished)
         try:
-            return await within(self._node.clock, answer, rest)
+            return await within(clock, answer, None if deadline is None else deadline - clock.now())
         finally:
             self._client.remove_pending_request(call)
 
