@@ -16,6 +16,7 @@ from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
     Annotated,
+    String,
     Term,
     Var,
     atom,
@@ -26,7 +27,7 @@ from jacaros.terms.values import (
     structure,
 )
 
-ERROR, REASON = functor("error", 1), functor("reason", 1)
+ERROR, ERROR_MSG, REASON = functor("error", 1), functor("error_msg", 1), functor("reason", 1)
 
 
 def _goal(term: Term) -> Term:
@@ -267,10 +268,11 @@ def _outer_done(ctx: Context, current: Intention) -> Any:
 
 @internal_action(".fail", suspends=True)
 def fail(ctx: Context, *annotations: Term) -> Any:
-    """``.fail(a, b…)``: fail, with these annotations on the failure event."""
+    """``.fail(a, b…)``: fail, with these annotations on the failure event, beside ``error(internal_action)`` and an
+    ``error_msg``."""
     del ctx
     if not annotations:
         return False
-    if any(bare(a).__class__ is tuple and bare(a)[0] is ERROR for a in annotations):
-        raise Failure(*annotations)
-    raise Failure((ERROR, atom("internal_action")), *annotations)
+    told = any(bare(a).__class__ is tuple and bare(a)[0] is ERROR_MSG for a in annotations)
+    message = () if told else ((ERROR_MSG, String("fail")),)
+    raise Failure(*annotations, (ERROR, atom("internal_action")), *message)
