@@ -73,7 +73,9 @@ def parts() -> list[Part]:
         ),
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2")),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2")),
-        Part("browser", (*PYTEST, "tests/unit/inspector", "-m", "browser"), needs="chromium", skips_fail=True),
+        Part(
+            "browser", (*PYTEST, "tests/unit/inspector", "-m", "browser"), needs="chromium", skips_fail=True
+        ),
     ]
     for minor in (12, 13, 14):
         python = newer_python(minor)
