@@ -237,6 +237,8 @@ def _add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> None:
         caller = frames[-1]
         if caller[STEP] is None and caller[GOAL][0] is trigger and _may_be_replaced(caller):
             frames[-1] = frame
+            if agent.atomic is intention and not intention.is_atomic():
+                agent.atomic_over = True
         else:
             frames.append(frame)
     else:

@@ -510,3 +510,14 @@ def test_ending_a_goal_of_a_suspended_intention_lets_its_caller_go_on_at_once() 
     )
     assert sorted(lines) == ["a", "k", "k2"]
     assert lines.index("a") < lines.index("k2")
+
+
+def test_a_tail_call_out_of_an_atomic_plan_ends_its_privilege() -> None:
+    assert printed(
+        """
+        !a(2). !b.
+        @l[atomic] +!a(N) : N > 0 <- .print(N); !a(N-1).
+        +!a(0) <- .print(z1); .print(z2); .print(z3); .print(z4).
+        +!b <- .print(b1); .print(b2); .print(b3).
+        """
+    ) == ["2", "1", "z1", "z2", "b1", "z3", "b2", "z4", "b3"]
