@@ -296,6 +296,18 @@ def choose(names: list[str]) -> list[Part]:
     return [part for name, part in known.items() if name in wanted]
 
 
+def stop_ignoring_signals() -> None:
+    """Give the parts the usual signals, even if this run was started by nohup or in the background of a script.
+
+    A signal that is ignored stays ignored in children, and tests of how a program ends send it; one with a handler is as
+    usual again in them.
+    """
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: None)
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def main() -> int:
     """Run what the command line names."""
     parser = argparse.ArgumentParser(description="Run the test suite.")
@@ -309,6 +321,7 @@ def main() -> int:
     chosen = choose(arguments.parts)
     run = Run(chosen, must_run=os.environ.get("CI", "").lower() in ("true", "1"))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    stop_ignoring_signals()
     began = time.monotonic()
     try:
         run.everything()
