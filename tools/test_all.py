@@ -207,7 +207,8 @@ class Run:
                     stdin=subprocess.DEVNULL,
                     stdout=output,
                     stderr=subprocess.STDOUT,
-                    start_new_session=True,
+                    # What installs may ask for a password, and stays with the terminal for that.
+                    start_new_session=part.stage != "install",
                 )
             except OSError as error:
                 output.write(f"cannot run {part.command[0]}: {error}\n".encode())
@@ -219,7 +220,7 @@ class Run:
                 output.write(f"\nstopped after {part.minutes:g} minutes\n".encode())
                 return 124
             finally:
-                end_group(child)
+                end(child)
                 self._children.discard(child)
 
     def _finish(self, result: Result, log: Path) -> None:
@@ -236,21 +237,31 @@ class Run:
         """Start nothing more, and end what still runs."""
         self._stopped = True
         for child in list(self._children):
-            end_group(child)
+            end(child)
 
 
-def end_group(child: "subprocess.Popen[bytes]") -> None:
-    """End a part and whatever it left behind; it leads a process group of its own."""
+def end(child: "subprocess.Popen[bytes]") -> None:
+    """End a part, and whatever it left behind if it leads a group of its own."""
     for number in (signal.SIGTERM, signal.SIGKILL):
         try:
-            os.killpg(child.pid, number)
+            if os.getpgid(0) == process_group(child):
+                child.send_signal(number)
+            else:
+                os.killpg(child.pid, number)
+            child.wait(5)
         except ProcessLookupError:
             break
-        try:
-            child.wait(5)
         except subprocess.TimeoutExpired:
             continue
     child.wait()
+
+
+def process_group(child: "subprocess.Popen[bytes]") -> int:
+    """The group that a part belongs to; its own when it has ended."""
+    try:
+        return os.getpgid(child.pid)
+    except ProcessLookupError:
+        return child.pid
 
 
 def last_line(log: Path) -> str:
