@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -39,9 +40,16 @@ def test_every_world_of_the_package_is_named() -> None:
     assert [name for name in shipped_worlds() if f"`{name}`" not in worlds] == []
 
 
-def test_every_dependency_is_weighed() -> None:
-    import tomllib
+def test_the_numbers_of_conformance_cases_are_right() -> None:
+    language = len(list((ROOT / "tests" / "conformance").rglob("*.expected")))
+    environment = len(list((ROOT / "tests" / "conformance_environment").rglob("expected")))
+    page = (REFERENCE / "compatibility.md").read_text(encoding="utf-8")
+    assert f"`tests/conformance` has {language} small programs" in page
+    assert f"`tests/conformance_environment` has {environment} projects" in page
+    assert f"All of {language}\n  programs" in (ROOT / "README.md").read_text(encoding="utf-8")
 
+
+def test_every_dependency_is_weighed() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     wanted = [*project["dependencies"], *project["optional-dependencies"]["dev"]]
     names = [text.partition(">")[0] for text in wanted]
