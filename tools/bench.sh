@@ -9,7 +9,7 @@ python=$root/.venv/bin/python
 "$python" "$root/benchmarks/latency.py" memory
 for venv in ros1 ros2-jazzy ros2-kilted; do
   if [ -x "$root/.venv-$venv/bin/python" ]; then
-    "$root/.venv-$venv/bin/python" "$root/benchmarks/latency.py" "${venv%%-*}" | sed "s/^ros2 */${venv#ros2-}  /"
+    "$root/.venv-$venv/bin/python" "$root/benchmarks/latency.py" "${venv%%-*}" | sed "s/^ros2    /$(printf '%-8s' "${venv#ros2-}")/"
   else
     echo "$venv  not measured: there is no .venv-$venv (tools/install_ros${venv:3:1}.sh)"
   fi
