@@ -11,7 +11,7 @@ import pytest
 JACAROS = str(Path(sys.executable).parent / "jacaros")
 
 NO_ROSPY = """\
-jacaros: the ros1 backend needs the Python library rospy, which cannot be imported (No module named 'rosgraph'). \
+jacaros: the ros1 backend needs the Python library rospy, which cannot be imported (No module named 'rospy'). \
 On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by \
 `/usr/bin/python3 -m venv --system-site-packages`; tools/install_ros1.sh does both. \
 On a robot with its own ROS 1, source its setup file first.
