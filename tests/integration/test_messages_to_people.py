@@ -266,7 +266,7 @@ def test_an_operation_that_fails_reaches_the_plan_with_its_reason(project: Proje
 def test_a_missing_ros(project: Project, kind: str, message: str, command: tuple[str, str]) -> None:
     project.write("robot.asl", "!start. +!start <- .print(done).")
     # Where the libraries are installed, these stand before them and are missing all the same.
-    for library in ("rosgraph", "rclpy"):
+    for library in ("rospy", "rclpy"):
         text = f"raise ModuleNotFoundError(\"No module named '{library}'\", name='{library}')\n"
         project.write(f"{library}.py", text)
     assert project.run(*command, "--ros", kind, PYTHONPATH=".") == told(1, message)
