@@ -1,6 +1,7 @@
 """Patrols over a real graph: the example, judged by its own checker, and one through a restart of the master."""
 
 from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError, version
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,12 +18,23 @@ from jacaros.testing.docking import judge_recharging, stays
 
 RUN_DOWN_SOON = {
     "level: 100": "level: 27",
+    "drain_per_second: 0.75": "drain_per_second: 0",
+    "drain_per_metre: 3": "drain_per_metre: 6.5",
     "charge_per_second: 10": "charge_per_second: 40",
 }
-"""What makes the example's battery one for tests in real time."""
+"""What makes the example's battery one for tests in real time; only motion drains it, so that a slow machine
+makes the robot no hungrier."""
 
 CORNERS = {"0": (0.0, 0.0), "1": (1.0, 0.0), "2": (1.0, 1.0), "3": (0.0, 1.0)}
 """Corners of the patrol in the yard."""
+
+
+def is_kilted() -> bool:
+    """Whether ROS 2 here is the wheels of Kilted."""
+    try:
+        return version("ros-rclpy").startswith("9.")
+    except PackageNotFoundError:
+        return False
 
 
 def charges(truth: GroundTruth) -> int:
@@ -39,6 +51,7 @@ def since_the_last_charge(truth: GroundTruth) -> GroundTruth:
     return later
 
 
+@pytest.mark.skipif(is_kilted(), reason="the long run is made on ROS 1 and on Jazzy")
 def test_the_patrol_goes_on_after_two_charges(
     run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents], tmp_path: Path
 ) -> None:
