@@ -309,13 +309,3 @@ def test_a_mistake_in_a_world_file(project: Project) -> None:
         "            ^\n"
         "  cure: did you mean 'pose'?\n",
     )
-
-
-def test_a_misspelt_command_line_option(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    assert project.run("run", "robot.asl", "--colck", "fast") == told(
-        2,
-        "Usage: jacaros run [OPTIONS] FILE\n"
-        "Try 'jacaros run --help' for help.\n\n"
-        "Error: No such option '--colck'. Did you mean '--clock'?\n",
-    )
