@@ -268,11 +268,13 @@ def _outer_done(ctx: Context, current: Intention) -> Any:
 
 @internal_action(".fail", suspends=True)
 def fail(ctx: Context, *annotations: Term) -> Any:
-    """``.fail(a, b…)``: fail, with these annotations on the failure event, beside ``error(internal_action)`` and an
-    ``error_msg``."""
+    """``.fail(a, b…)``: fail, with these annotations on the failure event.
+
+    An ``error(internal_action)`` and an ``error_msg`` are added where none of that name is given.
+    """
     del ctx
     if not annotations:
         return False
-    told = any(bare(a).__class__ is tuple and bare(a)[0] is ERROR_MSG for a in annotations)
-    message = () if told else ((ERROR_MSG, String("fail")),)
-    raise Failure(*annotations, (ERROR, atom("internal_action")), *message)
+    given = {functor_of(bare(a)) for a in annotations}
+    defaults = ((ERROR, atom("internal_action")), (ERROR_MSG, String("fail")))
+    raise Failure(*annotations, *(each for each in defaults if each[0] not in given))
