@@ -121,6 +121,8 @@ def test_a_closed_service_becomes_unavailable(graph: Any, pair: Pair, topic: str
     left, right = pair
     right.serve(topic)
     assert left.call(topic, {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+    # A call may succeed before the client's picture of the graph shows the service: its absence would tell nothing.
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
     right.unserve(topic)
     graph.wait_until(lambda: not left.ready(topic), "the client notices")
     with pytest.raises(ServiceUnavailable):
