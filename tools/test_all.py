@@ -88,7 +88,9 @@ def parts() -> list[Part]:
         ("ros2", ".venv-ros2-kilted", "ros2-kilted-install"),
     ):
         python = str(ROOT / venv / "bin" / "python")
-        suites = ["tests/contracts", "tests/integration", "-m", kind, f"--require-{kind}"]
+        # Discovery in a real graph loses a first message now and then; a test that fails twice has failed, and the
+        # closing line of the part counts the others as rerun.
+        suites = ["tests/contracts", "tests/integration", "-m", kind, f"--require-{kind}", "--reruns", "1"]
         if kind == "ros2":
             suites.insert(0, "tests/packaging/test_ament.py")
         name = venv.removeprefix(".venv-")

@@ -40,7 +40,7 @@ STOPPING = 1.0
 """Seconds that closing waits for the executor's thread."""
 
 
-SETTLING = 0.25
+SETTLING = 0.5
 """Seconds between finding a server and the first request: what it answers before it knows the client is lost."""
 
 
