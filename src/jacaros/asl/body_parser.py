@@ -3,6 +3,7 @@
 from typing import Final, NoReturn
 
 from jacaros.asl import nodes
+from jacaros.asl.cursor import CLOSERS, SyntaxPanic
 from jacaros.asl.lexer import Token
 from jacaros.asl.term_parser import TermParser
 
@@ -12,6 +13,8 @@ _STEP_STARTS: Final = _CONTROL | frozenset(
     | {"!", "!!", "?", "+", "-", "^", "else", "elif", "error"}
 )
 _CHANGES: Final = frozenset({"+", "-", "-+", "++", "--", "+<", "+>", "-++"})
+_ENDS: Final = frozenset({".", "}", ")", "]", "{", "<-", "end", "error"})
+"""What may stand behind a body, and what is reported better where it is found."""
 _FORMULA_AFTER_GROUP: Final = frozenset(
     {"<", "<=", ">", ">=", "==", "\\==", "=", "=..", "*", "/", "**", "div", "mod", "&", "|"}
 )
@@ -22,13 +25,23 @@ class BodyParser(TermParser):
     """Reads what stands behind ``<-`` and in the braces of statements."""
 
     def body(self) -> nodes.Body:
-        """Steps up to what cannot be part of a body; a last ``;`` is allowed."""
+        """Steps up to what cannot be part of a body; a last ``;`` is allowed.
+
+        After an error reading goes on behind the next ``;`` of the body.
+        """
         start = self.token
+        nesting = self.nesting
         steps: list[nodes.Step] = []
         while self.token.kind in _STEP_STARTS and not self.at_plan():
-            steps.extend(self._or_fork())
-            if not self._separator():
-                break
+            try:
+                steps.extend(self._or_fork())
+                if not self._separator():
+                    self._require_end()
+                    break
+            except SyntaxPanic:
+                self.nesting = nesting
+                if not self._next_statement():
+                    break
         return nodes.Body(tuple(steps), span=self.span_from(start) if steps else self.span_of(start))
 
     def _separator(self) -> bool:
@@ -37,23 +50,64 @@ class BodyParser(TermParser):
         if token.kind == ";":
             self.advance()
             if self.token.kind == ";":
-                self.report("there is no step between the two ';'")
+                self.report("empty-step", "there is no step between the two ';'")
                 self.advance()
             return True
         if token.kind == ",":
-            self.report("steps are separated by ';', not by ','")
+            self.report("wrong-separator", "steps are separated by ';', not by ','")
             self.advance()
             return True
         if self._after_statement():
             return True
         if token.kind == "error" or token.kind not in _STEP_STARTS or self.at_plan() or self._at_subplans():
             return False
-        message, hint = self._explain(token)
+        slip = self.slip()
+        if slip is not None:
+            self.fail(slip.code, slip.message, self._blame(slip), slip.hint)
         self.report(
-            message or "a ';' is missing before this step",
-            hint=hint or "steps are separated by ';', the last one is followed by '.'",
+            "missing-semicolon",
+            "a ';' is missing before this step",
+            hint="steps are separated by ';', the last one is followed by '.'",
         )
-        return message is None
+        return True
+
+    def _require_end(self) -> None:
+        """Report what can neither go on with a body nor end it."""
+        if self.token.kind not in _ENDS and not self.token.first and not self.at_plan():
+            self.unexpected("';' or '.'")
+
+    def _next_statement(self) -> bool:
+        """After an error go behind the next ``;`` of this body; False before the bracket that closes the body.
+
+        Raises:
+            SyntaxPanic: the clause ends first.
+        """
+        if self.token.kind == "error" and self._torn_statement():
+            return True
+        in_block = self.unclosed_braces() > 0
+        depth = 0
+        while self.token.kind not in (".", "end") and not (self.token.first and self.at_plan()):
+            kind = self.token.kind
+            if kind == ";" and depth == 0:
+                self.advance()
+                return True
+            if kind == "}" and depth == 0 and in_block:
+                return False
+            if kind in CLOSERS:
+                depth += 1
+            elif kind in CLOSERS.values():
+                depth = max(depth - 1, 0)
+            self.advance()
+        raise SyntaxPanic
+
+    def _torn_statement(self) -> bool:
+        """Pass a string without an end; whether the next line goes on with a statement.
+
+        The rest of the line has got lost in the string, with the ``;`` and brackets that stood there.
+        """
+        self.advance()
+        self.torn = True
+        return self.token.first and self.token.kind in _STEP_STARTS and not self.at_plan()
 
     def _after_statement(self) -> bool:
         """Whether a control statement has just ended: behind it the ``;`` may be left out."""
@@ -102,7 +156,7 @@ class BodyParser(TermParser):
         opener = self.advance()
         self.enter()
         if self.token.kind == ")":
-            self.report("the brackets hold no step", self.span_of(opener))
+            self.report("empty-step", "the brackets hold no step", self.span_of(opener))
         group = self.body()
         self.leave()
         self.close(opener)
@@ -136,7 +190,9 @@ class BodyParser(TermParser):
         while self.token.kind in ("elif", "else"):
             word = self.advance()
             if word.kind == "else" and self.token.kind == "if":
-                self.report("'else if' is written elif", self.span_of(word), "elif (condition) { ... }")
+                self.report(
+                    "else-if", "'else if' is written elif", self.span_of(word), "elif (condition) { ... }"
+                )
                 self.advance()
             elif word.kind == "else":
                 otherwise = self._block(word)
@@ -152,7 +208,7 @@ class BodyParser(TermParser):
     def _condition_of(self, word: Token) -> nodes.Term:
         opener = self.token
         if opener.kind != "(":
-            self.unexpected(f"'(' and the condition of '{word.kind}'")
+            self.unexpected(f"'(' and the condition of '{word.kind}'", "missing-condition")
         self.advance()
         condition = self.condition()
         self.close(opener)
@@ -161,7 +217,7 @@ class BodyParser(TermParser):
     def _block(self, word: Token) -> nodes.Body:
         opener = self.token
         if opener.kind != "{":
-            self.unexpected(f"'{{' and the steps of '{word.kind}'")
+            self.unexpected(f"'{{' and the steps of '{word.kind}'", "missing-block")
         self.advance()
         body = self.body()
         self.close(opener)
@@ -184,7 +240,11 @@ class BodyParser(TermParser):
         if kind in ("+", "-", "^"):
             return self._belief_change()
         if kind in ("else", "elif"):
-            self.fail(f"'{kind}' without an 'if' before it", hint="'if' and 'else' are not separated by ';'")
+            self.fail(
+                "else-without-if",
+                f"'{kind}' without an 'if' before it",
+                hint="'if' and 'else' are not separated by ';'",
+            )
         return self._formula_step(self.expression())
 
     def _goal(self) -> nodes.Literal | nodes.Variable:
@@ -192,7 +252,7 @@ class BodyParser(TermParser):
             self.unexpected("a goal")
         goal = self.operand(formula=True)
         if not isinstance(goal, nodes.Literal | nodes.Variable):
-            self.fail("an internal action cannot be a goal", goal.span, "write it without '!'")
+            self.fail("wrong-goal", "an internal action cannot be a goal", goal.span, "write it without '!'")
         return goal
 
     def _belief_change(self) -> nodes.BeliefChange:
@@ -202,11 +262,15 @@ class BodyParser(TermParser):
             operator += self.advance().kind
         if operator not in _CHANGES:
             self.fail(
-                f"there is no '{operator}'", self.span_from(start), "beliefs are changed by +b, -b and -+b"
+                "wrong-belief-change",
+                f"there is no '{operator}'",
+                self.span_from(start),
+                "beliefs are changed by +b, -b and -+b",
             )
         if self.token.kind in ("!", "?", "!!"):
             sign = self.token.kind
             self.report(
+                "trigger-in-body",
                 f"'{operator}{sign}' begins a plan and is no step of a body",
                 self.span_from(start).to(self.span_of(self.token)),
                 f"a goal is posted by {sign}g, and dropped by .drop_desire(g)",
@@ -220,7 +284,7 @@ class BodyParser(TermParser):
             operand = nodes.PlanTerm(plan, span=operand.span)
         allowed = (nodes.Literal, nodes.Variable, nodes.PlanTerm, nodes.RuleTerm)
         if not isinstance(operand, allowed):
-            self.report(f"'{operator}' needs a belief, a plan or a rule", operand.span)
+            self.report("wrong-belief-change", f"'{operator}' needs a belief, a plan or a rule", operand.span)
         return nodes.BeliefChange(operator, operand, span=self.span_from(start))
 
     def _formula_step(self, term: nodes.Term) -> nodes.Step | None:
@@ -242,7 +306,7 @@ class BodyParser(TermParser):
 
     def _no_step(self, term: nodes.Term) -> NoReturn:
         hint = "group steps with round brackets" if isinstance(term, nodes.BodyTerm) else None
-        self.fail("this is a term and no step of a body", term.span, hint)
+        self.fail("not-a-step", "this is a term and no step of a body", term.span, hint)
 
     def _condition_as_action(self, term: nodes.Not | nodes.And | nodes.Or) -> nodes.ExternalAction:
         """A bare condition is an action of that name in the language; people mean a test."""
@@ -252,5 +316,10 @@ class BodyParser(TermParser):
             hint = (
                 "to test the condition write ?(not f)" if word == "not" else f"to test it write ?(a {word} b)"
             )
-            self.warn(f"'{word}' here is an action of the environment and no test", term.span, hint)
+            self.warn(
+                "condition-as-step",
+                f"'{word}' here is an action of the environment and no test",
+                term.span,
+                hint,
+            )
         return nodes.ExternalAction(nodes.Literal(word, operands, span=term.span), span=term.span)

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from typing import Final, NoReturn
 
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.lexer import RESERVED, Token
+from jacaros.asl.lexer import Token
+from jacaros.asl.slips import Slip, known_slip
 from jacaros.asl.source import SourceFile, Span
 
 MAX_NESTING: Final = 150
@@ -14,6 +15,11 @@ MAX_NESTING: Final = 150
 CLOSERS: Final = {"(": ")", "[": "]", "{": "}"}
 _MATCHING: Final = {closer: opener for opener, closer in CLOSERS.items()}
 
+
+_AFTER_TEAR: Final = frozenset(
+    {"missing-dot", "missing-semicolon", "unclosed-bracket", "unopened-bracket", "mismatched-bracket"}
+)
+"""What need not be wrong in a clause of which a string without an end has taken a piece."""
 
 _THESIS = "jason.architecture."
 """Package of the artifact classes in the programs of the JaCaROS thesis."""
@@ -42,7 +48,8 @@ class Cursor:
         self.diagnostics = diagnostics
         self.index = 0
         self.token = tokens[0]
-        self._nesting = 0
+        self.nesting = 0
+        self.torn = False
         self._clause_start = 0
         # One error for a place is enough; what follows from it would only confuse.
         self._blamed = {
@@ -89,88 +96,70 @@ class Cursor:
 
     def enter(self) -> None:
         """Go one level deeper into brackets or statements; a clause that is given up does not come back."""
-        self._nesting += 1
-        if self._nesting > MAX_NESTING:
+        self.nesting += 1
+        if self.nesting > MAX_NESTING:
             self.fail(
+                "nested-too-deeply",
                 "this is nested too deeply",
                 hint=f"at most {MAX_NESTING} levels of brackets are read",
             )
 
     def leave(self) -> None:
         """Come back from one level."""
-        self._nesting -= 1
+        self.nesting -= 1
 
     def begin_clause(self) -> None:
         """A clause begins here, at the outermost level."""
-        self._nesting = 0
+        self.nesting = 0
+        self.torn = False
         self._clause_start = self.index
 
     # reports
 
-    def report(self, message: str, span: Span | None = None, hint: str | None = None) -> None:
+    def report(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
         """Record an error, unless there is one for the same place; reading goes on."""
+        if self.torn and code in _AFTER_TEAR:
+            return
         span = span or self.span_of(self.token)
         place = (span.line, span.column)
         if place not in self._blamed:
             self._blamed.add(place)
-            self.diagnostics.append(Diagnostic("error", message, span, hint))
+            self.diagnostics.append(Diagnostic("error", message, span, hint, code))
 
-    def forgive(self, message: str, span: Span, hint: str | None = None) -> None:
+    def forgive(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
         """Record what Jason refuses and the JaCaROS thesis prints: a warning in programs that name the artifact
         classes of the thesis, an error in all others."""
         if _THESIS in self.file.text:
-            self.warn(message, span, hint)
+            self.warn(code, message, span, hint)
         else:
-            self.report(message, span, hint)
+            self.report(code, message, span, hint)
 
-    def warn(self, message: str, span: Span, hint: str | None = None) -> None:
+    def warn(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
         """Record a warning."""
-        self.diagnostics.append(Diagnostic("warning", message, span, hint))
+        self.diagnostics.append(Diagnostic("warning", message, span, hint, code))
 
-    def fail(self, message: str, span: Span | None = None, hint: str | None = None) -> NoReturn:
-        """Record an error, unless the lexer already reported this token, and give up the clause."""
+    def fail(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> NoReturn:
+        """Record an error, unless the lexer already reported this token, and give up the statement."""
         if self.token.kind != "error":
-            self.report(message, span, hint)
+            self.report(code, message, span, hint)
         raise SyntaxPanic
 
-    def unexpected(self, wanted: str) -> NoReturn:
+    def unexpected(self, wanted: str, code: str = "unexpected-token") -> NoReturn:
         """The current token does not fit."""
         token = self.token
         if token.kind == "end":
-            self.fail(f"the file ends where {wanted} is expected")
-        message, hint = self._explain(token)
-        self.fail(message or f"{wanted} is expected, not '{token.text}'", hint=hint)
+            self.fail("unexpected-end", f"the file ends where {wanted} is expected")
+        slip = self.slip()
+        if slip is not None:
+            self.fail(slip.code, slip.message, self._blame(slip), slip.hint)
+        self.fail(code, f"{wanted} is expected, not '{token.text}'")
 
-    def _explain(self, token: Token) -> tuple[str | None, str | None]:
-        """A better message or hint for mistakes that are known from other languages."""
-        before = self.previous()
-        joined = before.line == token.line and before.end == token.column
-        pair = before.text + token.text if joined else ""
-        if token.kind in RESERVED:
-            return (
-                f"'{token.text}' is a reserved word and cannot be used here",
-                f"as an atom it is written between single quotes: '{token.text}'",
-            )
-        if pair in ("&&", "||"):
-            return f"there is no '{pair}'", f"'and' is &, 'or' is |: write one '{token.text}'"
-        if pair in ("=<", "=>", "->"):
-            return f"there is no '{pair}'", {"=<": "write <=", "=>": "write >=", "->": "write <-"}[pair]
-        following = self.peek()
-        if token.kind == "!" and following.kind in ("=", "==") and following.column == token.end:
-            return f"there is no '!{following.text}'", r"'not equal' is written \=="
-        if token.kind == "-" and following.kind == ">" and following.column == token.end:
-            return "there is no '->'", "the body of a plan begins with <-"
-        if (
-            token.kind == "atom"
-            and token.text.startswith(".")
-            and joined
-            and before.kind in (")", "]", "atom")
-        ):
-            return (
-                f"'{token.text}' is read as one word",
-                "put a blank or a line end after the final '.'",
-            )
-        return None, None
+    def slip(self) -> Slip | None:
+        """What is probably meant, when the current token does not fit."""
+        return known_slip(self.tokens, self.index)
+
+    def _blame(self, slip: Slip) -> Span:
+        return self.span_of(slip.token or self.token)
 
     def close(self, opener: Token) -> None:
         """Take the bracket that closes *opener*.  A wrong bracket is reported and taken for the right one."""
@@ -182,16 +171,21 @@ class Cursor:
         where = f"it was opened at line {opener.line}, column {opener.column}"
         if token.kind in _MATCHING:
             self.report(
-                f"'{opener.kind}' is closed by '{token.kind}'", hint=f"{where}; close it with '{closer}'"
+                "mismatched-bracket",
+                f"'{opener.kind}' is closed by '{token.kind}'",
+                hint=f"{where}; close it with '{closer}'",
             )
             if not self._closes_outer(opener) or self.peek().kind == token.kind:
                 self.advance()
             return
         found = "the end of the file" if token.kind == "end" else f"'{token.text}'"
-        message, hint = self._explain(token)
+        slip = self.slip()
+        if slip is not None:
+            self.fail(slip.code, slip.message, self._blame(slip), slip.hint)
         self.fail(
-            message or f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
-            hint=hint or where,
+            "unclosed-bracket",
+            f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
+            hint=where,
         )
 
     def _closes_outer(self, opener: Token) -> bool:
@@ -206,6 +200,11 @@ class Cursor:
             elif token.kind in _MATCHING and open_brackets:
                 open_brackets.pop()
         return wanted in open_brackets
+
+    def unclosed_braces(self) -> int:
+        """How many ``{`` of this clause are open here."""
+        kinds = [token.kind for token in self.tokens[self._clause_start : self.index]]
+        return kinds.count("{") - kinds.count("}")
 
     # looking ahead
 

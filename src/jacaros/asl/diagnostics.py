@@ -5,17 +5,22 @@ from typing import Literal as OneOf
 
 from jacaros.asl.source import Span
 
-Severity = OneOf["error", "warning"]
+Severity = OneOf["error", "warning", "note"]
+"""An error refuses the program; a warning is nearly always a mistake; a note is worth knowing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One message about a program text; ``span`` is None when no single place is to blame."""
+    """One message about a program text; ``span`` is None when no single place is to blame.
+
+    ``code`` names the kind of the problem; docs/reference/diagnostics.md lists them.
+    """
 
     severity: Severity
     message: str
     span: Span | None = None
     hint: str | None = None
+    code: str = ""
 
     def render(self) -> str:
         """The message as people read it: place, message, excerpt with carets, hint."""

@@ -41,6 +41,7 @@ def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
         f"two different plans have one label, @{second.label.functor}{where}",
         second.label.span or second.span,
         "give one of them another label",
+        "duplicate-label",
     )
 
 

@@ -105,17 +105,22 @@ def _unusual(
         return "atom"
     end = column + len(text.rstrip())
     hint: str | None = None
+    code = "unclosed-string"
     if group == "open_string":
         message, hint = "the string does not end on its line", r'close it: "text"; a line break inside is \n'
     elif group == "open_quoted":
         message, hint = "the quoted atom does not end on its line", "close it: 'an atom'"
     elif group == "open_comment":
         message, hint, end = "the comment is not closed", "end it with */", column + 2
+        code = "unclosed-comment"
     elif text == "\\":
+        code = "wrong-operator"
         message, hint = r"'\' does not begin anything", r"'not equal' is written \==, 'not' is written not"
     else:
+        code = "unknown-character"
         message = f"the character {text!r} does not belong to the language"
-    report(Diagnostic("error", message, Span(file, line, column, line, end), hint))
+        hint = "a comment begins with //" if text in "#%" else None
+    report(Diagnostic("error", message, Span(file, line, column, line, end), hint, code))
     return "error"
 
 
@@ -126,4 +131,5 @@ def _not_ascii(file: SourceFile, lexeme: str, line: int, column: int) -> Diagnos
         f"'{lexeme}' holds the letter '{letter}'; names are made of the letters a to z, digits and '_'",
         Span(file, line, column, line, column + len(lexeme)),
         f"rename it, or put it between single quotes to make it an atom: '{lexeme}'",
+        "non-ascii-name",
     )

@@ -74,12 +74,14 @@ class LiteralParser(Cursor, ABC):
     ) -> nodes.InternalAction | nodes.FunctionCall:
         if prefixed:
             self.report(
+                "prefixed-action",
                 f"'{name}' is an internal action: it can be neither negated by '~' nor put into a namespace",
                 self.span_from(start),
                 "to ask that it does not hold write 'not'",
             )
         if self.token.kind == "[":
             self.report(
+                "annotated-action",
                 f"'{name}' is an internal action, which cannot have annotations",
                 hint="a plan ends with a '.' followed by a blank" if name[0] == "." and start.first else None,
             )
@@ -99,6 +101,15 @@ class LiteralParser(Cursor, ABC):
         self, start: Token, namespace: "str | nodes.Variable | None", negated: bool, formula: bool
     ) -> nodes.Variable:
         token = self.advance()
+        if self.token.kind == "(" and self.token.line == token.line and self.token.column == token.end:
+            name = token.text.lstrip("_")
+            self.report(
+                "upper-case-functor",
+                f"'{token.text}' is a variable and cannot have arguments",
+                self.span_of(token),
+                f"names of beliefs, goals and actions begin with a lower-case letter: {name[:1].lower()}{name[1:]}(...)",
+            )
+            self._arguments()
         name, unnamed = self._variable_name(token.text)
         annotations = self._annotations()
         if namespace is _UNSET:
@@ -135,7 +146,10 @@ class LiteralParser(Cursor, ABC):
         opener = self.advance()
         if self.token.kind == ")":
             self.forgive(
-                "the brackets are empty", self.span_of(opener), "without arguments leave them out: p, not p()"
+                "empty-brackets",
+                "the brackets are empty",
+                self.span_of(opener),
+                "without arguments leave them out: p, not p()",
             )
             self.advance()
             return ()
@@ -154,7 +168,12 @@ class LiteralParser(Cursor, ABC):
         start = self.token
         items, tail = self._elements()
         if tail is not None and not isinstance(tail, nodes.Variable):
-            self.report("the tail of a list is a variable or a list", tail.span, "as in [H|T] or [a|[b,c]]")
+            self.report(
+                "wrong-tail",
+                "the tail of a list is a variable or a list",
+                tail.span,
+                "as in [H|T] or [a|[b,c]]",
+            )
             tail = None
         return nodes.ListTerm(tuple(items), tail, span=self.span_from(start))
 
@@ -166,7 +185,9 @@ class LiteralParser(Cursor, ABC):
         if not items and tail is None:
             return None
         if tail is not None and not isinstance(tail, nodes.Variable):
-            self.report("the tail of annotations is a variable", tail.span, "as in p(X)[source(S)|R]")
+            self.report(
+                "wrong-tail", "the tail of annotations is a variable", tail.span, "as in p(X)[source(S)|R]"
+            )
             tail = None
         return nodes.Annotations(tuple(items), tail, span=self.span_from(start))
 

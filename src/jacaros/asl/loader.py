@@ -67,7 +67,7 @@ def parse_literal(
         start = parser.token
         term = parser.operand(formula=True)
         if not isinstance(term, nodes.Literal):
-            parser.fail("a literal is expected", parser.span_from(start))
+            parser.fail("unexpected-token", "a literal is expected", parser.span_from(start))
         return term
 
     return _parse(text, name, functions, literal)
@@ -93,7 +93,7 @@ def parse_plan(text: str, name: str = "<string>", functions: Mapping[str, int] |
         start = parser.token
         term = parser.braces()
         if not isinstance(term, nodes.PlanTerm):
-            parser.fail("a plan is expected", parser.span_from(start))
+            parser.fail("unexpected-token", "a plan is expected", parser.span_from(start))
         return term.plan
 
     return _parse(text, name, functions, plan)
@@ -111,7 +111,9 @@ def parse_plans(
     processor = DirectiveProcessor(None, _names_with(functions), diagnostics)
     section = processor.read_file(SourceFile(name, text), last_dot_optional=True)
     for clause in (*section.beliefs, *section.goals):
-        diagnostics.append(Diagnostic("error", "only plans are expected", clause.span))
+        diagnostics.append(
+            Diagnostic("error", "only plans are expected", clause.span, None, "unexpected-token")
+        )
     _settled(diagnostics)
     return tuple(section.plans)
 
@@ -130,7 +132,7 @@ def parse_literals(text: str, name: str = "<string>") -> tuple[nodes.Literal, ..
             parser.accept("!")
             term = parser.operand(formula=True)
             if not isinstance(term, nodes.Literal):
-                parser.fail("a literal is expected", parser.span_from(start))
+                parser.fail("unexpected-token", "a literal is expected", parser.span_from(start))
             found.append(term)
             if not (parser.accept(",") or parser.accept(".") or parser.accept(";")):
                 break
@@ -154,7 +156,7 @@ def _parse(
     except SyntaxPanic:
         pass
     except RecursionError:
-        parser.report("this is nested too deeply")
+        parser.report("nested-too-deeply", "this is nested too deeply")
     _settled(diagnostics)
     assert result is not None
     return result

@@ -1,9 +1,13 @@
 """Plans, triggers, rules, and the terms in braces that hold them."""
 
 from dataclasses import replace
+from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.body_parser import BodyParser
+from jacaros.asl.cursor import SyntaxPanic
+
+_BEHIND_HEAD: Final = frozenset({"<-", ".", "{", "}", ")", "]", "end", "error"})
 
 
 class PlanParser(BodyParser):
@@ -15,15 +19,42 @@ class PlanParser(BodyParser):
         *as_term*: the plan stands in braces, where label, context and body may be variables.
         """
         start = self.token
-        label = self._label(as_term) if start.kind == "@" else None
-        trigger = self.trigger()
-        context = self._context()
-        goal_condition = self._part("goal condition") if self.token.kind == "<:" else None
+        label: nodes.Literal | nodes.Variable | None = None
+        trigger = nodes.Trigger("+", "!", nodes.Literal("unreadable"))
+        context = goal_condition = None
+        try:
+            label = self._label(as_term) if start.kind == "@" else None
+            trigger = self.trigger()
+            context = self._context()
+            goal_condition = self._part("goal condition") if self.token.kind == "<:" else None
+            self._require_body_or_end()
+        except SyntaxPanic:
+            # The error has been reported; there may be more of them in the body.
+            self._skip_to_body()
         body = self._plan_body()
         inner: nodes.Body | nodes.Variable = body
         if as_term and len(body.steps) == 1:
             inner = _body_variable(body.steps[0]) or body
         return nodes.Plan(label, trigger, context, inner, goal_condition, span=self.span_from(start))
+
+    def _require_body_or_end(self) -> None:
+        """Report what cannot stand behind the head of a plan; what begins a line may be the next clause."""
+        kind = self.token.kind
+        if kind == "," and not self.token.first:
+            self.fail("wrong-separator", "conditions are not joined by ','", hint="write & for 'and'")
+        if kind not in _BEHIND_HEAD and not self.token.first and not self.at_plan():
+            self.unexpected("'<-' or '.'")
+
+    def _skip_to_body(self) -> None:
+        """Go to the ``<-`` of this plan.
+
+        Raises:
+            SyntaxPanic: there is none.
+        """
+        while self.token.kind != "<-":
+            self.advance()
+            if self.token.kind in (".", "end") or (self.token.first and self.at_plan()):
+                raise SyntaxPanic
 
     def trigger(self) -> nodes.Trigger:
         """``+!g(X)``, ``-b``, ``^!g[state(S)]``, with a variable instead of the literal, too."""
@@ -32,13 +63,13 @@ class PlanParser(BodyParser):
         start = self.advance()
         kind = self.advance().kind if self.token.kind in ("!", "?") else ""
         if self.token.kind == "!!":
-            self.fail("a trigger has one '!'", hint="'!!' posts a goal in a body")
+            self.fail("wrong-trigger", "a trigger has one '!'", hint="'!!' posts a goal in a body")
         if self.token.kind not in ("atom", "variable", "~", "::"):
             self.unexpected("a literal")
         literal = self.operand(formula=True)
         if not isinstance(literal, nodes.Literal | nodes.Variable):
             hint = "a '.' that ends a plan has a blank or a line end behind it"
-            self.fail("an internal action cannot trigger a plan", literal.span, hint)
+            self.fail("wrong-trigger", "an internal action cannot trigger a plan", literal.span, hint)
         return nodes.Trigger(start.kind, kind, literal, span=self.span_from(start))
 
     def _label(self, as_term: bool) -> nodes.Literal | nodes.Variable:
@@ -50,16 +81,20 @@ class PlanParser(BodyParser):
                 f"p__a{next(self.names.labels)}", annotations=annotations, span=self.span_from(at)
             )
         if self.token.kind not in ("atom", "variable", "::"):
-            self.unexpected("the label of the plan")
+            self.unexpected("the label of the plan", "wrong-label")
         label = self.operand(formula=True)
         if isinstance(label, nodes.Literal) or (as_term and isinstance(label, nodes.Variable)):
             return label
         what = "a label is an atom, with annotations if need be"
-        return self.fail(what, label.span, "as in @stop[atomic] +!stop <- ...")
+        return self.fail("wrong-label", what, label.span, "as in @stop[atomic] +!stop <- ...")
 
     def _context(self) -> nodes.Term | None:
         if self.token.kind == ":-":
-            self.report("':-' belongs to rules", hint="a plan is written +!goal : condition <- steps.")
+            self.report(
+                "wrong-operator",
+                "':-' belongs to rules",
+                hint="a plan is written +!goal : condition <- steps.",
+            )
             self.advance()
             return self.condition()
         if self.token.kind != ":":
@@ -67,6 +102,7 @@ class PlanParser(BodyParser):
         if self.peek().kind == "<-":
             colon = self.advance()
             self.forgive(
+                "missing-context",
                 "the context behind ':' is missing",
                 self.span_of(colon),
                 "leave out the ':', or write ': true'",
@@ -74,7 +110,7 @@ class PlanParser(BodyParser):
             return None
         context = self._part("context")
         while self.token.kind == ":":
-            self.report("a plan has only one context", hint="join the conditions with &")
+            self.report("second-context", "a plan has only one context", hint="join the conditions with &")
             self._part("context")
         return context
 
@@ -82,7 +118,7 @@ class PlanParser(BodyParser):
         """The condition behind ``:`` or ``<:``."""
         sign = self.advance()
         if self.token.kind in ("<-", "<:", ".", "}", "end"):
-            self.report(f"the {what} behind '{sign.kind}' is missing", self.span_of(sign))
+            self.report("missing-context", f"the {what} behind '{sign.kind}' is missing", self.span_of(sign))
             return nodes.Literal("true", span=self.span_of(sign))
         return self.condition()
 
@@ -92,6 +128,7 @@ class PlanParser(BodyParser):
             return nodes.Body(span=self.span_of(arrow))
         if self.token.kind in (".", "}", "end") or self.at_plan():
             self.report(
+                "missing-body",
                 "the body behind '<-' is missing",
                 self.span_of(arrow),
                 "write the steps, or leave out '<-' if there is nothing to do",
@@ -99,7 +136,11 @@ class PlanParser(BodyParser):
             return nodes.Body(span=self.span_of(arrow))
         body = self.body()
         if self.token.kind == "<-":
-            self.fail("a plan has only one '<-'", hint="is the final '.' of a plan missing before this one?")
+            self.fail(
+                "second-body",
+                "a plan has only one '<-'",
+                hint="is the final '.' of a plan missing before this one?",
+            )
         return body
 
     # terms in braces
@@ -136,7 +177,7 @@ class PlanParser(BodyParser):
         start = self.token
         head = self.operand(formula=True)
         if not isinstance(head, nodes.Literal):
-            self.fail("the head of a rule is a literal", head.span)
+            self.fail("not-a-belief", "the head of a rule is a literal", head.span)
         if not self.accept(":-"):
             self.unexpected("':-'")
         return nodes.Rule(head, self.condition(), span=self.span_from(start))

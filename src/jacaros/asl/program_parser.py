@@ -66,7 +66,9 @@ class ProgramParser(PlanParser):
         section = Section()
         while self.token.kind != "end":
             if self._at_end_directive():
-                self.report("'{ end }' without a '{ begin ... }' before it", hint="remove it")
+                self.report(
+                    "end-without-begin", "'{ end }' without a '{ begin ... }' before it", hint="remove it"
+                )
                 self._take_end_directive()
             self._recovering(self._clause, section)
         return section
@@ -76,7 +78,12 @@ class ProgramParser(PlanParser):
         section = Section()
         while not self._at_end_directive():
             if self.token.kind == "end":
-                self.report(f"the block of '{begin.functor}' has no end", begin.span, "close it with { end }")
+                self.report(
+                    "unclosed-block",
+                    f"the block of '{begin.functor}' has no end",
+                    begin.span,
+                    "close it with { end }",
+                )
                 return section
             self._recovering(self._clause, section)
         self._take_end_directive()
@@ -93,7 +100,7 @@ class ProgramParser(PlanParser):
         except SyntaxPanic:
             self._synchronise(start)
         except RecursionError:
-            self.report("this is nested too deeply", self.span_of(self.tokens[start]))
+            self.report("nested-too-deeply", "this is nested too deeply", self.span_of(self.tokens[start]))
             self._synchronise(start)
 
     def _clause(self, section: Section) -> None:
@@ -112,11 +119,11 @@ class ProgramParser(PlanParser):
     def _no_clause(self) -> None:
         kind = self.token.kind
         if kind == "!!":
-            self.fail("an initial goal has one '!'", hint="write !goal.")
+            self.fail("wrong-goal", "an initial goal has one '!'", hint="write !goal.")
         if kind == "?":
-            self.fail("an initial goal is an achievement goal", hint="write !goal.")
+            self.fail("wrong-goal", "an initial goal is an achievement goal", hint="write !goal.")
         if kind in (".", ";"):
-            self.report(f"there is nothing before this '{kind}'", hint="remove it")
+            self.report("empty-clause", f"there is nothing before this '{kind}'", hint="remove it")
             self.advance()
             return
         self.unexpected("a belief, a goal or a plan")
@@ -125,7 +132,7 @@ class ProgramParser(PlanParser):
         self.advance()
         goal = self._goal()
         if not isinstance(goal, nodes.Literal):
-            self.fail("an initial goal cannot be a variable", goal.span)
+            self.fail("wrong-goal", "an initial goal cannot be a variable", goal.span)
         self._finish("goal")
         section.goals.append(goal)
 
@@ -134,6 +141,7 @@ class ProgramParser(PlanParser):
         head = self.operand(formula=True)
         if self.token.kind in ("<-", ":") and not isinstance(head, nodes.InternalAction):
             self.fail(
+                "missing-trigger",
                 "a plan begins with its trigger",
                 self.span_from(start),
                 "put +! before it: +!goal : condition <- steps.",
@@ -150,11 +158,12 @@ class ProgramParser(PlanParser):
     def _no_belief(self, term: nodes.Term) -> None:
         if isinstance(term, nodes.InternalAction | nodes.FunctionCall):
             self.fail(
+                "misplaced-action",
                 f"'{term.name}' cannot stand outside a plan",
                 term.span,
                 "is it a step of the plan before, which ends too early with a '.'?",
             )
-        self.fail("a belief is a literal", term.span)
+        self.fail("not-a-belief", "a belief is a literal", term.span)
 
     def _plan_clause(self) -> nodes.Plan:
         plan = self.plan()
@@ -175,7 +184,7 @@ class ProgramParser(PlanParser):
         while self.token.kind not in ("}", "end"):
             self._recovering(self._subplan, section)
         if not self.accept("}"):
-            self.report("the '{' of the sub-plans is not closed", self.span_of(opener))
+            self.report("unclosed-bracket", "the '{' of the sub-plans is not closed", self.span_of(opener))
         return tuple(section.plans)
 
     def _subplan(self, section: Section) -> None:
@@ -189,18 +198,19 @@ class ProgramParser(PlanParser):
         if self.accept(".") or (token.kind == "end" and self._last_dot_optional):
             return
         if token.kind == "end":
-            self.report(f"the {what} has no final '.'", hint="the file ends here")
+            self.report("missing-dot", f"the {what} has no final '.'", hint="the file ends here")
         elif self._begins_clause(self.index) or (what != "plan" and token.first and token.kind in _STARTS):
             self.report(
+                "missing-dot",
                 f"the {what} before has no final '.'; {_naming(token)} begins here",
                 hint=f"put a '.' behind line {self.previous().line}",
             )
         elif token.kind == "," and what in ("belief", "goal"):
-            self.fail(f"a {what} ends with '.', not with ','", hint="write p(1). p(2).")
+            self.fail("wrong-separator", f"a {what} ends with '.', not with ','", hint="write p(1). p(2).")
         elif token.kind == ",":
-            self.fail("conditions are not joined by ','", hint="write & for 'and'")
+            self.fail("wrong-separator", "conditions are not joined by ','", hint="write & for 'and'")
         elif token.kind in CLOSERS.values():
-            self.fail(f"nothing is open that this '{token.kind}' closes")
+            self.fail("unopened-bracket", f"nothing is open that this '{token.kind}' closes")
         else:
             self.unexpected("';' or '.'" if what == "plan" else "'.'")
 
@@ -245,7 +255,7 @@ class ProgramParser(PlanParser):
             self.unexpected("the name of a directive")
         directive = self.operand()
         if not isinstance(directive, nodes.Literal):
-            self.fail("this is no directive", directive.span)
+            self.fail("unknown-directive", "this is no directive", directive.span)
         self.accept(".")
         self.close(opener)
         directive = replace(directive, span=self.span_from(opener))
@@ -264,7 +274,7 @@ class ProgramParser(PlanParser):
         if self.token.kind == "}":
             self.advance()
         else:
-            self.report("'}' is expected behind '{ end'", self.span_of(opener))
+            self.report("unclosed-bracket", "'}' is expected behind '{ end'", self.span_of(opener))
 
 
 def _naming(token: Token) -> str:
@@ -284,4 +294,9 @@ def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
         elif isinstance(term, nodes.Not):
             stack.append(term.operand)
         elif isinstance(term, nodes.InternalAction) and term.name in _NOT_IN_CONDITIONS:
-            parser.report(f"'{term.name}' acts and cannot stand in a context", term.span, "do it in the body")
+            parser.report(
+                "action-in-context",
+                f"'{term.name}' acts and cannot stand in a context",
+                term.span,
+                "do it in the body",
+            )

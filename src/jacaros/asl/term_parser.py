@@ -147,12 +147,13 @@ class TermParser(LiteralParser):
                 hint = "or is a ';' missing before this line?"
             elif isinstance(operand, nodes.Literal):
                 hint = "a belief gives its value through a variable: ask ?b(X) first, then count with X"
-        self.report(what, operand.span or self.span_of(operator), hint)
+        self.report("not-a-number", what, operand.span or self.span_of(operator), hint)
 
     def _relation(self, left: nodes.Term) -> nodes.Term:
         operator = self.advance()
         if isinstance(left, nodes.Relation):
             self.report(
+                "chained-relation",
                 "relations cannot be chained",
                 self.span_of(operator),
                 "join two of them with &, as in 1 < X & X < 5",

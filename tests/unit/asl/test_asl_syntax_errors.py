@@ -180,7 +180,7 @@ def test_one_mistake_gives_one_error():
 
 def test_the_rest_of_the_file_is_read_behind_every_error():
     text = "".join(f"+!g{number} <- a(;{' b' * (number % 3)}.\n" for number in range(40))
-    assert [line for line, _ in places(text)] == list(range(1, 41))
+    assert sorted({line for line, _ in places(text)}) == list(range(1, 41))
 
 
 def test_two_plans_with_one_label_are_an_error_that_names_both():
@@ -219,3 +219,37 @@ def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text: str, p
 def test_warnings_come_with_the_errors_in_the_order_of_the_text():
     found = errors("+!g <- not a.\n+!h <- b(.\n+!i <- not c.")
     assert [diagnostic.severity for diagnostic in found] == ["warning", "error", "warning"]
+
+
+def test_every_statement_of_a_plan_is_read_although_others_are_wrong():
+    text = """\
+Corner(1,2).
++!a : x && y <- foo(; .print("abc); bar;
+   !b; Foo(1).
++!b : nto c <- whlie (x) { a; b(] }; X := 3; Y is X + 1; Z mdo 2.
++!c <- if (x) then { a }; X += 1; c d; if (y) { a(; b(; c }; e.
++!d(X : y <- a( ; b.
++!e <- if (a) { .print("x; };
+   b( ; c }.
+"""
+    assert [(each.span.line, each.code) for each in errors(text) if each.span is not None] == [
+        (1, "upper-case-functor"),
+        (2, "wrong-operator"),
+        (2, "unexpected-token"),
+        (2, "unclosed-string"),
+        (3, "upper-case-functor"),
+        (4, "misspelt-word"),
+        (4, "misspelt-word"),
+        (4, "wrong-operator"),
+        (4, "foreign-word"),
+        (4, "misspelt-word"),
+        (5, "foreign-word"),
+        (5, "wrong-operator"),
+        (5, "missing-semicolon"),
+        (5, "unexpected-token"),
+        (5, "unexpected-token"),
+        (6, "unclosed-bracket"),
+        (6, "unexpected-token"),
+        (7, "unclosed-string"),
+        (8, "unexpected-token"),
+    ]

@@ -74,10 +74,15 @@ class DirectiveProcessor:
                 section.functions.append(function)
         elif name in PATTERNS:
             parser.report(
-                f"'{name}' needs a block", directive.span, f"{{ begin {name}(...) }} plans {{ end }}"
+                "wrong-directive",
+                f"'{name}' needs a block",
+                directive.span,
+                f"{{ begin {name}(...) }} plans {{ end }}",
             )
         else:
-            parser.report(f"there is no directive '{name}'", directive.span, _meant(name))
+            parser.report(
+                "unknown-directive", f"there is no directive '{name}'", directive.span, _meant(name)
+            )
 
     def apply_to_block(self, parser: ProgramParser, directive: nodes.Literal, section: Section) -> None:
         """Read the block of a directive and put what becomes of it into *section*."""
@@ -90,14 +95,16 @@ class DirectiveProcessor:
             return
         if name not in PATTERNS:
             hint = f"write {{ {name}(...) }} without begin" if name in _SIMPLE else _meant(name)
-            parser.report(f"there is no directive '{name}' with a block", directive.span, hint)
+            parser.report(
+                "unknown-directive", f"there is no directive '{name}' with a block", directive.span, hint
+            )
             section.extend(parser.block(directive))
             return
         block = parser.block(directive)
         try:
             section.extend(PATTERNS[name](self._call(parser, directive), block))
         except PatternError as error:
-            parser.report(str(error), directive.span, error.hint)
+            parser.report("wrong-directive", str(error), directive.span, error.hint)
             section.extend(block)
 
     # include
@@ -106,7 +113,10 @@ class DirectiveProcessor:
         arguments = directive.arguments
         if not 1 <= len(arguments) <= 2 or not isinstance(arguments[0], nodes.String):
             parser.report(
-                "'include' needs the name of a file as a string", directive.span, '{ include("file.asl") }'
+                "wrong-directive",
+                "'include' needs the name of a file as a string",
+                directive.span,
+                '{ include("file.asl") }',
             )
             return Section()
         path = arguments[0].value
@@ -118,7 +128,10 @@ class DirectiveProcessor:
             return Section()
         if found.name in self._open_files or len(self._open_files) > _MAX_INCLUDES:
             parser.report(
-                f"'{path}' includes itself", directive.span, "files cannot include each other in a circle"
+                "include-circle",
+                f"'{path}' includes itself",
+                directive.span,
+                "files cannot include each other in a circle",
             )
             return Section()
         return self.read_file(found, namespaces)
@@ -134,15 +147,22 @@ class DirectiveProcessor:
             if is_known_library(path):
                 return None
             if is_library(path):
-                parser.warn(f"the library '{path}' is not known; nothing is included", _place(directive))
+                parser.warn(
+                    "unknown-library",
+                    f"the library '{path}' is not known; nothing is included",
+                    _place(directive),
+                )
                 return None
             parser.report(
+                "include-not-found",
                 f"the included file '{path}' is not found",
                 directive.span,
                 f"it is looked for beside {parser.file.name} and in the source paths of the project",
             )
         except (OSError, UnicodeError) as error:
-            parser.report(f"the included file '{path}' cannot be read: {error}", directive.span)
+            parser.report(
+                "include-not-found", f"the included file '{path}' cannot be read: {error}", directive.span
+            )
         return None
 
     def _include_namespace(self, parser: ProgramParser, term: nodes.Term) -> str | None:
@@ -152,7 +172,7 @@ class DirectiveProcessor:
             return parser.namespaces.resolve(term.value)
         if isinstance(term, nodes.Variable):
             return f"{term.name}#{next(self._names.local_namespaces)}"
-        parser.report("the namespace of an include is an atom", term.span)
+        parser.report("wrong-directive", "the namespace of an include is an atom", term.span)
         return None
 
     # namespaces and functions
@@ -167,6 +187,7 @@ class DirectiveProcessor:
             or names[1:] not in ([], ["local"], ["global"])
         ):
             parser.report(
+                "wrong-directive",
                 "'namespace' needs an atom, and local or global if need be",
                 directive.span,
                 "as in { namespace(robot) } or { begin namespace(robot, local) }",
@@ -182,6 +203,7 @@ class DirectiveProcessor:
         arguments = directive.arguments
         if len(arguments) == 1 and isinstance(arguments[0], nodes.String):
             parser.warn(
+                "java-function",
                 f"the function {arguments[0].value} is written in Java and not available",
                 _place(directive),
                 'a rule can be a function: { register_function("my.sum", 2, "sum") }',
@@ -191,6 +213,7 @@ class DirectiveProcessor:
             case (nodes.String(value=name), nodes.Number(value=arity), nodes.String(value=rule)):
                 if "." not in name.strip(".") or name.startswith("."):
                     parser.report(
+                        "wrong-directive",
                         f"the function name '{name}' must contain a dot and not begin with one",
                         arguments[0].span,
                         "as in my.sum",
@@ -199,6 +222,7 @@ class DirectiveProcessor:
                 self._names.functions[name] = int(arity)
                 return nodes.RegisteredFunction(name, int(arity), rule, span=directive.span)
         parser.report(
+            "wrong-directive",
             "'register_function' needs a name, a number of arguments and a rule",
             directive.span,
             '{ register_function("my.sum", 2, "sum") }',

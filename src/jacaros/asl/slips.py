@@ -1,0 +1,157 @@
+"""Slips that are known from other languages, and misspelt words: better messages than "is expected, not"."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final, NamedTuple
+
+from jacaros.asl.lexer import RESERVED, Token
+from jacaros.asl.spelling import is_slip_of
+
+_FUSED: Final = {
+    "&&": "'and' is &, 'or' is |: write one '&'",
+    "||": "'and' is &, 'or' is |: write one '|'",
+    "=<": "write <=",
+    "=>": "write >=",
+    "->": "the body of a plan begins with <-",
+    "!=": r"'not equal' is written \==",
+    "!==": r"'not equal' is written \==",
+    "~=": r"'not equal' is written \==",
+    "<>": r"'not equal' is written \==",
+    ":=": "a variable gets its value by =, as in X = 3",
+    "=:=": "'equal' is written ==",
+    "===": "'equal' is written ==",
+    "+=": "a variable keeps its value: write Y = X + 1; a belief is changed by -+b(Y)",
+    "-=": "a variable keeps its value: write Y = X - 1; a belief is changed by -+b(Y)",
+    "*=": "a variable keeps its value: write Y = X * 2",
+    "/=": "a variable keeps its value: write Y = X / 2",
+}
+"""Operators that the language does not have, made of signs that it has."""
+
+_WORDS: Final = {
+    "and": "'and' is written &",
+    "or": "'or' is written |",
+    "is": "a variable gets its value by =, as in X = Y + 1",
+    "then": "the steps stand in braces: if (condition) { steps }",
+    "do": "the steps stand in braces: while (condition) { steps }",
+    "elsif": "write elif (condition) { steps }",
+    "elseif": "write elif (condition) { steps }",
+}
+"""Words that other languages have."""
+
+_CONTROL: Final = ("if", "while", "for", "elif")
+_ENDS_OPERAND: Final = frozenset({"atom", "variable", "number", "string", ")", "]", "}"})
+_BEGINS_OPERAND: Final = frozenset({"atom", "variable", "number", "string", "(", "[", "~", "-"})
+
+
+class Slip(NamedTuple):
+    """A better explanation; ``token`` is the one to blame, None for the current one."""
+
+    code: str
+    message: str
+    hint: str
+    token: Token | None = None
+
+
+def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
+    """What is probably meant where the token at *index* does not fit."""
+    return (
+        _misspelt(tokens, index)
+        or _foreign_word(tokens, index)
+        or _reserved(tokens[index])
+        or _fused(tokens, index)
+        or _missing_blank(tokens, index)
+    )
+
+
+def _reserved(token: Token) -> Slip | None:
+    if token.kind not in RESERVED:
+        return None
+    return Slip(
+        "reserved-word",
+        f"'{token.text}' is a reserved word and cannot be used here",
+        f"as an atom it is written between single quotes: '{token.text}'",
+    )
+
+
+def _fused(tokens: Sequence[Token], index: int) -> Slip | None:
+    """Signs without a blank between them, around *index*, that are an operator elsewhere; the longest wins."""
+    for length in (3, 2):
+        for start in range(index - length + 1, index + 1):
+            if start < 0 or start + length > len(tokens):
+                continue
+            run = tokens[start : start + length]
+            text = "".join(token.text for token in run)
+            joined = all(one.end == two.column and one.line == two.line for one, two in pairwise(run))
+            if joined and text in _FUSED:
+                return Slip("wrong-operator", f"there is no '{text}'", _FUSED[text])
+    if tokens[index].text in _FUSED:
+        text = tokens[index].text
+        return Slip("wrong-operator", f"there is no '{text}'", _FUSED[text])
+    return None
+
+
+def _missing_blank(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``p.q``: the final dot of a clause and the next word read as one."""
+    token, before = tokens[index], tokens[max(index - 1, 0)]
+    joined = before.line == token.line and before.end == token.column
+    if joined and token.kind == "atom" and token.text.startswith(".") and before.kind in (")", "]", "atom"):
+        return Slip(
+            "missing-blank",
+            f"'{token.text}' is read as one word",
+            "put a blank or a line end after the final '.'",
+        )
+    return None
+
+
+def _foreign_word(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``a and b``, ``X is 1``, ``if (c) then``."""
+    token = tokens[index]
+    if index == 0 or token.kind != "atom" or token.text not in _WORDS:
+        return None
+    if tokens[index - 1].kind not in _ENDS_OPERAND:
+        return None
+    return Slip("foreign-word", f"there is no '{token.text}'", _WORDS[token.text])
+
+
+def _misspelt(tokens: Sequence[Token], index: int) -> Slip | None:
+    token = tokens[index]
+    if index == 0:
+        return None
+    before = tokens[index - 1]
+    if token.kind == "{":
+        if before.kind == ")":
+            return _meant(tokens[max(_opening(tokens, index - 1) - 1, 0)], _CONTROL)
+        return _meant(before, ("else",))
+    if before.kind == "atom" and token.kind in ("atom", "variable", "~") and before.line == token.line:
+        slip = _meant(before, ("not",))
+        if slip is not None:
+            return slip
+    if (
+        token.kind == "atom"
+        and before.kind in _ENDS_OPERAND
+        and tokens[index + 1 : index + 2]
+        and tokens[index + 1].kind in _BEGINS_OPERAND
+        and tokens[index + 1].line == token.line
+    ):
+        return _meant(token, ("div", "mod"))
+    return None
+
+
+def _meant(word: Token, wanted: Sequence[str]) -> Slip | None:
+    if word.kind != "atom":
+        return None
+    for each in wanted:
+        if is_slip_of(word.text, each):
+            return Slip("misspelt-word", f"'{word.text}' does not fit here", f"did you mean '{each}'?", word)
+    return None
+
+
+def _opening(tokens: Sequence[Token], index: int) -> int:
+    """The index of the bracket that the ``)`` at *index* closes."""
+    depth = 0
+    while index > 0:
+        depth += (tokens[index].kind == ")") - (tokens[index].kind == "(")
+        if depth == 0:
+            break
+        index -= 1
+    return index
