@@ -26,6 +26,7 @@ from jacaros.bdi.failure import error_terms, step_failure
 from jacaros.bdi.intention import Frame
 from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
+from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import ACTION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
@@ -61,6 +62,7 @@ class Agent(Circumstance):
         architecture: the port to its host.
         options: how it handles events.
         actions: internal actions; the standard ones unless given.
+        plans: those of the program with the same actions, if another agent has had them made already.
     """
 
     def __init__(
@@ -70,13 +72,16 @@ class Agent(Circumstance):
         architecture: Architecture,
         options: Options | None = None,
         actions: Mapping[str, InternalAction] | None = None,
+        plans: ProgramPlans | None = None,
     ) -> None:
-        super().__init__(name, architecture, STANDARD if actions is None else actions, options or Options())
+        known = STANDARD if actions is None else actions
+        made = plans or ProgramPlans(program.plans, known)
+        super().__init__(name, architecture, known, options or Options(), made)
         self.program = program
         self.context = Context(self)
         self._acts = 0
         self._messages = 0
-        self.add_plans(program.plans)
+        plan_changes.look_at_plans(self)
 
     # --- life ----------------------------------------------------------------------------------------------
 

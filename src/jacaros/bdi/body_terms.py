@@ -11,7 +11,7 @@ from jacaros.compiler.plan import Plan
 from jacaros.compiler.reflection import Reflection
 from jacaros.compiler.runtime import Failure
 from jacaros.compiler.triggers import trigger
-from jacaros.compiler.unit import CodeUnit
+from jacaros.compiler.unit import CodeUnit, install_body
 from jacaros.terms.plans import PLAN as PLAN_TERM
 from jacaros.terms.plans import RULE, TRIGGER, is_body
 from jacaros.terms.unifier import resolve
@@ -85,8 +85,7 @@ def _body_plan(agent: Circumstance, term: Term) -> Plan:
     compiler = BodyCompiler(unit, Slots(_Always()), "step")
     first = compiler.body(body.steps, "None")
     unit.execute()
-    plan.first = unit.globals[first] if first != "None" else None
-    plan.steps = {unit.globals[name]: info for name, info in compiler.infos.items()}
+    install_body(unit, plan, compiler, first)
     plan.slots, plan.size = compiler.frame.slots, compiler.frame.size
     if len(agent.bodies) > 256:
         agent.bodies.clear()

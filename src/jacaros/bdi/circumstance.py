@@ -12,6 +12,7 @@ from jacaros.bdi.intention import Intention
 from jacaros.bdi.internal_action import InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.plan_library import PlanLibrary, Selects
+from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.runtime import literal_of
@@ -53,7 +54,12 @@ class Circumstance:
     """
 
     def __init__(
-        self, name: str, architecture: Architecture, actions: Mapping[str, InternalAction], options: Options
+        self,
+        name: str,
+        architecture: Architecture,
+        actions: Mapping[str, InternalAction],
+        options: Options,
+        plans: ProgramPlans,
     ) -> None:
         self.name = name
         self.architecture = architecture
@@ -61,7 +67,7 @@ class Circumstance:
         self.options = options
         self.trail = Trail()
         self.beliefs = BeliefBase()
-        self.library = PlanLibrary(actions)
+        self.library = PlanLibrary(plans)
         self.library.report = lambda text: architecture.log("error", text)
         self.selects: Selects = self.library.selects
         self.events: deque[Event] = deque()
@@ -86,7 +92,7 @@ class Circumstance:
         self.cycles = 0
         self.stopped = False
         self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}
-        self.plans_made = 0
+        self.plans_made = len(plans.plans)
         self.bodies: dict[int, tuple[Term, Any]] = {}
         self._intention_numbers = 0
 

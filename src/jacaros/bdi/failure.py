@@ -153,7 +153,8 @@ class _GoalPlace:
             return None, ""
         plan = self.caller[PLAN]
         following = self.caller[STEP].__name__ if self.caller[STEP] is not None else "None"
-        for info in plan.steps.values():
+        steps: dict[str, StepInfo] = getattr(self.caller[STEP], "steps", plan.steps)
+        for info in steps.values():
             node = info.node
             if isinstance(node, (nodes.Achieve, nodes.Test)) and info.next == following:
                 return node.span, plan.file
@@ -185,7 +186,7 @@ def step_failure(frame: Frame, fault: Exception) -> FailureReason:
         InternalError: when the fault is a defect of ours.
     """
     plan = frame[PLAN]
-    info = plan.steps.get(frame[STEP])
+    info = getattr(frame[STEP], "info", None)
     if info is None:
         raise InternalError(f"a step of plan {plan!r} is unknown") from fault
     return FailureReason(_terms_of(fault, info), _StepPlace(frame, info))

@@ -40,10 +40,10 @@ def add_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
         plan = Plan(node, label_of(node, agent.plans_made))
         plans.append(with_subplans(plan, agent.plans_made))
     agent.library.extend(plans)
-    _look_at_plans(agent)
+    look_at_plans(agent)
 
 
-def _look_at_plans(agent: Circumstance) -> None:
+def look_at_plans(agent: Circumstance) -> None:
     """What the mind needs to know of its plans as a whole."""
     agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
     agent.subplans = agent.library.has_subplans()
@@ -73,16 +73,17 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
 def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) -> None:
     for held in agent.library.plans:
         if _same(held.node, node):
-            if source not in held.sources:
-                held.sources.append(source)
+            sources = agent.library.sources(held)
+            if source not in sources:
+                agent.library.set_sources(held, (*sources, source))
             return
     agent.plans_made += 1
     plan = Plan(node, label_of(node, agent.plans_made))
     if agent.library.by_label(plan.label) is not None:
         raise ActionError(f"another plan has the label {text(plan.label)} already")
-    plan.sources = [source]
     agent.library.add(with_subplans(plan, agent.plans_made), first)
-    _look_at_plans(agent)
+    agent.library.set_sources(plan, (source,))
+    look_at_plans(agent)
 
 
 def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
@@ -98,10 +99,11 @@ def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
         found = agent.library.by_label(term)
     if found is None:
         return False
-    if source in found.sources:
-        found.sources.remove(source)
-        if not found.sources:
-            agent.library.remove(found)
+    left = tuple(held for held in agent.library.sources(found) if held != source)
+    if left:
+        agent.library.set_sources(found, left)
+    else:
+        agent.library.remove(found)
     return True
 
 

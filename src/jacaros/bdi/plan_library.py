@@ -1,44 +1,65 @@
-"""Plans by trigger, and the select functions made from them."""
+"""The plans of one agent by trigger, and their select functions."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
+from jacaros.bdi.program_plans import ProgramPlans, concerns, made, relevant
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import Trigger
-from jacaros.compiler.unit import Select, compile_select
-from jacaros.terms.values import Term, bare
+from jacaros.compiler.unit import Select
+from jacaros.terms.values import SELF, Term, bare
+
+_BY_SELF = (SELF,)
 
 
 class PlanLibrary:
-    """The plans of one agent, in the order in which they are tried."""
+    """The plans of one agent, in the order in which they are tried.
 
-    def __init__(self, actions: Mapping[str, ActionInfo]) -> None:
-        self.actions = actions
+    Attributes:
+        program: the plans that it began with; as long as no other plan concerns an event, their select function is shared
+            with all agents of the program.
+        report: told what cannot be compiled.
+    """
+
+    def __init__(self, program: ProgramPlans) -> None:
+        self.program = program
+        self.actions: Mapping[str, ActionInfo] = program.actions
         self.report: Callable[[str], None] = _ignore
-        self.plans: list[Plan] = []
+        self.plans: list[Plan] = list(program.plans)
+        self.own: list[Plan] = []
+        self.removed: list[Plan] = []
         self.selects = Selects(self)
-        self._count = 0
+        self._sources: dict[Plan, tuple[Term, ...]] = {}
 
     def add(self, plan: Plan, first: bool = False) -> None:
         """Add a plan at the end, or before all others."""
-        self._count += 1
-        plan.order = -self._count if first else self._count
-        self.plans.append(plan)
-        self.plans.sort(key=lambda p: p.order)
+        self.plans.insert(0 if first else len(self.plans), plan)
+        self.own.append(plan)
         self.selects.forget(plan)
 
     def extend(self, plans: list[Plan]) -> None:
         """Add many plans at the end."""
-        for plan in plans:
-            self._count += 1
-            plan.order = self._count
         self.plans.extend(plans)
+        self.own.extend(plans)
         self.selects.clear()
 
     def remove(self, plan: Plan) -> None:
         """Take a plan out."""
         self.plans.remove(plan)
+        if plan in self.own:
+            self.own.remove(plan)
+        else:
+            self.removed.append(plan)
+        self._sources.pop(plan, None)
         self.selects.forget(plan)
+
+    def sources(self, plan: Plan) -> tuple[Term, ...]:
+        """Who told a plan; it goes when nobody is left."""
+        return self._sources.get(plan, _BY_SELF)
+
+    def set_sources(self, plan: Plan, sources: Sequence[Term]) -> None:
+        """Note who told a plan."""
+        self._sources[plan] = tuple(sources)
 
     def by_label(self, label: Term) -> Plan | None:
         """The plan of that label."""
@@ -47,7 +68,12 @@ class PlanLibrary:
 
     def relevant(self, trigger: Trigger) -> list[Plan]:
         """The candidate plans of an event kind, those with a variable as trigger among them."""
-        return [plan for plan in self.plans if concerns(plan, trigger)]
+        return relevant(self.plans, trigger)
+
+    def is_as_written(self, trigger: Trigger) -> bool:
+        """Whether the plans of an event kind are those of the program."""
+        changed = (*self.own, *self.removed)
+        return not any(concerns(plan, trigger) for plan in changed)
 
     def has_subplans(self) -> bool:
         """Whether any plan has plans of its own."""
@@ -70,33 +96,22 @@ def _has_goal_condition(plan: Plan) -> bool:
     return plan.node.goal_condition is not None or any(_has_goal_condition(inner) for inner in plan.subplans)
 
 
-def concerns(plan: Plan, trigger: Trigger) -> bool:
-    """Whether a plan is a candidate for an event kind."""
-    head = plan.node.trigger
-    return head.operator == trigger.operator and head.kind == trigger.kind and _concerns(plan, trigger)
-
-
-def _concerns(plan: Plan, trigger: Trigger) -> bool:
-    return plan.has_variable_trigger() or plan.trigger_functor() is trigger.functor
-
-
 class Selects(dict[Trigger, Select | None]):
     """The select function of each event kind, made at its first event; None when there is no relevant plan."""
 
     def __init__(self, library: PlanLibrary) -> None:
         super().__init__()
         self.library = library
-        self.sources: dict[Trigger, str] = {}
+        self.sources: dict[Trigger, str] = library.program.sources
 
     def __missing__(self, trigger: Trigger) -> Select | None:
-        plans = self.library.relevant(trigger)
-        select: Select | None = None
-        if plans:
-            try:
-                select, self.sources[trigger] = compile_select(trigger, plans, self.library.actions)
-            except (SyntaxError, RecursionError) as fault:
-                # Python's limits for one function; a program meets them with formulae of some hundred operators.
-                self.library.report(f"the plans for {trigger!r} are too large to be compiled: {fault}")
+        library = self.library
+        if library.is_as_written(trigger):
+            select = library.program.select(trigger, library.report)
+        else:
+            self.sources = dict(self.sources)
+            plans = library.relevant(trigger)
+            select = made(trigger, plans, library.actions, self.sources, library.report)
         self[trigger] = select
         return select
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import PLAN, Frame, Intention
-from jacaros.bdi.plan_library import concerns
+from jacaros.bdi.program_plans import concerns
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import Trigger
 from jacaros.compiler.unit import Select, compile_select

@@ -7,7 +7,7 @@ from jacaros.asl import nodes
 from jacaros.compiler.bodies import StepInfo
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.triggers import Trigger
-from jacaros.terms.values import SELF, Term, annotations_of, atom, bare, functor
+from jacaros.terms.values import Term, annotations_of, atom, bare, functor
 
 ATOMIC_LABEL = atom("atomic")
 
@@ -20,16 +20,14 @@ class Plan:
         label: term of the label, without annotations.
         annotations: those of the label.
         atomic: whether the label says ``atomic``.
-        order: place in the library; plans are tried in ascending order.
         slots: index in the frame by variable name.
         size: number of slots of a body that is run on its own.
         first: the first step function, None for an empty body; set when the plan is compiled.
-        steps: what is known of each step function.
+        steps: what is known of each step function, by its name.
         scope: the plan that this one is a sub-plan of, or None.
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
         subplans: plans for what happens while this one is pursued.
         subselects: their select functions by event kind, made at the first event.
-        sources: who told it, as atoms; it goes when none is left.
     """
 
     __slots__ = (
@@ -39,31 +37,27 @@ class Plan:
         "goal_condition",
         "label",
         "node",
-        "order",
         "scope",
         "size",
         "slots",
-        "sources",
         "steps",
         "subplans",
         "subselects",
     )
 
-    def __init__(self, node: nodes.Plan, label: Term, order: float = 0.0) -> None:
+    def __init__(self, node: nodes.Plan, label: Term) -> None:
         self.node = node
         self.label = bare(label)
         self.annotations = annotations_of(label)
         self.atomic = ATOMIC_LABEL in self.annotations
-        self.order = order
         self.slots: dict[str, int] = {}
         self.size = 0
         self.first: Callable[[Any, list[Any]], Any] | None = None
-        self.steps: dict[Callable[..., Any], StepInfo] = {}
+        self.steps: dict[str, StepInfo] = {}
         self.scope: Plan | None = None
         self.goal_condition: Callable[[Any, list[Any]], bool] | None = None
         self.subplans: list[Plan] = []
         self.subselects: dict[Trigger, Any] = {}
-        self.sources: list[Term] = [SELF]
 
     def __repr__(self) -> str:
         return f"Plan({self.label!r})"
@@ -88,8 +82,8 @@ class Plan:
 
 def with_subplans(plan: Plan, number: int) -> Plan:
     """Give a plan its sub-plans, and those theirs."""
-    for index, node in enumerate(plan.node.subplans):
-        inner = Plan(node, label_of(node, number), float(index))
+    for node in plan.node.subplans:
+        inner = Plan(node, label_of(node, number))
         inner.scope = plan
         plan.subplans.append(with_subplans(inner, number))
     return plan

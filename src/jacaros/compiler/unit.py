@@ -7,6 +7,7 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.compiler import runtime
+from jacaros.compiler.bodies import BodyCompiler
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.selection import SelectCompiler, compile_goal_condition, compile_rule
@@ -82,10 +83,20 @@ def compile_select(
     for plan, achieved in conditions.items():
         plan.goal_condition = unit.globals[achieved]
     for plan, body, first in compiler.bodies:
-        plan.first = unit.globals[first] if first != "None" else None
-        plan.steps = {unit.globals[step]: info for step, info in body.infos.items()}
+        install_body(unit, plan, body, first)
     select: Select = unit.globals[name]
     return select, "\n".join(unit.source)
+
+
+def install_body(unit: CodeUnit, plan: Plan, body: BodyCompiler, first: str) -> None:
+    """Give a plan its compiled body.  What is known of a step is kept with its function: a frame may still be at a step
+    of an earlier unit when the plan is compiled again.
+    """
+    plan.first = unit.globals[first] if first != "None" else None
+    plan.steps = body.infos
+    for name, info in body.infos.items():
+        function = unit.globals[name]
+        function.info, function.steps = info, body.infos
 
 
 def compile_rule_function(rule: nodes.Rule, actions: Mapping[str, ActionInfo]) -> FunctionType:

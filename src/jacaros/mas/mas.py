@@ -10,7 +10,9 @@ import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.errors import AslError
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
+from jacaros.bdi.internal_action import STANDARD
 from jacaros.bdi.options import Options
+from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.compiler.lowering import lower_value
@@ -73,6 +75,7 @@ class Mas:
         self._ending = False
         self._error: BaseException | None = None
         self._idle_looks = 0
+        self._plans: dict[int, ProgramPlans] = {}
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
         """Run the project until it ends; the exit code.
@@ -141,13 +144,22 @@ class Mas:
     def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
         name = spec.name
         host = AgentHost(name, self, Random(f"{self._seed}/{name}"))
-        host.mind = Agent(name, _initial(spec, program), host, _options(spec))
+        plans = self._plans_of(program)
+        host.mind = Agent(name, _initial(spec, program), host, _options(spec), plans=plans)
         self.directory.add(name, host)
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
         if self._surroundings is not None:
             host.body = self._surroundings.situated_body(host, spec)
         return host
+
+    def _plans_of(self, program: Program) -> ProgramPlans:
+        """The plans of a program: agents that run the same one share them, compiled."""
+        made = self._plans.get(id(program.plans))
+        if made is None:
+            made = ProgramPlans(program.plans, STANDARD)
+            self._plans[id(program.plans)] = made
+        return made
 
     # ---- the end
 

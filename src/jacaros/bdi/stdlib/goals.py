@@ -98,15 +98,15 @@ def _means(frame: Any) -> Term:
     goal = resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))
     rest = make_body(
         lower(node, lambda name: values[name] if name in values else Var(name))
-        for node in _remaining(plan, frame[STEP])
+        for node in _remaining(frame[STEP])
     )
     event = trigger(kind.operator + kind.kind, goal)
     return structure("im", plan.label, event, resolve(rest), make_list(bindings))
 
 
-def _remaining(plan: Any, step: Any) -> Iterator[Any]:
+def _remaining(step: Any) -> Iterator[Any]:
     """The formulae from a step on, each once."""
-    by_name = {function.__name__: info for function, info in plan.steps.items()}
+    by_name = dict(getattr(step, "steps", {}))
     name = step.__name__ if step is not None else "None"
     while name in by_name:
         info = by_name.pop(name)

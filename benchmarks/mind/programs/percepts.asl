@@ -1,0 +1,6 @@
+// A thousand percepts, ten of which change in each round, each with a plan for it.
+!start.
++!start <- makeArtifact("board", "board.Board", [1000], Id); focus(Id); !rounds($n); .stopMAS.
++!rounds(0).
++!rounds(I) : I > 0 <- change(10); !rounds(I - 1).
+$plans

@@ -1,0 +1,2 @@
++!ball(0) <- .stopMAS.
++!ball(I) : I > 0 <- .send(ping, achieve, ball(I - 1)).

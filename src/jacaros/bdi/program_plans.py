@@ -1,0 +1,71 @@
+"""The plans of one program, made and compiled once for all agents that run it."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+from jacaros.asl import nodes
+from jacaros.compiler.function import ActionInfo
+from jacaros.compiler.plan import Plan, label_of, with_subplans
+from jacaros.compiler.triggers import Trigger
+from jacaros.compiler.unit import Select, compile_select
+
+
+class ProgramPlans:
+    """Plans in the order of the program, and the select functions made from them so far.
+
+    A plan changes no more once it is made; what an agent adds or removes at run time is its own library's business.
+
+    Args:
+        plan_nodes: the syntax.
+        actions: the internal actions that the plans may call.
+    """
+
+    def __init__(self, plan_nodes: Sequence[nodes.Plan], actions: Mapping[str, ActionInfo]) -> None:
+        self.actions = actions
+        self.nodes = plan_nodes  # held, so that nothing else can be at its place in memory
+        self.plans = [
+            with_subplans(Plan(node, label_of(node, number)), number)
+            for number, node in enumerate(plan_nodes, start=1)
+        ]
+        self.sources: dict[Trigger, str] = {}
+        self._selects: dict[Trigger, Select | None] = {}
+
+    def select(self, trigger: Trigger, report: Callable[[str], None]) -> Select | None:
+        """The select function of an event kind; None when no plan concerns it."""
+        if trigger not in self._selects:
+            plans = relevant(self.plans, trigger)
+            self._selects[trigger] = made(trigger, plans, self.actions, self.sources, report)
+        return self._selects[trigger]
+
+
+def relevant(plans: Sequence[Plan], trigger: Trigger) -> list[Plan]:
+    """The candidate plans of an event kind, those with a variable as trigger among them."""
+    return [plan for plan in plans if concerns(plan, trigger)]
+
+
+def concerns(plan: Plan, trigger: Trigger) -> bool:
+    """Whether a plan is a candidate for an event kind."""
+    head = plan.node.trigger
+    return (
+        head.operator == trigger.operator
+        and head.kind == trigger.kind
+        and (plan.has_variable_trigger() or plan.trigger_functor() is trigger.functor)
+    )
+
+
+def made(
+    trigger: Trigger,
+    plans: Sequence[Plan],
+    actions: Mapping[str, ActionInfo],
+    sources: dict[Trigger, str],
+    report: Callable[[str], None],
+) -> Select | None:
+    """Compile the select function of an event kind; its text goes to *sources*, what is wrong to *report*."""
+    if not plans:
+        return None
+    try:
+        select, sources[trigger] = compile_select(trigger, plans, actions)
+    except (SyntaxError, RecursionError) as fault:
+        # Python's limits for one function; a program meets them with formulae of some hundred operators.
+        report(f"the plans for {trigger!r} are too large to be compiled: {fault}")
+        return None
+    return select

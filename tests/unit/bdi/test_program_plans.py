@@ -1,0 +1,72 @@
+"""Plans made once for all agents of a program: shared while untouched, each agent's own when it changes them."""
+
+from recording_host import RecordingHost
+
+from jacaros.asl.loader import load_program, parse_literals
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.internal_action import STANDARD
+from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.compiler.lowering import lower_value
+
+PROGRAM = """
++!greet(X) <- .print("hello ", X).
++!learn <- .add_plan({ +!greet(X) : X == bob <- .print("hi ", X) }, self, begin).
++!forget <- .remove_plan(p__1).
+@told +!tell(X) <- .print(told).
++!slow <- .wait(10); .add_plan({ +!slow : other }); .wait(10); ?missing; .print(never).
+-!slow[code_line(L), error(E)] <- .print(E, " in line ", L).
+"""
+
+
+def agents(*names: str) -> list[RecordingHost]:
+    """Agents that share the plans of one program."""
+    program, _ = load_program("shared.asl", PROGRAM, lambda wanted, including: (wanted, ""))
+    plans = ProgramPlans(program.plans, STANDARD)
+    hosts = []
+    for name in names:
+        host = RecordingHost(None)
+        host.agent = Agent(name, program, host, plans=plans)
+        host.agent.start()
+        hosts.append(host)
+    return hosts
+
+
+def adopt(host: RecordingHost, goal: str) -> None:
+    """Let an agent adopt a goal, and run."""
+    host.agent.post_goal(lower_value(parse_literals(goal, "test")[0]))
+    host.run()
+
+
+def test_the_select_function_is_made_once() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "greet(bob)")
+    adopt(second, "greet(ann)")
+    assert (first.printed, second.printed) == (["hello bob"], ["hello ann"])
+    kinds = [kind for kind in first.agent.selects if kind.functor.name == "greet" and kind.operator == "+"]
+    assert first.agent.selects[kinds[0]] is second.agent.selects[kinds[0]]
+
+
+def test_an_added_plan_is_the_agents_own() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "greet(bob)")
+    adopt(first, "learn")
+    adopt(first, "greet(bob)")
+    adopt(second, "greet(bob)")
+    assert first.printed == ["hello bob", "hi bob"]
+    assert second.printed == ["hello bob"]
+
+
+def test_a_removed_plan_is_missing_for_that_agent_only() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "forget")
+    adopt(first, "greet(bob)")
+    adopt(second, "greet(bob)")
+    assert first.printed == []
+    assert second.printed == ["hello bob"]
+
+
+def test_a_plan_under_way_keeps_its_place_when_its_kind_is_compiled_again() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "slow")
+    adopt(second, "slow")
+    assert first.printed == second.printed == ["test_goal_failed in line 6"]
