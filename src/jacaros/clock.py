@@ -131,14 +131,20 @@ class VirtualClock:
             self._cycles -= self.CYCLES_PER_MILLISECOND
             self._move_to(self.elapsed + 0.001)
 
-    def advance(self) -> bool:
-        """Jump to the next timer, with it ring all of that moment; False when there is none."""
+    def advance(self, at_most: float | None = None) -> bool:
+        """Jump to the next timer, with it ring all of that moment; False when there is none.
+
+        Args:
+            at_most: seconds to move if the next timer is further away, or if there is none.
+        """
         while self._timers and self._timers[0].cancelled:
             heapq.heappop(self._timers)
-        if not self._timers:
+        limit = None if at_most is None else self.elapsed + at_most
+        if not self._timers and limit is None:
             return False
         self._cycles = 0
-        self._move_to(self._timers[0].when)
+        moments = [timer.when for timer in self._timers[:1]]
+        self._move_to(min(moments if limit is None else [*moments, limit]))
         return True
 
     def _move_to(self, moment: float) -> None:
@@ -179,17 +185,21 @@ class _VirtualSelector(selectors.DefaultSelector):
         events = super().select(0)
         if events:
             return events
-        if not self.foreign_work and self.clock.advance():
+        if not self.foreign_work and self.clock.advance(timeout):
             return []
         return super().select(timeout)
 
 
 class VirtualEventLoop(asyncio.SelectorEventLoop):
-    """An asyncio loop whose waiting is done on a virtual clock."""
+    """An asyncio loop whose waiting is done on a virtual clock: ``asyncio.sleep`` and time-outs take no real time."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self.virtual_selector = _VirtualSelector(clock)
         super().__init__(self.virtual_selector)
+
+    def time(self) -> float:
+        """Seconds of virtual time since the beginning."""
+        return self.virtual_selector.clock.elapsed
 
     def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
         self, executor: Any, func: Any, *args: Any

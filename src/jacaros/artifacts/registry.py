@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 
-from jacaros.artifacts.project_modules import load_project_modules
 from jacaros.artifacts.ros.battery import ArtSimBattery
 from jacaros.artifacts.ros.cleaning import ArtCleaning
 from jacaros.artifacts.ros.laser import ArtBaseScan, ArtScan
@@ -19,6 +18,7 @@ from jacaros.artifacts.ros.velocity import (
     ArtCmdVelMuxAndOdometry,
 )
 from jacaros.env import Artifact, UnknownArtifactType
+from jacaros.project_modules import ProjectModules
 
 BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
     {
@@ -41,17 +41,24 @@ BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
 )
 """The artifacts of jacaros by their bare names."""
 
+ARTIFACTS = "artifacts"
+"""Name of the module of a project's own artifacts."""
+
 ALIASES = ("jason.architecture.", "jacaros.")
 """Package names under which the thesis's programs ask for the built-in artifacts."""
 
 
-def type_finder(folder: Path | str | None) -> Callable[[str], type[Artifact]]:
-    """Make the look-up for the project in *folder*, with its own artifacts loaded once; None: no project.
+def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], type[Artifact]]:
+    """Make the look-up for a project (its modules, or its folder), with its own artifacts loaded once.
+
+    The artifacts of a project are in ``artifacts.py``, or in a package ``artifacts/``; None stands for no project.
 
     Raises:
-        ArtifactsUnreadable: the project's artifact file has a mistake.
+        ModuleUnreadable: the project's artifact file has a mistake.
     """
-    modules = load_project_modules(folder) if folder is not None else ()
+    if isinstance(project, Path | str):
+        project = ProjectModules(project)
+    modules = project.load(ARTIFACTS) if project is not None else ()
     return lambda name: find_type(name, modules)
 
 

@@ -4,9 +4,9 @@ A mind does no input or output of its own: it is given things by `Agent.receive`
 `Agent.complete`, and reaches out through this port alone.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from random import Random
-from typing import Protocol
+from typing import Any, Protocol
 
 from jacaros.bdi.act import Act
 from jacaros.bdi.speech_act import SpeechAct
@@ -33,6 +33,14 @@ class Architecture(Protocol):
 
     def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* after *delay* seconds of the run's clock."""
+
+    def start_coroutine(
+        self, coroutine: Coroutine[Any, Any, Any], ended: Callable[[object, BaseException | None], None]
+    ) -> Timer:
+        """Run a coroutine of the project's Python code beside the agent.
+
+        *ended* is told what it returned, or the exception that ended it; not after it was cancelled.
+        """
 
     def act(self, act: Act) -> None:
         """Begin an external action; `Agent.complete` tells its end (later, or from within this call)."""

@@ -51,6 +51,7 @@ class Circumstance:
         outer_frame: frame of the plan whose sub-plans are being tried.
         cycles: number of steps made.
         stopped: the agent is over.
+        face: what the project's Python code sees of the agent; made when it is first asked for.
     """
 
     def __init__(
@@ -91,6 +92,7 @@ class Circumstance:
         self.outer_frame: Any = None
         self.cycles = 0
         self.stopped = False
+        self.face: Any = None
         self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}
         self.plans_made = len(plans.plans)
         self.bodies: dict[int, tuple[Term, Any]] = {}

@@ -13,6 +13,7 @@ from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.failure import FailureReason
 from jacaros.bdi.forks import branch_failed
 from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.internal_action import Crashed
 from jacaros.bdi.stack import cut
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
@@ -403,7 +404,9 @@ def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # no
 
 def _report(agent: Circumstance, fault: Exception) -> None:
     """Python errors inside internal actions are shown to people as well as to the plan."""
-    if not isinstance(fault, Fail) and agent.options.verbose > 1:
+    if isinstance(fault, Crashed):
+        agent.architecture.log("error", str(fault))
+    elif not isinstance(fault, Fail) and agent.options.verbose > 1:
         agent.architecture.log("debug", f"{type(fault).__name__}: {fault}")
 
 

@@ -37,6 +37,10 @@ class ActionError(Exception):
         self.annotations = annotations
 
 
+class Crashed(Exception):
+    """Mixed into the failures of a project's own Python code that nobody meant: people are told of them too."""
+
+
 @dataclass(frozen=True, slots=True)
 class InternalAction:
     """An internal action as the registry keeps it.

@@ -1,8 +1,8 @@
 """What stands between one mind and its run: Jason's agent architecture."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from random import Random
-from typing import Protocol
+from typing import Any, Protocol
 
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.architecture import Timer
@@ -10,6 +10,7 @@ from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.console import Console
+from jacaros.mas.coroutines import Coroutines, Ended
 from jacaros.mas.scheduler import Scheduler
 from jacaros.terms.values import String, Term, atom, functor
 
@@ -104,6 +105,7 @@ class AgentHost:
         mind: set before the first turn.
         body: what carries its actions out, None while there is none.
         make_body: makes the body for the first action; None in a project without environment.
+        coroutines: of the project's Python code that run for the agent.
     """
 
     mind: Mind
@@ -114,6 +116,7 @@ class AgentHost:
         self.queued = False
         self.body: Body | None = None
         self.make_body: Callable[[], Body] | None = None
+        self.coroutines = Coroutines(run.activity)
         self._run = run
         self._ended = False
 
@@ -127,7 +130,8 @@ class AgentHost:
         self.mind.stopped = True
 
     def end(self) -> None:
-        """Give up all actions and focused artifacts."""
+        """Give up all actions, coroutines and focused artifacts."""
+        self.coroutines.cancel()
         if self.body is not None:
             self.body.close()
 
@@ -149,6 +153,10 @@ class AgentHost:
     def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* after *delay* seconds."""
         return AgentTimer(self._run.clock, self._run.activity, delay, callback)
+
+    def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> Timer:
+        """Run a coroutine of the project's Python code beside the mind."""
+        return self.coroutines.start(coroutine, ended)
 
     def act(self, act: Act) -> None:
         """Begin an external action; without an environment it fails at once."""

@@ -26,6 +26,7 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.programs import Programs
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
+from jacaros.project_modules import ProjectModules
 from jacaros.terms import arithmetic
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ class Mas:
         self._surroundings: Surroundings | None = None
         log = self.console.log
         self.ros = RosGraph(self.options, clock, deployment.name, deployment.world, log)
+        self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
         self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"))
         self._mailboxes = Mailboxes(self._mailbox_of)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
@@ -137,7 +139,7 @@ class Mas:
                 {"ros": self.ros.backend, "console": lambda: self.console.print, "random": lambda: random}
             )
             self._surroundings = Surroundings(
-                self.deployment, self.clock, resources, self.console, self.activity, self.fail
+                self.deployment, self._modules, self.clock, resources, self.console, self.activity, self.fail
             )
         return self._surroundings
 

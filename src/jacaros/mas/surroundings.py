@@ -24,6 +24,7 @@ from jacaros.mas.deployment import (
     WorkspaceSpec,
     has_own_artifacts,
 )
+from jacaros.project_modules import ProjectModules
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -53,8 +54,8 @@ class TypeFinder:
     those that come with JaCaROS are imported when the first artifact is made.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, modules: ProjectModules) -> None:
+        self._modules = modules
         self._find: Callable[[str], type[Artifact]] | None = None
         if has_own_artifacts(folder):
             self._prepare()
@@ -66,7 +67,7 @@ class TypeFinder:
     def _prepare(self) -> "Callable[[str], type[Artifact]]":
         from jacaros.artifacts.registry import type_finder
 
-        self._find = type_finder(self._folder)
+        self._find = type_finder(self._modules)
         return self._find
 
 
@@ -77,6 +78,7 @@ class Surroundings:
 
     Args:
         deployment: what the project declares.
+        modules: its Python files.
         clock: of the run.
         resources: what artifacts are lent.
         console: for what artifacts log.
@@ -87,19 +89,20 @@ class Surroundings:
         environment: all workspaces and artifacts.
 
     Raises:
-        ArtifactsUnreadable: the project's own artifacts have a mistake.
+        ModuleUnreadable: the project's own artifacts have a mistake.
     """
 
     def __init__(
         self,
         deployment: Deployment,
+        modules: ProjectModules,
         clock: Clock,
         resources: Mapping[str, object],
         console: Console,
         activity: Activity,
         on_internal_error: Callable[[BaseException], None],
     ) -> None:
-        find_type = TypeFinder(deployment.base_path)
+        find_type = TypeFinder(deployment.base_path, modules)
         self.environment = Environment(clock, resources, find_type, console.log, on_internal_error)
         self._console = console
         self._activity = activity

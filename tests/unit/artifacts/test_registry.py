@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.artifacts.project_modules import ArtifactsUnreadable, load_project_modules
 from jacaros.artifacts.registry import BUILT_IN, find_type, type_finder
 from jacaros.artifacts.ros.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.clock import VirtualClock, run
 from jacaros.env import Artifact, Environment, UnknownArtifactType
+from jacaros.project_modules import ModuleUnreadable
 from jacaros.ros.open import open_backend
 
 COUNTER = """
@@ -100,7 +100,8 @@ def test_a_package_of_artifacts_is_searched_file_by_file(tmp_path: Path, entry: 
 
 
 def test_a_folder_without_artifacts_brings_none(tmp_path: Path) -> None:
-    assert load_project_modules(tmp_path) == ()
+    with pytest.raises(UnknownArtifactType):
+        type_finder(tmp_path)("Counter")
     assert type_finder(None)("ArtOdometry") is ArtOdometry
 
 
@@ -117,8 +118,8 @@ def test_a_mistake_in_the_file_is_told_with_its_line(tmp_path: Path, text: str, 
     write(tmp_path, "helping.py", "\nundefined_name\n")
     write(tmp_path, "artifacts.py", text)
     before = set(sys.modules)
-    with pytest.raises(ArtifactsUnreadable) as wrong:
-        load_project_modules(tmp_path)
+    with pytest.raises(ModuleUnreadable) as wrong:
+        type_finder(tmp_path)
     assert message in str(wrong.value)
     assert set(sys.modules) == before
 

@@ -1,0 +1,212 @@
+"""Agents as Python code sees them, and the class to be subclassed for agents of one's own."""
+
+from collections.abc import Callable, Iterator, Sequence
+from random import Random
+from typing import Any
+
+from jacaros.asl.loader import parse_formula
+from jacaros.bdi import belief_update
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.body.values import to_value
+from jacaros.compiler.lowering import Names, lower
+from jacaros.compiler.runtime import run
+from jacaros.extension.literal import Literal, literal_of, literal_term, term_of
+from jacaros.extension.views import Event, Intention, Message, Option, Percept
+from jacaros.terms.text import text
+from jacaros.terms.unifier import rename, resolve, undo
+
+
+class Agent:
+    """An agent.  Internal actions are given one; subclasses change how an agent works.
+
+    A subclass is named in the project file: ``agents: bob agentClass my.Careful;`` in a ``.mas2j`` file,
+    ``agent bob { ag-class: my.Careful }`` in a ``.jcm`` file.  It overrides what it wants to change among `init`,
+    the selection functions (`select_event`, `select_option`, `select_intention`, `select_message`), `brf`, `buf`,
+    `soc_acc` and `kill_acc`; what it does not override costs nothing.  An exception in one of them is told in the
+    log, and the default is done in its place.
+    """
+
+    _mind: Any
+
+    # --- what may be overridden ----------------------------------------------------------------------------
+
+    def init(self, *arguments: Any) -> None:
+        """Called before the agent begins, with the arguments of ``agentClass my.Careful(1, fast)``."""
+
+    def select_event(self, events: Sequence[Event]) -> Event:
+        """Choose the event to be handled next; asked when there are several, oldest first."""
+        return events[0]
+
+    def select_option(self, options: Sequence[Option]) -> Option | None:
+        """Choose among the applicable plans of an event, in the order of the program.
+
+        None means that no plan is to be used.  Sub-plans are not asked about.
+        """
+        return options[0]
+
+    def select_intention(self, intentions: Sequence[Intention]) -> Intention:
+        """Choose the intention to make the next step; asked when there are several, in the order of their turns.
+
+        An atomic intention goes first without asking.
+        """
+        return intentions[0]
+
+    def select_message(self, messages: Sequence[Message]) -> Message:
+        """Choose the message to be read next; asked when there are several, oldest first."""
+        return messages[0]
+
+    def brf(
+        self, added: Literal | None, removed: Literal | None, intention: Intention | None
+    ) -> bool | None:
+        """Revise beliefs: asked before a plan or a message adds or removes one.
+
+        Args:
+            added, removed: one of them; what is removed may hold variables, unset `Out` objects.
+            intention: whose step it is; None for a message.
+
+        Returns:
+            False to refuse: the step fails with ``error(belief_revision_failed)``, the message is passed over.
+        """
+        return True
+
+    def buf(self, percepts: Sequence[Percept]) -> Sequence[Percept]:
+        """Update beliefs: what is noticed of these changes in the environment; the others leave no trace."""
+        return percepts
+
+    def soc_acc(self, message: Message) -> bool:
+        """Whether a message is acceptable; others are passed over.  Answers to own questions are not asked about."""
+        return True
+
+    def kill_acc(self, killer: str) -> bool:
+        """Whether the agent called *killer* may end this one by ``.kill_agent``."""
+        return True
+
+    # --- what an agent offers ------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        name: str = self._mind.name
+        return name
+
+    @property
+    def random(self) -> Random:
+        """Its random numbers, which follow from the seed of the run."""
+        random: Random = self._mind.architecture.random
+        return random
+
+    def now(self) -> float:
+        """The time of the run's clock: seconds since the Unix epoch."""
+        now: float = self._mind.architecture.now()
+        return now
+
+    def print(self, *values: object) -> None:
+        """Print a line as ``.print`` does."""
+        shown = (value if isinstance(value, str) else text(term_of(value)) for value in values)
+        self._mind.architecture.print("".join(str(value) for value in shown))
+
+    def log(self, message: str, level: str = "info") -> None:
+        """Tell people something; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+        self._mind.architecture.log(level, message)
+
+    def beliefs(self, functor: str | None = None, arity: int | None = None) -> Iterator[Literal]:
+        """Its beliefs (rules are not among them), perhaps only those of one name and number of arguments."""
+        for term in list(self._mind.beliefs.literals()):
+            belief = literal_of(term)
+            if functor in (None, belief.functor) and arity in (None, belief.arity):
+                yield belief
+
+    def ask(self, query: str) -> Iterator[dict[str, Any]]:
+        """The answers of a query such as ``"path(X, Y) & Y > 3"``: the values of its variables by name.
+
+        All of them are looked for at once.
+
+        Raises:
+            AslError: the text is no query.
+        """
+        mind = self._mind
+        names = Names()
+        formula = lower(parse_formula(query), names.__getitem__)
+        mark = len(mind.trail)
+        answers = []
+        for _ in run(mind.solve_formula(formula, mind.trail)):
+            answers.append({name: to_value(resolve(variable)) for name, variable in names.items() if name[:1] != "_"})
+        undo(mind.trail, mark)
+        yield from answers
+
+    def believes(self, query: str) -> bool:
+        """Whether a query has an answer.
+
+        Raises:
+            AslError: the text is no query.
+        """
+        return next(self.ask(query), None) is not None
+
+    def add_belief(self, belief: object) -> None:
+        """Believe something: a text such as ``"position(3, kitchen)"``, or a `Literal`.
+
+        Without a source it is ``source(self)``.  The event comes from outside of all intentions.
+
+        Raises:
+            AslError, ValueError: it is no literal.
+        """
+        belief_update.tell(self._mind, literal_term(belief))
+        self._mind.architecture.ready()
+
+    def remove_belief(self, belief: object) -> bool:
+        """Take a source (``self`` unless one is named) off a belief; False when it is not held.
+
+        Raises:
+            AslError, ValueError: it is no literal.
+        """
+        found = belief_update.untell(self._mind, literal_term(belief))
+        self._mind.architecture.ready()
+        return found
+
+    def achieve(self, goal: object) -> None:
+        """Adopt a goal, as an intention of its own.
+
+        Raises:
+            AslError, ValueError: it is no literal.
+        """
+        self._mind.post_goal(literal_term(goal))
+
+    def send(self, receiver: str, performative: str, content: object) -> bool:
+        """Send a message: a text that is a literal, or another Python value; False when there is no such agent.
+
+        Raises:
+            AslError: the text is no literal.
+        """
+        mind = self._mind
+        term = literal_term(content) if isinstance(content, str) else term_of(content)
+        message = SpeechAct(performative, mind.name, receiver, rename(term), mind.next_message_id())
+        sent: bool = mind.architecture.send(message)
+        return sent
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r})"
+
+
+def agent_of(mind: Circumstance) -> Agent:
+    """What Python code sees of a mind; always the same object."""
+    if mind.face is None:
+        give_face(mind, Agent())
+    face: Agent = mind.face
+    return face
+
+
+def give_face(mind: Circumstance, face: Agent) -> None:
+    """Let Python code see *face* for a mind."""
+    face._mind = mind
+    mind.face = face
+
+
+def overridden(face: Agent, name: str) -> Callable[..., Any] | None:
+    """The method of a subclass that overrides the one of `Agent`, or None."""
+    if getattr(type(face), name) is getattr(Agent, name):
+        return None
+    method: Callable[..., Any] = getattr(face, name)
+    return method
+
+

@@ -1,0 +1,293 @@
+"""How the mind calls a Python function: terms become values, and what it gives is unified."""
+
+import inspect
+import typing
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from jacaros.bdi.context import Context
+from jacaros.bdi.failure import error_terms
+from jacaros.bdi.internal_action import ActionError, Crashed, InternalAction, WrongArguments
+from jacaros.body.values import Outputs, to_value
+from jacaros.env.errors import InvalidArtifact
+from jacaros.env.kernel import signature as operations
+from jacaros.env.values import Out
+from jacaros.extension.agent import Agent, agent_of
+from jacaros.extension.declaring import Declared
+from jacaros.extension.faults import ActionCrashed, FunctionCrashed, action_fault, crash_text
+from jacaros.extension.literal import Literal, literal_of, term_of
+from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.text import text
+from jacaros.terms.unifier import free_variables, resolve
+from jacaros.terms.values import Term, functor_of
+
+_ITERATORS = ("Iterator", "Iterable", "Generator")
+
+
+class Undeclarable(Exception):
+    """A function cannot be what its decorator says; the text tells why and what to do."""
+
+
+def action_of(name: str, declared: Declared) -> InternalAction:
+    """The internal action that a function becomes.
+
+    Raises:
+        Undeclarable: its parameters do not fit.
+    """
+    callee = _Callee(name, declared.function)
+    if inspect.isasyncgenfunction(declared.function):
+        raise Undeclarable("an 'async def' with 'yield' cannot be an internal action; use one of the two")
+    if inspect.iscoroutinefunction(declared.function):
+        return InternalAction(
+            name, callee.begin, suspends=True, minimum=callee.minimum, maximum=callee.maximum
+        )
+    if inspect.isgeneratorfunction(declared.function):
+        return InternalAction(
+            name, callee.answers, backtracks=True, minimum=callee.minimum, maximum=callee.maximum
+        )
+    return InternalAction(name, callee.call, minimum=callee.minimum, maximum=callee.maximum)
+
+
+class _Callee:
+    """A function, with what is known of its parameters.
+
+    Attributes:
+        minimum, maximum: numbers of arguments that programs may give.
+    """
+
+    def __init__(self, name: str, function: Callable[..., Any]) -> None:
+        self.name, self.function = name, function
+        self._wants_agent = _wants_agent(function)
+        self._signature = _signature(function, self._wants_agent)
+        self._gives_value = _gives_value(function)
+        self.minimum = self._signature.fewest + self._gives_value
+        most = len(self._signature.parameters) + self._gives_value
+        self.maximum = None if self._signature.rest is not None else most
+
+    # the three ways of being called
+
+    def call(self, ctx: Context, *terms: Term) -> bool:
+        """A plain function."""
+        call = _Call(self, ctx, terms)
+        try:
+            value = self.function(*call.arguments)
+        except (Exception, SystemExit) as error:
+            raise action_fault(self.name, self.function, error) from error
+        return call.accept(value)
+
+    def answers(self, ctx: Context, *terms: Term) -> Iterator[None]:
+        """A generator: one answer for each value that it yields and that fits."""
+        call = _Call(self, ctx, terms)
+        search = self.function(*call.arguments)
+        while True:
+            try:
+                value = next(search, search)
+            except (Exception, SystemExit) as error:
+                raise action_fault(self.name, self.function, error) from error
+            if value is search:
+                return
+            if call.accept(value):
+                yield
+
+    def begin(self, ctx: Context, *terms: Term) -> Any:
+        """A coroutine: the intention waits for its end."""
+        call = _Call(self, ctx, terms)
+        waiting = ctx.suspend(self.name)
+
+        def ended(value: object, error: BaseException | None) -> None:
+            try:
+                if error is not None:
+                    raise action_fault(self.name, self.function, error)
+                fits = call.accept(value)
+            except Crashed as crashed:
+                ctx.architecture.log("error", str(crashed))
+                waiting.fail(str(crashed), *error_terms("internal_action", str(crashed)))
+            except WrongArguments as wrong:
+                waiting.fail(str(wrong), *error_terms("wrong_arguments", str(wrong)))
+            except ActionError as refused:
+                waiting.fail(str(refused), *refused.annotations, *_message(refused))
+            else:
+                del ctx.trail[:]
+                if fits:
+                    waiting.resume()
+                else:
+                    failed = f"internal action {self.name} failed"
+                    waiting.fail(failed, *error_terms("ia_failed", failed))
+
+        task = ctx.architecture.start_coroutine(self.function(*call.arguments), ended)
+        waiting.on_drop = task.cancel
+        return waiting
+
+    # arguments
+
+    def arguments(
+        self, ctx: Context, terms: tuple[Term, ...], outputs: Outputs, results: list[tuple[Term, Out]]
+    ) -> tuple[object, ...]:
+        """The values for the parameters; *outputs* and *results* take the places of what the function gives.
+
+        Raises:
+            WrongArguments: one is not of the kind that its parameter wants.
+        """
+        signature = self._signature
+        values: list[object] = []
+        for position, term in enumerate(terms):
+            fixed = position < len(signature.parameters)
+            parameter = signature.parameters[position] if fixed else signature.rest
+            if parameter is not None and parameter.output:
+                out = Out()
+                results.append((term, out))
+                values.append(out)
+            elif parameter is not None and parameter.expected == Literal.__name__ and functor_of(term):
+                values.append(literal_of(term, outputs))
+            else:
+                values.append(to_value(term, outputs))
+        try:
+            bound = signature.bind(tuple(values))
+        except operations.WrongArguments as wrong:
+            raise WrongArguments(f"{self.name}: {wrong}") from None
+        return (agent_of(ctx.agent), *bound) if self._wants_agent else bound
+
+    @property
+    def gives_value(self) -> bool:
+        """Whether it declares what it returns: programs then give one more argument."""
+        return self._gives_value
+
+
+class _Call:
+    """One call: the values for the function, and where the results go."""
+
+    def __init__(self, callee: _Callee, ctx: Context, terms: tuple[Term, ...]) -> None:
+        self._callee, self._ctx = callee, ctx
+        self._outputs: Outputs = []
+        self._results: list[tuple[Term, Out]] = []
+        self._last: Term = None
+        if callee.gives_value:
+            *rest, self._last = terms
+            terms = tuple(rest)
+        self.arguments = callee.arguments(ctx, terms, self._outputs, self._results)
+
+    def accept(self, value: object) -> bool:
+        """Unify what the function gave; False when it does not fit, or when the function says so.
+
+        Raises:
+            ActionError: the function gave a value and does not declare one.
+        """
+        pairs: list[tuple[Term, Term]] = []
+        if self._callee.gives_value:
+            if value is None:
+                return False
+            pairs.append((self._last, term_of(value)))
+        elif value is False:
+            return False
+        elif value is not None and value is not True:
+            raise self._undeclared(value)
+        for target, out in (*self._results, *self._outputs):
+            if out.is_set:
+                pairs.append((target, term_of(out.value)))
+        return self._ctx.unify_all(*pairs)
+
+    def _undeclared(self, value: object) -> ActionError:
+        callee = self._callee
+        kind = type(value).__name__
+        return ActionCrashed(
+            f"{callee.name}: the function gives {text(term_of(value))} and does not say so: declare it, as in "
+            f"'def {callee.function.__name__}(...) -> {kind}', and programs take it in one more argument",
+        )
+
+
+def _message(refused: ActionError) -> tuple[Term, ...]:
+    """``error_msg`` of a coroutine's refusal, and its error unless it brings one."""
+    names = {symbol.name for symbol in map(functor_of, refused.annotations) if symbol is not None}
+    return tuple(t for t in error_terms("internal_action", str(refused)) if t[0].name not in names)
+
+
+# --- arithmetic functions ----------------------------------------------------------------------------------
+
+
+def function_of(name: str, declared: Declared) -> tuple[Callable[..., Term], tuple[int, int | None]]:
+    """The evaluator that a function becomes, and the least and greatest number of its arguments.
+
+    Raises:
+        Undeclarable: its parameters do not fit, or it is a generator or coroutine.
+    """
+    function = declared.function
+    if inspect.isgeneratorfunction(function) or inspect.iscoroutinefunction(function):
+        raise Undeclarable("an arithmetic function is a plain function that returns a number")
+    signature = _signature(function, False)
+    if any(parameter.output for parameter in signature.parameters):
+        raise Undeclarable("an arithmetic function returns its number and has no Out parameter")
+    arity = declared.arity
+    if arity is None:
+        limits = (signature.fewest, None if signature.rest is not None else len(signature.parameters))
+    else:
+        limits = (arity, arity) if isinstance(arity, int) else arity
+        if not signature.takes(limits[0]) or (limits[1] is not None and not signature.takes(limits[1])):
+            raise Undeclarable(f"it cannot be called with the numbers of arguments of arity={arity!r}")
+    return _evaluator(name, function, signature), limits
+
+
+def _evaluator(
+    name: str, function: Callable[..., Any], signature: operations.Signature
+) -> Callable[..., Term]:
+    def evaluate(*terms: Term) -> Term:
+        known = [resolve(term) for term in terms]
+        if any(free_variables(term) for term in known):
+            return None
+        try:
+            values = signature.bind(tuple(to_value(term) for term in known))
+        except operations.WrongArguments as wrong:
+            raise ArithmeticFault(f"{name}: {wrong}") from None
+        try:
+            value = function(*values)
+        except (Exception, SystemExit) as error:
+            raise FunctionCrashed(crash_text(name, function, error)) from error
+        number = term_of(value)
+        if number.__class__ is not float:
+            raise FunctionCrashed(f"{name}: the function gives {value!r}, which is no number")
+        return number
+
+    return evaluate
+
+
+# --- signatures --------------------------------------------------------------------------------------------
+
+
+def _signature(function: Callable[..., Any], skip_first: bool) -> operations.Signature:
+    try:
+        return operations.signature_of(function, skip_first)
+    except InvalidArtifact as wrong:
+        raise Undeclarable(str(wrong)) from wrong
+
+
+def _hints(function: Callable[..., Any]) -> dict[str, Any]:
+    """The annotations; those that cannot be resolved stay as they are written."""
+    try:
+        return typing.get_type_hints(function)
+    except Exception:
+        return dict(function.__annotations__)
+
+
+def _wants_agent(function: Callable[..., Any]) -> bool:
+    first = next(iter(inspect.signature(function).parameters), None)
+    hint = _hints(function).get(first) if first is not None else None
+    if isinstance(hint, str):
+        return hint.rpartition(".")[2] == Agent.__name__
+    return isinstance(hint, type) and issubclass(hint, Agent)
+
+
+def _gives_value(function: Callable[..., Any]) -> bool:
+    """Whether the annotation of what a function returns (or yields) names a value."""
+    hint = _hints(function).get("return")
+    if isinstance(hint, str):
+        hint = _written(hint)
+    elif inspect.isgeneratorfunction(function):
+        hint = next(iter(typing.get_args(hint)), None)
+    return hint not in (None, type(None), bool, bool | None, "None", "bool")
+
+
+def _written(hint: str) -> str | None:
+    """What an annotation says that could not be resolved: the value of an iterator, or the whole."""
+    kind, bracket, inner = hint.partition("[")
+    if kind.rpartition(".")[2] in _ITERATORS:
+        return inner.rstrip("]").partition(",")[0].strip() if bracket else None
+    return hint

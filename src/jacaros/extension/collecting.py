@@ -1,0 +1,136 @@
+"""From the modules of a project to what they add to the language."""
+
+from collections.abc import Callable, Iterator
+from difflib import get_close_matches
+from types import ModuleType
+from typing import Any
+
+from jacaros.bdi.internal_action import InternalAction
+from jacaros.errors import JacarosError
+from jacaros.extension.calling import Undeclarable, action_of, function_of
+from jacaros.extension.declaring import ACTION, Declared, declarations
+from jacaros.project_modules import ModuleUnreadable, ProjectModules
+from jacaros.terms.values import Term
+
+Limits = tuple[int, int | None]
+
+
+class Additions:
+    """What the modules of a project add.
+
+    Attributes:
+        actions: internal actions by name.
+        functions: evaluators of arithmetic functions by name.
+        arities: their least and greatest numbers of arguments.
+        plain: names of functions without decorator, as programs would write them.
+    """
+
+    def __init__(self) -> None:
+        self.actions: dict[str, InternalAction] = {}
+        self.functions: dict[str, Callable[..., Term]] = {}
+        self.arities: dict[str, Limits] = {}
+        self.plain: set[str] = set()
+        self._places: dict[str, str] = {}
+
+    def collect(self, modules: ProjectModules, name: str) -> None:
+        """Take what the module *name* (of a package: all its modules) declares.
+
+        Raises:
+            ModuleUnreadable: a file cannot be imported, or declares what cannot be; the text names file and line.
+        """
+        for module in modules.load(name):
+            self._collect_module(modules.name_of(module), module, name.partition(".")[0])
+
+    def _collect_module(self, module_name: str, module: ModuleType, top: str) -> None:
+        for key, value in list(vars(module).items()):
+            if not callable(value) or getattr(value, "__module__", None) != module.__name__:
+                continue
+            default = _default_name(module_name, key)
+            found = declarations(value)
+            if not found and not isinstance(value, type):
+                self.plain.add(default)
+            for declared in found:
+                self._add(declared.name or default, declared, top)
+
+    def _add(self, name: str, declared: Declared, top: str) -> None:
+        place = _place(declared)
+        if name.partition(".")[0] != top:
+            raise ModuleUnreadable(
+                f"{place}: no program can find {name}: it looks for a module {name.partition('.')[0]}; "
+                f"write {top}.{name.rpartition('.')[2]}"
+            )
+        if self._places.get(name, place) != place:
+            raise ModuleUnreadable(f"{place}: {name} is declared twice, also in {self._places[name]}")
+        self._places[name] = place
+        try:
+            if declared.kind == ACTION:
+                self.actions[name] = action_of(name, declared)
+            else:
+                self.functions[name], self.arities[name] = function_of(name, declared)
+        except Undeclarable as wrong:
+            raise ModuleUnreadable(f"{place}: {name}: {wrong}") from wrong
+
+    def hint(self, name: str) -> str | None:
+        """What may help somebody who writes the name of an internal action that there is not."""
+        if name in self.plain:
+            return f"the function {name} exists: put @internal_action before it"
+        if name in self.arities:
+            least, most = self.arities[name]
+            takes = str(least) if least == most else f"{least} to {'any' if most is None else most}"
+            return f"{name} is an arithmetic function with {takes} arguments"
+        close = get_close_matches(name, [*self.actions, *self.arities], 1)
+        return f"did you mean {close[0]}?" if close else None
+
+
+def _default_name(module_name: str, function_name: str) -> str:
+    """``my.norm`` for a function of ``my.py``, and for the function ``norm`` of ``my/norm.py``."""
+    if "." in module_name and module_name.rpartition(".")[2] == function_name:
+        return module_name
+    return f"{module_name}.{function_name}"
+
+
+def _place(declared: Declared) -> str:
+    code = getattr(declared.function, "__code__", None)
+    if code is None:
+        return str(getattr(declared.function, "__module__", "?"))
+    return f"{code.co_filename}:{code.co_firstlineno}"
+
+
+class UnknownClass(JacarosError):
+    """A project file names a class that its Python code does not have."""
+
+
+def find_class(modules: ProjectModules, name: str, kind: type[Any]) -> type[Any] | None:
+    """The subclass of *kind* that ``my.Careful`` names; None when the project has no such module.
+
+    Raises:
+        ModuleUnreadable: the module cannot be imported.
+        UnknownClass: it has no such class; the text says what it has.
+    """
+    path, _, last = name.rpartition(".")
+    found = list(_modules_of(modules, path or last))
+    if not found:
+        return None
+    for module in found:
+        candidate = vars(module).get(last)
+        if isinstance(candidate, type) and issubclass(candidate, kind):
+            return candidate
+    known = sorted(
+        {key for module in found for key, value in vars(module).items() if _is_own(value, kind, module)}
+    )
+    there = f"it has {', '.join(known)}" if known else f"it has no class derived from jacaros.{kind.__name__}"
+    close = get_close_matches(last, known, 1)
+    meant = f"; did you mean {path}.{close[0]}?" if close else ""
+    raise UnknownClass(f"there is no class {last} in {found[0].__file__ or path}: {there}{meant}")
+
+
+def _is_own(value: object, kind: type[Any], module: ModuleType) -> bool:
+    return isinstance(value, type) and issubclass(value, kind) and value.__module__ == module.__name__
+
+
+def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
+    """The module of that path, then those of its package: ``my.Careful`` may stand in ``my/careful.py``."""
+    loaded = list(modules.load(path.partition(".")[0]))
+    if "." in path and modules.place(path) is not None:
+        loaded = list(modules.load(path))
+    yield from loaded

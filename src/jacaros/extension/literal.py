@@ -1,0 +1,132 @@
+"""Beliefs, goals and percepts as Python code sees them."""
+
+from dataclasses import dataclass, replace
+
+from jacaros.asl.loader import parse_literal
+from jacaros.body.values import Outputs, References, symbol_name, to_term, to_value
+from jacaros.compiler.lowering import fresh_names, lower
+from jacaros.env.values import Atom, Structure
+from jacaros.terms.order import annotation_set
+from jacaros.terms.text import text
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import (
+    Annotated,
+    Functor,
+    Term,
+    annotations_of,
+    arguments_of,
+    functor,
+    functor_of,
+)
+
+REFERENCES = References()
+"""The opaque references of Python code: to the same object always the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A literal such as ``~ns::position(3, kitchen)[source(bob)]``.
+
+    Attributes:
+        functor: the name.
+        arguments: Python values, see the table in ``docs/reference/python_extension.md``.
+        annotations: Python values; those with a structure such as ``source(bob)`` are `Structure` objects.
+        negated: whether ``~`` stands in front.
+        namespace: its namespace; None for the default one.
+    """
+
+    functor: str
+    arguments: tuple[object, ...] = ()
+    annotations: tuple[object, ...] = ()
+    negated: bool = False
+    namespace: str | None = None
+
+    @classmethod
+    def parse(cls, written: str) -> "Literal":
+        """The literal in a text; its variables become unset `Out` objects.
+
+        Raises:
+            AslError: the text is no literal.
+        """
+        return literal_of(resolve(lower(parse_literal(written), fresh_names())))
+
+    @property
+    def arity(self) -> int:
+        """The number of arguments."""
+        return len(self.arguments)
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Where it comes from: ``self``, ``percept`` and names of agents."""
+        return tuple(
+            str(annotation.arguments[0])
+            for annotation in self.annotations
+            if isinstance(annotation, Structure) and annotation.functor == "source" and annotation.arguments
+        )
+
+    def with_annotations(self, *annotations: object) -> "Literal":
+        """The literal with further annotations."""
+        return replace(self, annotations=(*self.annotations, *annotations))
+
+    def __str__(self) -> str:
+        return text(term_of(self))
+
+
+def literal_of(term: Term, outputs: Outputs | None = None) -> Literal:
+    """A term that is a literal, as Python code sees it; *outputs* takes its unbound variables.
+
+    Raises:
+        ValueError: the term is no literal.
+    """
+    symbol = functor_of(term)
+    if symbol is None:
+        raise ValueError(f"{text(term)} is no literal")
+    return literal_from(symbol, arguments_of(term), annotations_of(term), outputs)
+
+
+def literal_from(
+    symbol: Functor,
+    arguments: tuple[Term, ...],
+    annotations: tuple[Term, ...],
+    outputs: Outputs | None = None,
+) -> Literal:
+    """A literal in parts, as Python code sees it."""
+    plain = functor(symbol.name, 0)
+    return Literal(
+        symbol_name(plain),
+        tuple(to_value(resolve(argument), outputs) for argument in arguments),
+        tuple(to_value(resolve(annotation), outputs) for annotation in annotations),
+        symbol.negated,
+        symbol.namespace,
+    )
+
+
+def term_of(value: object) -> Term:
+    """The term for a value of Python code; a `Literal` keeps its annotations."""
+    if isinstance(value, Literal):
+        return _literal_term(value)
+    return to_term(value, REFERENCES)
+
+
+def literal_term(value: object) -> Term:
+    """The term of what Python code gives for a literal: a `Literal`, `Structure`, `Atom`, or a text to be read.
+
+    Raises:
+        AslError: the text is no literal.
+        ValueError: the value is none of these.
+    """
+    if isinstance(value, (Literal, Structure, Atom)):
+        return term_of(value)
+    if isinstance(value, str):
+        return resolve(lower(parse_literal(value), fresh_names()))
+    raise ValueError(f"{value!r} is no literal: give a text such as 'position(3, kitchen)', or a Literal")
+
+
+def _literal_term(literal: Literal) -> Term:
+    name = f"~{literal.functor}" if literal.negated else literal.functor
+    if literal.namespace is not None:
+        name = f"{literal.namespace}::{name}"
+    plain = term_of(Structure(name, literal.arguments) if literal.arguments else Atom(name))
+    if not literal.annotations:
+        return plain
+    return Annotated(plain, annotation_set(tuple(map(term_of, literal.annotations))))

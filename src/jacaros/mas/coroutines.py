@@ -1,0 +1,79 @@
+"""The coroutines of internal actions, which run beside the agents that wait for them."""
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from jacaros.mas.activity import Activity
+
+Ended = Callable[[object, BaseException | None], None]
+"""Told what a coroutine returned, or the exception that ended it."""
+
+_PATIENCE = 5.0
+"""Seconds that coroutines have at the end of a run to put their things in order."""
+
+
+class Coroutines:
+    """The coroutines of one agent.
+
+    Args:
+        activity: told of those that somebody waits for.
+    """
+
+    def __init__(self, activity: Activity) -> None:
+        self._activity = activity
+        self._running: set[AgentCoroutine] = set()
+
+    def start(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> "AgentCoroutine":
+        """Run a coroutine; *ended* is called at its end unless it is cancelled before."""
+        running = AgentCoroutine(coroutine, ended, self._activity, self._running.discard)
+        self._running.add(running)
+        return running
+
+    def cancel(self) -> None:
+        """Cancel all."""
+        for running in list(self._running):
+            running.cancel()
+
+    async def close(self) -> None:
+        """Cancel all, and wait until they have put their things in order."""
+        self.cancel()
+        if self._running:
+            await asyncio.wait([running.task for running in self._running], timeout=_PATIENCE)
+
+
+class AgentCoroutine:
+    """One coroutine under way.
+
+    Attributes:
+        task: that runs it.
+    """
+
+    def __init__(
+        self,
+        coroutine: Coroutine[Any, Any, Any],
+        ended: Ended,
+        activity: Activity,
+        over: "Callable[[AgentCoroutine], None]",
+    ) -> None:
+        self._ended, self._activity, self._over = ended, activity, over
+        self._wanted = True
+        activity.begin()
+        self.task = asyncio.get_running_loop().create_task(coroutine)
+        self.task.add_done_callback(self._done)
+
+    def cancel(self) -> None:
+        """Nobody waits for it any more: its ``finally`` blocks run, and nobody is told of its end."""
+        if self._wanted:
+            self._wanted = False
+            self._activity.end()
+            self.task.cancel()
+
+    def _done(self, task: "asyncio.Task[Any]") -> None:
+        self._over(self)
+        error = asyncio.CancelledError("cancelled") if task.cancelled() else task.exception()
+        if not self._wanted:
+            return
+        self._wanted = False
+        self._activity.end()
+        self._ended(None if error is not None else task.result(), error)

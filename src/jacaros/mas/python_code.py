@@ -1,0 +1,120 @@
+"""The Python code of a project, read when a program or the project file first names it."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.bdi.internal_action import STANDARD, InternalAction
+from jacaros.project_modules import ModuleUnreadable, ProjectModules
+from jacaros.terms import arithmetic
+
+if TYPE_CHECKING:
+    from jacaros.extension.collecting import Additions, Limits
+
+HOW_TO = "docs/how-to/extend_in_python.md"
+
+
+class PythonCode:
+    """What a project's Python modules add to its programs.
+
+    The names in a program say what is needed: when the parser meets ``my.norm(X)``, the module ``my`` is imported
+    if the project has one.  A project without Python code pays for none of this.
+
+    Args:
+        modules: the project's modules.
+
+    Attributes:
+        actions: the internal actions of the language and of the modules read so far; shared by all agents.
+        functions: arithmetic functions by name, with their least and greatest numbers of arguments; to be handed
+            to the parser.
+    """
+
+    def __init__(self, modules: ProjectModules) -> None:
+        self.modules = modules
+        self.actions: dict[str, InternalAction] = dict(STANDARD)
+        self.functions: Mapping[str, Limits] = _Functions(self)
+        self._additions: Additions | None = None
+        self._read: dict[str, ModuleUnreadable | None] = {}
+        self._met: dict[str, None] = {}
+        self._replaced: dict[str, Any] = {}
+
+    def name_met(self, name: str) -> None:
+        """A program uses a name with a dot: import the module that it names, if there is one."""
+        parts = name.split(".")[:-1]
+        for length in range(1, len(parts) + 1):
+            module = ".".join(parts[:length])
+            if module not in self._read:
+                if not module or self.modules.place(module) is None:
+                    return
+                self._read_module(module)
+            self._met[module] = None
+
+    def _read_module(self, module: str) -> None:
+        # Imported here: most projects have no Python code.
+        from jacaros.extension.collecting import Additions
+
+        if self._additions is None:
+            self._additions = Additions()
+        try:
+            self._additions.collect(self.modules, module)
+            self._read[module] = None
+        except ModuleUnreadable as wrong:
+            self._read[module] = wrong
+        self.actions.update(self._additions.actions)
+        for name, evaluator in self._additions.functions.items():
+            if arithmetic.functions.get(name) is not evaluator:
+                self._replaced.setdefault(name, arithmetic.functions.get(name))
+                arithmetic.functions[name] = evaluator
+
+    def take_errors(self) -> list[Diagnostic]:
+        """What is wrong with the modules that programs named since the last call."""
+        wrong = [error for name in self._met if (error := self._read.get(name)) is not None]
+        self._met.clear()
+        return [Diagnostic("error", str(error), None, "no program that uses it can run") for error in wrong]
+
+    def hint(self, name: str) -> str | None:
+        """What to do about an internal action that is not there."""
+        known = self._additions.hint(name) if self._additions is not None else None
+        if known is not None or name.startswith("."):
+            return known
+        module, _, function = name.rpartition(".")
+        file = f"{module.replace('.', '/')}.py"
+        if self.modules.place(module.partition(".")[0]) is not None:
+            return f"{file} has no such function with @internal_action"
+        return f"write it in Python: a function {function} with @internal_action in {file} beside the project"
+
+    def close(self) -> None:
+        """Take the arithmetic functions of this project back."""
+        for name, before in self._replaced.items():
+            if before is None:
+                arithmetic.functions.pop(name, None)
+            else:
+                arithmetic.functions[name] = before
+        self._replaced.clear()
+
+
+class _Functions(dict[str, Any]):
+    """The arithmetic functions of a project; asking for one imports the module that it names."""
+
+    def __init__(self, code: PythonCode) -> None:
+        super().__init__()
+        self._code = code
+
+    def get(self, name: str, default: Any = None) -> Any:
+        self._code.name_met(name)
+        additions = self._code._additions
+        return default if additions is None else additions.arities.get(name, default)
+
+
+def names_of(modules: ProjectModules, *names: str) -> tuple[set[str], set[str]]:
+    """The names of the internal actions and of the arithmetic functions that modules of a project define.
+
+    Raises:
+        ModuleUnreadable: a module cannot be imported.
+    """
+    from jacaros.extension.collecting import Additions
+
+    additions = Additions()
+    for name in names:
+        additions.collect(modules, name)
+    return set(additions.actions), set(additions.functions)

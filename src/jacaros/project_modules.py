@@ -1,0 +1,150 @@
+"""The Python files that a project brings along: ``NAME.py``, or a package ``NAME/``, in its folders.
+
+Artifacts (``artifacts.py``), internal actions, agent classes and belief bases are all found here.  The files are
+loaded under module names of their own, so that several projects with files of the same names can live in one
+process; the import path is as before when the loading is over.
+"""
+
+import importlib.util
+import itertools
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+
+from jacaros.errors import JacarosError
+
+_numbers = itertools.count(1)
+
+
+class ModuleUnreadable(JacarosError):
+    """A project's Python file cannot be imported; the original error is the ``__cause__``."""
+
+
+class ProjectModules:
+    """The Python modules of one project; each is loaded once, when it is first asked for.
+
+    A file may import others of the project by plain names (``import gripper``) while it is loaded, and those of
+    its package by relative names (``from .gripper import Gripper``).  Whoever imports one gets the same module.
+
+    Args:
+        folders: where the files are looked for, in order.
+    """
+
+    def __init__(self, *folders: Path | str) -> None:
+        self.folders = tuple(dict.fromkeys(Path(folder).resolve() for folder in folders))
+        self._prefix = f"jacaros_project_{next(_numbers)}"
+        self._loaded: dict[str, tuple[ModuleType, ...]] = {}
+        # By the names under which the project's own files import them.
+        self._modules: dict[str, ModuleType] = {}
+
+    def place(self, name: str) -> Path | None:
+        """The file or the folder of a module such as ``my`` or ``my.shapes``; None when there is none."""
+        parts = name.split(".")
+        if not all(part.isidentifier() for part in parts):
+            return None
+        for folder in self.folders:
+            package = folder.joinpath(*parts)
+            single = package.parent / f"{package.name}.py"
+            if single.is_file():
+                return single
+            if package.is_dir() and next(package.glob("*.py"), None) is not None:
+                return package
+        return None
+
+    def load(self, name: str) -> tuple[ModuleType, ...]:
+        """The module called *name*; of a package all modules, its own first.  Empty when there is none.
+
+        Raises:
+            ModuleUnreadable: a file has a mistake; the text names file and line.
+        """
+        found = self._loaded.get(name)
+        if found is None:
+            place = self.place(name)
+            if place is None:
+                return ()
+            found = self._loaded[name] = (
+                (self._file(name, place),) if place.is_file() else self._package(name, place)
+            )
+        return found
+
+    def name_of(self, module: ModuleType) -> str:
+        """The name by which the project knows a module, such as ``my.geometry``."""
+        return module.__name__.removeprefix(f"{self._prefix}.")
+
+    def _package(self, name: str, folder: Path) -> tuple[ModuleType, ...]:
+        entry = folder / "__init__.py"
+        first = self._file(name, entry, folder) if entry.is_file() else self._empty_package(name, folder)
+        rest = [file for file in sorted(folder.glob("*.py")) if file != entry]
+        return (first, *(self._file(f"{name}.{file.stem}", file) for file in rest))
+
+    def _empty_package(self, name: str, folder: Path) -> ModuleType:
+        module = self._modules.get(name) or ModuleType(f"{self._prefix}.{name}")
+        module.__path__ = [str(folder)]
+        sys.modules[f"{self._prefix}.{name}"] = self._modules[name] = module
+        return module
+
+    def _file(self, name: str, file: Path, package: Path | None = None) -> ModuleType:
+        known = self._modules.get(name)
+        if known is not None:
+            return known
+        full = f"{self._prefix}.{name}"
+        locations = [str(package)] if package is not None else None
+        spec = importlib.util.spec_from_file_location(full, file, submodule_search_locations=locations)
+        assert spec is not None, file
+        assert spec.loader is not None, file
+        module = sys.modules[full] = self._modules[name] = importlib.util.module_from_spec(spec)
+        try:
+            with self._importing():
+                spec.loader.exec_module(module)
+        except (Exception, SystemExit) as error:
+            del sys.modules[full], self._modules[name]
+            raise ModuleUnreadable(_where(error, file)) from error
+        return module
+
+    @contextmanager
+    def _importing(self) -> Iterator[None]:
+        """Let imports find the project's files first, and take those files out of the module table again."""
+        before = set(sys.modules)
+        shown = {name: module for name, module in self._modules.items() if name not in before}
+        sys.modules.update(shown)
+        paths = [str(folder) for folder in self.folders]
+        sys.path[:0] = paths
+        try:
+            yield
+        finally:
+            for path in paths:
+                sys.path.remove(path)
+            for name in [name for name in sys.modules if name not in before]:
+                module = sys.modules[name]
+                if name.startswith(f"{self._prefix}."):
+                    self._modules.setdefault(name.removeprefix(f"{self._prefix}."), module)
+                elif name in shown or self._is_own(module):
+                    self._modules.setdefault(name, module)
+                    del sys.modules[name]
+
+    def _is_own(self, module: ModuleType) -> bool:
+        file = getattr(module, "__file__", None)
+        if file is None:
+            return False
+        return any(Path(file).resolve().is_relative_to(folder) for folder in self.folders)
+
+
+def _where(error: BaseException, file: Path) -> str:
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}:{error.lineno}: {error.msg}"
+    place, line = place_of(error, file.parent) or (file, 1)
+    return f"{place}:{line}: {type(error).__name__}: {error}"
+
+
+def place_of(error: BaseException, folder: Path) -> tuple[Path, int] | None:
+    """The innermost line of a file in *folder* that *error* came through; None when there is none."""
+    found = None
+    step = error.__traceback__
+    while step is not None:
+        file = Path(step.tb_frame.f_code.co_filename)
+        if file.is_relative_to(folder):
+            found = (file, step.tb_lineno)
+        step = step.tb_next
+    return found
