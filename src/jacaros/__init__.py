@@ -1,3 +1,69 @@
-"""Program robots as rational agents: AgentSpeak minds, artifacts and ROS, in Python."""
+"""Program robots as rational agents: AgentSpeak minds, artifacts and ROS, in Python.
+
+What projects write in Python imports its names from here: ``from jacaros import internal_action, Agent, Out``.  Each
+is loaded when it is first used, so that ``import jacaros`` costs nothing.
+"""
+
+from importlib import import_module
+
+TYPE_CHECKING = (
+    False  # as type checkers see it; the typing module alone takes longer to import than all of this
+)
+
+if TYPE_CHECKING:
+    from jacaros.bdi.internal_action import ActionError, WrongArguments
+    from jacaros.env.values import Atom, Out, Structure
+    from jacaros.extension.agent import Agent
+    from jacaros.extension.declaring import arithmetic_function, internal_action
+    from jacaros.extension.literal import Literal
+    from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "ActionError",
+    "Agent",
+    "Atom",
+    "Event",
+    "Intention",
+    "Literal",
+    "Message",
+    "Option",
+    "Out",
+    "Percept",
+    "Plan",
+    "Structure",
+    "WrongArguments",
+    "arithmetic_function",
+    "internal_action",
+]
+
+_PLACES = {
+    "ActionError": "jacaros.bdi.internal_action",
+    "Agent": "jacaros.extension.agent",
+    "Atom": "jacaros.env.values",
+    "Event": "jacaros.extension.views",
+    "Intention": "jacaros.extension.views",
+    "Literal": "jacaros.extension.literal",
+    "Message": "jacaros.extension.views",
+    "Option": "jacaros.extension.views",
+    "Out": "jacaros.env.values",
+    "Percept": "jacaros.extension.views",
+    "Plan": "jacaros.extension.views",
+    "Structure": "jacaros.env.values",
+    "WrongArguments": "jacaros.bdi.internal_action",
+    "arithmetic_function": "jacaros.extension.declaring",
+    "internal_action": "jacaros.extension.declaring",
+}
+
+
+def __getattr__(name: str) -> object:
+    place = _PLACES.get(name)
+    if place is None:
+        raise AttributeError(f"module 'jacaros' has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(place), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from difflib import get_close_matches
 from typing import Final
 
@@ -25,9 +25,17 @@ def check(program: nodes.Program, known_internal_actions: Collection[str]) -> li
     return sorted([*check_names(program, known_internal_actions), *singletons], key=_place)
 
 
-def check_names(program: nodes.Program, known_internal_actions: Collection[str]) -> list[Diagnostic]:
-    """The warnings of `check` that are nearly always mistakes: names of actions and goals that lead nowhere."""
-    found = [*_unknown_internal_actions(program, known_internal_actions), *_goals_without_plan(program)]
+def check_names(
+    program: nodes.Program,
+    known_internal_actions: Collection[str],
+    hint: Callable[[str], str | None] | None = None,
+) -> list[Diagnostic]:
+    """The warnings of `check` that are nearly always mistakes: names of actions and goals that lead nowhere.
+
+    *hint* may know more of an internal action that is not there than that another one has nearly its name.
+    """
+    unknown = _unknown_internal_actions(program, known_internal_actions, hint)
+    found = [*unknown, *_goals_without_plan(program)]
     return sorted(found, key=_place)
 
 
@@ -46,7 +54,9 @@ def _clauses(program: nodes.Program) -> Iterator[_Clause]:
 # internal actions
 
 
-def _unknown_internal_actions(program: nodes.Program, known: Collection[str]) -> Iterator[Diagnostic]:
+def _unknown_internal_actions(
+    program: nodes.Program, known: Collection[str], hint: Callable[[str], str | None] | None
+) -> Iterator[Diagnostic]:
     functions = {function.implementation for function in program.functions}
     for node in walk(program.beliefs, program.plans):
         if not isinstance(node, nodes.InternalAction) or node.name in known or node.name in functions:
@@ -59,7 +69,8 @@ def _unknown_internal_actions(program: nodes.Program, known: Collection[str]) ->
             "warning",
             f"there is no internal action {node.name}",
             node.span,
-            f"did you mean {close[0]}?" if close else None,
+            (hint(node.name) if hint is not None else None)
+            or (f"did you mean {close[0]}?" if close else None),
         )
 
 

@@ -1,10 +1,11 @@
 """The place of the parser in the tokens, and how it reports what is wrong there."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final, NoReturn
 
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.functions import is_function
 from jacaros.asl.lexer import Token
 from jacaros.asl.slips import Slip, known_slip
 from jacaros.asl.source import SourceFile, Span
@@ -31,12 +32,25 @@ class SyntaxPanic(Exception):
 
 @dataclass
 class Names:
-    """What all files of one program share: the numbers given out, and the functions that are registered."""
+    """What all files of one program share: the numbers given out, and the functions that are registered.
+
+    Attributes:
+        functions: those that the program registers, with their numbers of arguments.
+        known: those of the project, with their least and greatest numbers of arguments.
+    """
 
     unnamed: Iterator[int]
     labels: Iterator[int]
     local_namespaces: Iterator[int]
     functions: dict[str, int] = field(default_factory=dict)
+    known: Mapping[str, tuple[int, int | None]] = field(default_factory=dict)
+
+    def is_function(self, name: str, arity: int) -> bool:
+        """Whether *name* with so many arguments is an arithmetic function: of the language, program or project."""
+        if is_function(name, arity, self.functions):
+            return True
+        limits = self.known.get(name)
+        return limits is not None and limits[0] <= arity and (limits[1] is None or arity <= limits[1])
 
 
 class Cursor:

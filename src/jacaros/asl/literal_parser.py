@@ -6,7 +6,6 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Cursor, Names
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.functions import is_function
 from jacaros.asl.lexer import Token, tokenize
 from jacaros.asl.namespaces import Namespaces
 from jacaros.asl.source import SourceFile
@@ -87,7 +86,7 @@ class LiteralParser(Cursor, ABC):
             )
             self._annotations()
         span = self.span_from(start)
-        if is_function(name, len(arguments), self.names.functions):
+        if self.names.is_function(name, len(arguments)):
             return nodes.FunctionCall(name, arguments, span=span)
         return nodes.InternalAction(name, arguments, span=span)
 

@@ -20,19 +20,26 @@ _run_time_names = Names(count(1_000_000), count(1_000_000), count(1_000_000))
 """Numbers for what is read at run time, apart from those of programs."""
 
 
-def load_program(name: str, text: str, read: Read | None = None) -> tuple[nodes.Program, list[Diagnostic]]:
+def load_program(
+    name: str,
+    text: str,
+    read: Read | None = None,
+    functions: Mapping[str, tuple[int, int | None]] | None = None,
+) -> tuple[nodes.Program, list[Diagnostic]]:
     """The program in *text*, with its includes, and the warnings.
 
     Args:
         name: what diagnostics call the file; also given to *read* as the including file.
         text: the AgentSpeak source.
         read: ``read(path, including_name) -> (name, text)`` finds an included file; raises FileNotFoundError.
+        functions: arithmetic functions of the project, with their least and greatest numbers of arguments; it is
+            asked for every name with a dot that is met.
 
     Raises:
         AslError: with all errors of all files.
     """
     diagnostics: list[Diagnostic] = []
-    names = Names(count(1), count(1), count(1))
+    names = Names(count(1), count(1), count(1), known={} if functions is None else functions)
     processor = DirectiveProcessor(read, names, diagnostics)
     section = processor.read_file(SourceFile(name, text))
     check_labels(section.plans, diagnostics)

@@ -10,6 +10,7 @@ from jacaros.bdi.belief_base import OpenFact, literal
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.compiler.runtime import (
     answers_of,
+    cannot_wait,
     deconstruct,
     exists,
     holds,
@@ -167,6 +168,9 @@ def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], t
         action.maximum is not None and len(arguments) > action.maximum
     ):
         refuse_quietly(context, action, len(arguments))
+        return
+    if action.suspends and action.name[0] != ".":
+        cannot_wait(context, action)
         return
     values = [resolve(a) for a in arguments]
     if action.backtracks:

@@ -371,7 +371,9 @@ def _internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then
         return
     constant = fn.constant(action)
     arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
-    if not accepts(action, len(node.arguments)):
+    if action.suspends and fn.quiet and action.name[0] != ".":
+        _undoing(fn, f"cannot_wait(agent.context, {constant})", names, then)
+    elif not accepts(action, len(node.arguments)):
         refusal = "refuse_quietly(agent.context, " if fn.quiet else "refuse("
         _undoing(fn, f"{refusal}{constant}, {len(node.arguments)})", names, then)
     elif not action.backtracks:

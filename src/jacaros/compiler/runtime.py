@@ -231,6 +231,12 @@ def unknown(context: Any, name: str) -> bool:
     return False
 
 
+def cannot_wait(context: Any, action: Any) -> bool:
+    """A condition calls an internal action that may suspend the intention: it does not hold."""
+    context.report(action.name, "it takes time, or acts on the intention, and cannot be a condition")
+    return False
+
+
 def release(variables: list[Var]) -> None:
     """Take back the values of variables that were free when a loop began."""
     for variable in variables:
@@ -372,6 +378,7 @@ _FUNCTIONS = (
     answers_of,
     at_most,
     binary,
+    cannot_wait,
     deconstruct,
     deref,
     divide,

@@ -56,9 +56,7 @@ class Agent:
         """Choose the message to be read next; asked when there are several, oldest first."""
         return messages[0]
 
-    def brf(
-        self, added: Literal | None, removed: Literal | None, intention: Intention | None
-    ) -> bool | None:
+    def brf(self, added: Literal | None, removed: Literal | None, intention: Intention | None) -> bool | None:
         """Revise beliefs: asked before a plan or a message adds or removes one.
 
         Args:
@@ -131,7 +129,9 @@ class Agent:
         mark = len(mind.trail)
         answers = []
         for _ in run(mind.solve_formula(formula, mind.trail)):
-            answers.append({name: to_value(resolve(variable)) for name, variable in names.items() if name[:1] != "_"})
+            answers.append(
+                {name: to_value(resolve(variable)) for name, variable in names.items() if name[:1] != "_"}
+            )
         undo(mind.trail, mark)
         yield from answers
 
@@ -208,5 +208,3 @@ def overridden(face: Agent, name: str) -> Callable[..., Any] | None:
         return None
     method: Callable[..., Any] = getattr(face, name)
     return method
-
-

@@ -24,6 +24,7 @@ from jacaros.mas.directory import Directory
 from jacaros.mas.mailboxes import Mailboxes
 from jacaros.mas.options import RunOptions
 from jacaros.mas.programs import Programs
+from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
 from jacaros.project_modules import ProjectModules
@@ -69,7 +70,8 @@ class Mas:
         log = self.console.log
         self.ros = RosGraph(self.options, clock, deployment.name, deployment.world, log)
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
-        self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"))
+        self._code = PythonCode(self._modules)
+        self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"), self._code)
         self._mailboxes = Mailboxes(self._mailbox_of)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
@@ -147,7 +149,7 @@ class Mas:
         name = spec.name
         host = AgentHost(name, self, Random(f"{self._seed}/{name}"))
         plans = self._plans_of(program)
-        host.mind = Agent(name, _initial(spec, program), host, _options(spec), plans=plans)
+        host.mind = Agent(name, _initial(spec, program), host, _options(spec), self._code.actions, plans)
         self.directory.add(name, host)
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
@@ -186,9 +188,12 @@ class Mas:
         self.end(1)
         for host in self.directory:
             host.end()
+        for host in self.directory:
+            await host.coroutines.close()
         if self._surroundings is not None:
             await self._surroundings.environment.close()
         await self.ros.close()
+        self._code.close()
 
     def _when_idle(self) -> None:
         if self.options.until_idle and not self._ending:

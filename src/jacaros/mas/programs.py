@@ -1,6 +1,6 @@
 """The agent programs of a run: found, read once, shared by all agents that run them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
@@ -10,8 +10,10 @@ from jacaros.asl.checker import check_names
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_literals
-from jacaros.bdi.internal_action import STANDARD
+from jacaros.asl.walk import walk
+from jacaros.bdi.internal_action import STANDARD, InternalAction
 from jacaros.mas.deployment import AgentSpec
+from jacaros.mas.python_code import PythonCode
 
 _LIBRARY = "$jacaros/"
 
@@ -22,10 +24,12 @@ class Programs:
     Args:
         folders: where programs and included files are looked for, in order.
         warn: takes the text of a warning about a program.
+        code: the project's Python code, which adds internal actions and functions.
     """
 
-    def __init__(self, folders: Sequence[Path], warn: Callable[[str], None]) -> None:
+    def __init__(self, folders: Sequence[Path], warn: Callable[[str], None], code: PythonCode) -> None:
         self._folders = tuple(folders)
+        self._code = code
         self._warn = warn
         self._read: dict[Path, nodes.Program] = {}
 
@@ -69,11 +73,23 @@ class Programs:
         """
         program = self._read.get(path)
         if program is None:
-            program, warnings = load_program(str(path), _text(path), self.include)
-            for warning in (*warnings, *check_names(program, STANDARD)):
+            program, warnings = self._parse(path)
+            found = check_names(program, self._code.actions, self._code.hint)
+            for warning in (*warnings, *found, *_waits_in_conditions(program, self._code.actions)):
                 self._warn(warning.render())
             self._read[path] = program
         return program
+
+    def _parse(self, path: Path) -> tuple[nodes.Program, list[Diagnostic]]:
+        """The program in a file; the project's modules that it names are imported, too."""
+        try:
+            program, warnings = load_program(str(path), _text(path), self.include, self._code.functions)
+        except AslError as wrong:
+            raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
+        errors = self._code.take_errors()
+        if errors:
+            raise AslError(errors)
+        return program, warnings
 
     def find(self, name: str) -> Path:
         """The file of a program named by another program.
@@ -101,6 +117,23 @@ class Programs:
         beside = Path(including).parent / path
         file = beside if beside.is_file() else self.find(path)
         return str(file), file.read_text(encoding="utf-8")
+
+
+def _waits_in_conditions(
+    program: nodes.Program, actions: Mapping[str, InternalAction]
+) -> Iterator[Diagnostic]:
+    """The project's coroutines that stand where nothing can wait."""
+    conditions = [plan.context for plan in program.plans]
+    rules = [belief.body for belief in program.beliefs if isinstance(belief, nodes.Rule)]
+    for node in walk(*conditions, *rules):
+        action = actions.get(node.name) if isinstance(node, nodes.InternalAction) else None
+        if action is not None and action.suspends and action.name not in STANDARD:
+            yield Diagnostic(
+                "warning",
+                f"{action.name} takes time and never holds as a condition",
+                node.span,
+                "call it in the body of a plan",
+            )
 
 
 def _text(path: Path) -> str:

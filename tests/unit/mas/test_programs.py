@@ -8,10 +8,12 @@ from jacaros.asl.errors import AslError
 from jacaros.asl.nodes import Literal
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.programs import Programs
+from jacaros.mas.python_code import PythonCode
+from jacaros.project_modules import ProjectModules
 
 
 def programs(*folders: Path) -> Programs:
-    return Programs(folders, lambda text: None)
+    return Programs(folders, lambda text: None, PythonCode(ProjectModules(*folders)))
 
 
 def names(literals: object) -> list[str]:
@@ -72,5 +74,5 @@ def test_an_included_file_beside_the_including_one_comes_first(tmp_path: Path) -
 def test_warnings_are_passed_on(tmp_path: Path) -> None:
     (tmp_path / "a.asl").write_text("+!g : p(X) <- .print(Y).", encoding="utf-8")
     told: list[str] = []
-    Programs([tmp_path], told.append).read(tmp_path / "a.asl")
+    Programs([tmp_path], told.append, PythonCode(ProjectModules(tmp_path))).read(tmp_path / "a.asl")
     assert all("warning" in line for line in told)

@@ -202,12 +202,8 @@ class DirectiveProcessor:
     def _function(self, parser: ProgramParser, directive: nodes.Literal) -> nodes.RegisteredFunction | None:
         arguments = directive.arguments
         if len(arguments) == 1 and isinstance(arguments[0], nodes.String):
-            parser.warn(
-                "java-function",
-                f"the function {arguments[0].value} is written in Java and not available",
-                _place(directive),
-                'a rule can be a function: { register_function("my.sum", 2, "sum") }',
-            )
+            if self._names.known.get(arguments[0].value) is None:
+                _warn_of_java_function(parser, directive, arguments[0].value)
             return None
         match arguments:
             case (nodes.String(value=name), nodes.Number(value=arity), nodes.String(value=rule)):
@@ -257,6 +253,17 @@ class DirectiveProcessor:
         if isinstance(argument, nodes.Literal) and argument.namespace is None:
             return replace(argument, namespace=namespaces.of_literal(argument.functor))
         return argument
+
+
+def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name: str) -> None:
+    module, _, function = name.rpartition(".")
+    parser.warn(
+        "java-function",
+        f"the function {name} is written in Java and not available",
+        _place(directive),
+        f"write it in Python: a function {function} with @arithmetic_function in {module.replace('.', '/')}.py; "
+        'or as a rule: { register_function("my.sum", 2, "sum") }',
+    )
 
 
 def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _Result:
