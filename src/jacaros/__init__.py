@@ -6,6 +6,8 @@ is loaded when it is first used, so that ``import jacaros`` costs nothing.
 
 from importlib import import_module
 
+from jacaros.version import VERSION
+
 TYPE_CHECKING = (
     False  # as type checkers see it; the typing module alone takes longer to import than all of this
 )
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from jacaros.extension.literal import Literal
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
 
-__version__ = "0.1.0"
+__version__ = VERSION
 
 __all__ = [
     "ActionError",

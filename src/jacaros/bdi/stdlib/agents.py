@@ -1,11 +1,11 @@
 """Internal actions on the system of agents."""
 
-from jacaros import __version__
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import characters, elements, number, string, whole
 from jacaros.terms.text import text
 from jacaros.terms.values import FALSE, TRUE, String, Term, Var, arguments_of, atom, functor_of, make_list
+from jacaros.version import VERSION
 
 _CLASSES = ("agentClass", "agentArchClass", "beliefBaseClass")
 
@@ -93,4 +93,4 @@ def stop_mas(ctx: Context, delay: Term = 0.0, code: Term = 0.0) -> None:
 @internal_action(".version", arity=1)
 def version(ctx: Context, result: Term) -> bool:
     """``.version(V)``: *V* is the version of JaCaROS, a string."""
-    return ctx.unify(result, String(__version__))
+    return ctx.unify(result, String(VERSION))

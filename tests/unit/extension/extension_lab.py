@@ -1,0 +1,34 @@
+"""Projects with Python code of their own, run on the virtual clock."""
+
+from pathlib import Path
+from textwrap import dedent
+
+from jacaros.testing import RunResult, run_project
+
+
+def write(folder: Path, **files: str) -> Path:
+    """Write files into a folder: ``my="..."`` is ``my.py``, ``t_asl="..."`` is ``t.asl``, ``my__a`` is ``my/a.py``."""
+    for key, text in files.items():
+        name = key
+        for suffix in ("asl", "mas2j", "jcm"):
+            if key.endswith(f"_{suffix}"):
+                name = f"{key.removesuffix(f'_{suffix}')}.{suffix}"
+        path = folder / (name if "." in name else f"{name.replace('__', '/', 1)}.py")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text), encoding="utf-8")
+    return folder
+
+
+def run(folder: Path, program: str, python: str = "", seconds: float | None = None) -> RunResult:
+    """Run a program ``t.asl`` beside a module ``my.py``."""
+    write(folder, t_asl=program)
+    if python:
+        write(folder, my=python)
+    return run_project(folder / "t.asl", until_idle=True, seconds=seconds)
+
+
+def said(folder: Path, program: str, python: str = "") -> list[str]:
+    """What the agent of a program prints; nothing may be told to people."""
+    result = run(folder, program, python)
+    assert result.errors == []
+    return result.of("t")
