@@ -10,7 +10,6 @@ import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.errors import AslError
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.internal_action import STANDARD
 from jacaros.bdi.options import Options
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
@@ -161,7 +160,7 @@ class Mas:
         """The plans of a program: agents that run the same one share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
-            made = ProgramPlans(program.plans, STANDARD)
+            made = ProgramPlans(program.plans, self._code.actions)
             self._plans[id(program.plans)] = made
         return made
 
