@@ -4,6 +4,8 @@ What stands behind the language of a block says what becomes of it::
 
     ```agentspeak hello.asl        a file that the page's commands find
     ```console                     commands that are run, with what they print ("..." stands for any lines)
+    ```output                      what the file before it prints (see `examples`)
+    ```errors                      what is told besides when that file is run
     ```sh                          commands that are only read: set-up, real robots
     ```python excerpt src/a.py     lines that stand in that file, in this order ("..." leaves some out)
 """

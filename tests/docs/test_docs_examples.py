@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from pages import PAGES, ROOT, Block, blocks, name_of
+from examples import SHOWN, examples, is_file
+from pages import PAGES, ROOT, blocks, name_of
 
-LANGUAGES = {"agentspeak", "console", "jcm", "python", "sh", "text", "xml", "yaml"}
+LANGUAGES = {"agentspeak", "console", "jcm", "mas2j", "python", "sh", "text", "xml", "yaml", *SHOWN}
 
 RUN = [page for page in PAGES if any(block.language == "console" for block in blocks(page))]
 
@@ -70,18 +71,13 @@ def test_the_commands_of_a_page_print_what_it_says(page: Path, tmp_path: Path) -
             file.write_text(block.text, encoding="utf-8")
 
 
-def is_file(block: Block) -> bool:
-    """Whether a block is a file that commands may use."""
-    return bool(block.purpose) and not block.purpose.startswith("excerpt")
-
-
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_every_block_of_a_page_has_a_known_purpose(page: Path) -> None:
     """A program that is neither run nor an excerpt could be wrong without anybody noticing."""
     for block in blocks(page):
         where = f"{name_of(page)}:{block.line}"
         assert block.language in LANGUAGES, f"{where}: language {block.language!r}"
-        if block.language in ("agentspeak", "jcm", "python", "yaml"):
+        if block.language in ("agentspeak", "jcm", "mas2j", "python", "yaml"):
             assert block.purpose, f"{where}: name the file, or what it is an excerpt of"
 
 
@@ -91,9 +87,10 @@ def test_files_of_a_page_are_used_by_its_commands(page: Path) -> None:
     files = [block for block in found if is_file(block)]
     text = " ".join(block.text for block in found if block.language == "console")
     programs = " ".join(block.text for block in files)
+    run = {example.line for example in examples(page)}
     for block in files:
         stem = Path(block.purpose).stem
-        used = stem in text or stem in programs or stem == "artifacts"
+        used = block.line in run or stem in text or stem in programs or stem == "artifacts"
         assert used, f"{name_of(page)}:{block.line}: nothing runs {block.purpose}"
 
 

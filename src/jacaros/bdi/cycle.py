@@ -14,13 +14,15 @@ from jacaros.bdi.failure import FailureReason
 from jacaros.bdi.forks import branch_failed
 from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.internal_action import Crashed
-from jacaros.bdi.stack import cut
+from jacaros.bdi.stack import achieve
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
 from jacaros.errors import InternalError
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF, atom
+
+_HAS_FAILURE_PLAN = atom("has_failure_plan")
 
 
 def run(agent: Circumstance, fuel: int) -> bool:
@@ -74,7 +76,7 @@ def _end_achieved_goals(agent: Circumstance) -> None:
             achieved = frame[PLAN].goal_condition
             if achieved is not None and achieved(agent, frame):
                 queued = intention in agent.intentions
-                cut(agent, intention, index)
+                achieve(agent, intention, index)
                 if intention.frames:
                     queued = queued or not pop_finished(agent, intention)
                 else:
@@ -280,6 +282,8 @@ def fail_goal(
         agent, intention, len(intention.frames), trigger.on_fail
     ):
         intention.handlers.append(len(intention.frames))
+        if agent.meta:
+            meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
         return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
     return fail_intention(agent, intention, reason)
 
@@ -295,6 +299,7 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
         if agent.meta:
             failed = intention.frames[intention.handlers[-1]]
             meta_events.goal_state(agent, failed[GOAL], failed[2], "failed", atom(reason.error()))
+            meta_events.goal_state(agent, failed[GOAL], failed[2], "executing", _HAS_FAILURE_PLAN)
         return posted
     if intention.on_failed is not None:
         intention.on_failed()
@@ -430,11 +435,14 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
             return False
         trigger = frame[GOAL][0]
         if trigger.failing:
-            del frames[intention.handlers.pop() :]
+            index = intention.handlers.pop()
+            frame = frames[index]
+            del frames[index:]
         else:
             frames.pop()
-        if agent.meta and trigger.kind and not trigger.failing:
-            meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved")
+        if agent.meta and trigger.kind:
+            if not trigger.failing:
+                meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved")
             meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
         if agent.atomic is intention and not intention.is_atomic():
             agent.atomic_over = True

@@ -8,7 +8,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.failure import FailureReason, nowhere, release_bindings
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
-from jacaros.bdi.stack import cut, pending_event, remove_event
+from jacaros.bdi.stack import achieve, cut, pending_event, remove_event
 from jacaros.compiler.runtime import literal_of
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term
@@ -232,7 +232,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
             if event is not None:
                 remove_event(agent, event)
         else:
-            cut(agent, intention, index)
+            achieve(agent, intention, index)
         if running:
             own = True
         elif goes_on(agent, intention) and not queued:

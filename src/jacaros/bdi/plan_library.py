@@ -61,6 +61,10 @@ class PlanLibrary:
         """Note who told a plan."""
         self._sources[plan] = tuple(sources)
 
+    def label(self, plan: Plan) -> Term:
+        """The label of a plan with its annotations, sources among them."""
+        return plan.annotated_label(self.sources(plan))
+
     def by_label(self, label: Term) -> Plan | None:
         """The plan of that label."""
         wanted = bare(label)

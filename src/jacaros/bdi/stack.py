@@ -1,8 +1,9 @@
 """Stacks of intentions cut from outside, with what they wait for."""
 
+from jacaros.bdi import meta_events
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event
-from jacaros.bdi.intention import Intention
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
 
 
 def pending_event(agent: Circumstance, intention: Intention) -> Event | None:
@@ -32,3 +33,14 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
         intention.handlers.pop()
     if agent.atomic is intention and not intention.is_atomic():
         agent.atomic, agent.atomic_over = None, False
+
+
+def achieve(agent: Circumstance, intention: Intention, index: int) -> None:
+    """Cut a stack at a goal that ends as achieved; the goals that served it are dropped."""
+    if agent.meta:
+        for place, frame in reversed(list(enumerate(intention.frames))[index:]):
+            if not frame[GOAL][0].failing:
+                state = "achieved" if place == index else "dropped"
+                meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], state)
+                meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
+    cut(agent, intention, index)

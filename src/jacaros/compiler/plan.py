@@ -1,15 +1,27 @@
 """A plan as the mind keeps it: its syntax, and what the compiler made of it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.compiler.bodies import StepInfo
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.triggers import Trigger
-from jacaros.terms.values import Term, annotations_of, atom, bare, functor
+from jacaros.terms.order import annotation_set
+from jacaros.terms.values import (
+    SOURCE,
+    Annotated,
+    String,
+    Term,
+    annotations_of,
+    atom,
+    bare,
+    functor,
+    functor_of,
+)
 
 ATOMIC_LABEL = atom("atomic")
+URL = functor("url", 1)
 
 
 class Plan:
@@ -18,7 +30,7 @@ class Plan:
     Attributes:
         node: the syntax.
         label: term of the label, without annotations.
-        annotations: those of the label.
+        annotations: those of the label, without its sources.
         atomic: whether the label says ``atomic``.
         slots: index in the frame by variable name.
         size: number of slots of a body that is run on its own.
@@ -48,7 +60,7 @@ class Plan:
     def __init__(self, node: nodes.Plan, label: Term) -> None:
         self.node = node
         self.label = bare(label)
-        self.annotations = annotations_of(label)
+        self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
         self.atomic = ATOMIC_LABEL in self.annotations
         self.slots: dict[str, int] = {}
         self.size = 0
@@ -68,6 +80,13 @@ class Plan:
         span = self.node.span
         return span.file.name if span is not None else "<run time>"
 
+    def annotated_label(self, sources: Iterable[Term]) -> Term:
+        """The label as programs see it: its own annotations, a ``source`` for each source, and the ``url`` of the file."""
+        span = self.node.span
+        place = () if span is None else ((URL, String(f"file:{span.file.name}")),)
+        told_by = tuple((SOURCE, source) for source in sources)
+        return Annotated(self.label, annotation_set((*self.annotations, *told_by, *place)))
+
     def has_variable_trigger(self) -> bool:
         """Whether the plan reacts to any literal."""
         return isinstance(self.node.trigger.literal, nodes.Variable)
@@ -78,6 +97,10 @@ class Plan:
         if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
             return None
         return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def _is_source(annotation: Term) -> bool:
+    return functor_of(annotation) is SOURCE
 
 
 def with_subplans(plan: Plan, number: int) -> Plan:

@@ -28,6 +28,8 @@ from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
 from jacaros.project_modules import ProjectModules
 from jacaros.terms import arithmetic
+from jacaros.terms.text import text
+from jacaros.terms.values import Term
 
 if TYPE_CHECKING:
     from jacaros.env.environment import Environment
@@ -91,7 +93,7 @@ class Mas:
             InternalError: a defect of JaCaROS showed itself.
         """
         self._ended = asyncio.get_running_loop().create_future()
-        arithmetic.warn = lambda text: self.console.log(f"warning: {text}", "warning")
+        arithmetic.warn = self._warn_of_operand
         try:
             await self._start()
             if when_started is not None:
@@ -102,6 +104,9 @@ class Mas:
         if self._error is not None:
             raise self._error
         return code
+
+    def _warn_of_operand(self, what: str, value: Term) -> None:
+        self.console.log(f"warning: {what} is no number: {text(value)}", "warning")
 
     @property
     def environment(self) -> "Environment | None":

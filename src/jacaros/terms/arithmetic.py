@@ -85,8 +85,9 @@ functions: dict[str, Evaluator] = {}
 """Arithmetic functions by name; they are given the evaluated arguments and return a number, or None when the
 arguments are not known yet.  Functions that need an agent are in `agent_functions` of the mind."""
 
-warn: Callable[[str], None] = lambda text: None  # noqa: E731 - replaced by whoever runs agents
-"""Told of operands that are no numbers; the result is not a number then, as in Jason."""
+warn: Callable[[str, Term], None] = lambda what, value: None  # noqa: E731 - replaced by whoever runs agents
+"""Told of operands that are no numbers, by what they are for and their value; the result is not a number then, as in
+Jason."""
 
 
 def settle(term: Term) -> Term:
@@ -127,7 +128,7 @@ def _number(operand: Term, term: Term) -> float:
         return operand
     if operand.__class__ is Annotated:
         return _number(deref(operand.term), term)
-    warn(f"an operand of '{term[0].name}' is no number: {operand!r}")
+    warn(f"an operand of '{term[0].name}'", operand)
     return math.nan
 
 

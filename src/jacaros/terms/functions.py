@@ -16,7 +16,7 @@ def _on_number(compute: Callable[[float], float]) -> Callable[..., Term]:
         if value.__class__ is not float:
             if free_variables(value):
                 return None
-            arithmetic.warn(f"the argument of a function is no number: {value!r}")
+            arithmetic.warn("the argument of a function", value)
             return math.nan
         try:
             return float(compute(value))

@@ -170,7 +170,41 @@ def test_an_observer_hears_of_every_change_of_a_goal() -> None:
     host.run()
     states = [state for state, goal in heard if goal == "!a"]
     assert states == ["executing", "waiting", "executing", "suspended"]
-    assert [state for state, goal in heard if goal == "!b"] == ["pending", "executing", "failed"]
+    assert [state for state, goal in heard if goal == "!b"] == [
+        "pending",
+        "executing",
+        "failed",
+        "executing",
+        "finished",
+    ]
+
+
+def test_a_goal_that_is_ended_is_told_to_be_achieved_and_finished() -> None:
+    program = """
+        !a. !b. !w.
+        +!a <: done <- !c.
+        +!c <- .wait(10000).
+        +!b <- .wait(10000).
+        +!w <- .wait(10); .succeed_goal(b); +done.
+        ^!a[state(S)] : .member(S, [achieved, finished]) <- .print(a, S).
+        ^!b[state(S)] : .member(S, [achieved, finished]) <- .print(b, S).
+        ^!c[state(S)] : .member(S, [dropped, finished]) <- .print(c, S).
+        """
+    assert printed(program) == ["bachieved", "bfinished", "cdropped", "cfinished", "aachieved", "afinished"]
+
+
+def test_programs_see_the_annotations_of_labels() -> None:
+    assert printed(
+        """
+        !s.
+        @greet[cost(2), polite] +!greet.
+        +!s
+          <- .plan_label(P, greet[cost(C)]); .print(C);
+             .findall(L, .plan_label(_, L[polite]), Ls); .length(Ls, N); .print(N);
+             .relevant_plans({+!greet}, _, [M]); if (greet[source(self)] = M) { .print(own) };
+             .add_plan({ @told +!h }, bob); if (.plan_label(_, told[source(S)])) { .print(S) }.
+        """
+    ) == ["2", "1", "own", "bob"]
 
 
 def test_variables_inside_a_negation_or_a_collection_stay_free() -> None:

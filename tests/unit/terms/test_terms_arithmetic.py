@@ -17,7 +17,8 @@ INFINITY = math.inf
 @pytest.fixture
 def warnings() -> Iterator[list[str]]:
     told: list[str] = []
-    before, arithmetic.warn = arithmetic.warn, told.append
+    before = arithmetic.warn
+    arithmetic.warn = lambda what, value: told.append(f"{what} is no number: {text(value)}")
     yield told
     arithmetic.warn = before
 

@@ -8,7 +8,7 @@ from jacaros.bdi.body_terms import is_body_frame
 from jacaros.bdi.context import Context
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
-from jacaros.bdi.stack import cut
+from jacaros.bdi.stack import achieve
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
 from jacaros.terms.plans import make_body, trigger
@@ -70,7 +70,7 @@ def intention(
             continue
         pairs = [(number, float(candidate.id)), (state, _state(candidate))]
         if stack is not None:
-            pairs.append((stack, make_list([_means(f) for f in reversed(candidate.frames)])))
+            pairs.append((stack, make_list([_means(ctx, f) for f in reversed(candidate.frames)])))
         if ctx.unify_all(*pairs):
             yield
 
@@ -85,7 +85,7 @@ def _state(candidate: Intention) -> Term:
     return Annotated(atom("waiting"), ((REASON, reason),))
 
 
-def _means(frame: Any) -> Term:
+def _means(ctx: Context, frame: Any) -> Term:
     """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done."""
     plan = frame[4]
     values = {
@@ -101,7 +101,7 @@ def _means(frame: Any) -> Term:
         for node in _remaining(frame[STEP])
     )
     event = trigger(kind.operator + kind.kind, goal)
-    return structure("im", plan.label, event, resolve(rest), make_list(bindings))
+    return structure("im", ctx.agent.library.label(plan), event, resolve(rest), make_list(bindings))
 
 
 def _remaining(step: Any) -> Iterator[Any]:
@@ -120,7 +120,7 @@ def current_intention(ctx: Context, target: Term) -> bool:
     current = ctx.intention
     if current is None:
         return False
-    stack = make_list([_means(f) for f in reversed(current.frames)])
+    stack = make_list([_means(ctx, f) for f in reversed(current.frames)])
     return ctx.unify(target, structure("intention", float(current.id), stack))
 
 
@@ -235,7 +235,7 @@ def done(ctx: Context) -> Any:
     assert current is not None
     if current.outer is not None and not any(frame[GOAL][0].kind for frame in current.frames):
         return _outer_done(ctx, current)
-    cut(ctx.agent, current, _own_goal(current))
+    achieve(ctx.agent, current, _own_goal(current))
     return _ended(ctx, own=True)
 
 
@@ -259,7 +259,7 @@ def _outer_done(ctx: Context, current: Intention) -> Any:
     owner, frame = current.outer
     if not owner.dropped and any(frame is other for other in owner.frames):
         queued = owner in ctx.agent.intentions
-        cut(ctx.agent, owner, next(i for i, other in enumerate(owner.frames) if other is frame))
+        achieve(ctx.agent, owner, next(i for i, other in enumerate(owner.frames) if other is frame))
         if goals.goes_on(ctx.agent, owner) and not queued:
             ctx.agent.make_ready(owner)
     ctx.agent.finish(current)

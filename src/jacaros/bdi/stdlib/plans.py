@@ -18,10 +18,10 @@ def _source(term: Term) -> Term:
     return SELF if term is None else bare(term)
 
 
-def _term(plan: Plan) -> Term:
-    """A plan as a term, with its label."""
+def _term(ctx: Context, plan: Plan) -> Term:
+    """A plan as a term, with its label and what is known of it."""
     term = lower_plan(plan.node, fresh_names())
-    return (term[0], plan.label, *term[2:])
+    return (term[0], ctx.agent.library.label(plan), *term[2:])
 
 
 @internal_action(".add_plan", arity=(1, 3))
@@ -49,7 +49,7 @@ def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> bool:
 def plan_label(ctx: Context, target: Term, label: Term) -> Iterator[None]:
     """``.plan_label(P, L)``: each plan with its label."""
     for plan in list(ctx.agent.library.plans):
-        if ctx.unify_all((label, plan.label), (target, _term(plan))):
+        if ctx.unify_all((label, ctx.agent.library.label(plan)), (target, _term(ctx, plan))):
             yield
 
 
@@ -69,16 +69,16 @@ def _relevant(ctx: Context, event: Term) -> list[Plan]:
 def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None) -> bool:
     """``.relevant_plans({T}, Ps [,Labels])``: the plans for an event, in the order in which they are tried."""
     plans = _relevant(ctx, event)
-    if not ctx.unify(target, make_list([_term(p) for p in plans])):
+    if not ctx.unify(target, make_list([_term(ctx, p) for p in plans])):
         return False
-    return labels is None or ctx.unify(labels, make_list([p.label for p in plans]))
+    return labels is None or ctx.unify(labels, make_list([ctx.agent.library.label(p) for p in plans]))
 
 
 @internal_action(".relevant_plan", arity=2, backtracks=True)
 def relevant_plan(ctx: Context, event: Term, target: Term) -> Iterator[None]:
     """``.relevant_plan({T}, P)``: each plan for an event."""
     for plan in _relevant(ctx, event):
-        if ctx.unify(target, _term(plan)):
+        if ctx.unify(target, _term(ctx, plan)):
             yield
 
 
@@ -86,4 +86,4 @@ def relevant_plan(ctx: Context, event: Term, target: Term) -> Iterator[None]:
 def list_plans(ctx: Context, event: Term = None) -> None:
     """``.list_plans [({T})]``: print the plans."""
     for plan in ctx.agent.library.plans if event is None else _relevant(ctx, event):
-        ctx.architecture.print(text(_term(plan)))
+        ctx.architecture.print(text(_term(ctx, plan)))
