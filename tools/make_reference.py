@@ -1,9 +1,11 @@
-"""Write the reference pages that the code itself knows best: docs/reference/cli.md and artifacts.md.
+"""Write the reference pages that the code itself knows best: docs/reference/cli.md, artifacts.md and the index of internal
+actions.
 
 make_reference.py [FOLDER]      FOLDER instead of docs/reference; a test compares the two
 """
 
 import inspect
+import math
 import re
 import sys
 from collections.abc import Iterator
@@ -11,9 +13,12 @@ from pathlib import Path
 
 import click
 
+import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.artifacts.ros.wheels import WheeledArtifact
+from jacaros.asl.functions import ARITIES
+from jacaros.bdi.internal_action import STANDARD
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.env import Artifact, describe
 
@@ -35,13 +40,33 @@ LINKS = {
     "WheeledArtifact": "[all artifacts that drive](#all-artifacts-that-drive)",
 }
 """Classes that only authors of artifacts know."""
+ACTIONS = Path("internal_actions")
+GROUPS = (
+    "beliefs",
+    "queries",
+    "lists",
+    "strings",
+    "collections",
+    "goals",
+    "plans",
+    "time",
+    "agents",
+    "output",
+    "functions",
+)
+"""The pages about internal actions and functions."""
 SECTIONS = {"Options:": "Options", "Properties:": "Properties"}
 
 
 def main(folder: Path) -> None:
-    """Write both pages."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, lines in (("cli.md", command_line()), ("artifacts.md", artifacts())):
+    """Write the pages."""
+    (folder / ACTIONS).mkdir(parents=True, exist_ok=True)
+    pages = (
+        ("cli.md", command_line()),
+        ("artifacts.md", artifacts()),
+        (ACTIONS / "index.md", internal_actions()),
+    )
+    for name, lines in pages:
         (folder / name).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
 
 
@@ -82,6 +107,45 @@ def _option(option: click.Option) -> str:
 
 def _cell(text: str) -> str:
     return " ".join(text.split()).replace("|", "\\|")
+
+
+def internal_actions() -> Iterator[str]:
+    """The index of internal actions and functions: where their entries stand, and what the registry knows of them."""
+    yield NOTE
+    yield "# Internal actions and functions\n"
+    yield (ROOT / "tools" / "internal_actions.md").read_text(encoding="utf-8")
+    for group in GROUPS:
+        text = (ROOT / "docs" / "reference" / ACTIONS / f"{group}.md").read_text(encoding="utf-8")
+        names = re.findall(r"^## (\S+)$", text, re.MULTILINE)
+        yield f"## {text.partition(chr(10))[0].removeprefix('# ')}\n"
+        rows = _function_rows(group, names) if group == "functions" else _action_rows(group, names)
+        yield "\n".join(rows) + "\n"
+
+
+def _action_rows(group: str, names: list[str]) -> Iterator[str]:
+    yield "| internal action | arguments | answers | in contexts |\n|---|---|---|---|"
+    for name in names:
+        action = STANDARD[name]
+        answers = "several" if action.backtracks else "one"
+        contexts = "no" if action.suspends else "yes"
+        arguments = _arguments(action.minimum, math.inf if action.maximum is None else action.maximum)
+        yield f"| {_entry(group, name)} | {arguments} | {answers} | {contexts} |"
+
+
+def _function_rows(group: str, names: list[str]) -> Iterator[str]:
+    yield "| function | arguments |\n|---|---|"
+    for name in names:
+        yield f"| {_entry(group, name)} | {_arguments(*ARITIES[name])} |"
+
+
+def _entry(group: str, name: str) -> str:
+    return f"[`{name}`]({group}.md#{re.sub(r'[^a-zA-Z0-9_]', '', name).lower()})"
+
+
+def _arguments(least: float, most: float) -> str:
+    if least == most:
+        return str(least)
+    return f"{least} or more" if most == math.inf else f"{least} to {most}"
 
 
 def artifacts() -> Iterator[str]:

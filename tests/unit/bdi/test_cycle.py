@@ -348,7 +348,7 @@ def test_goal_state_events_keep_their_order_and_tell_the_reason() -> None:
         -!h.
         ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
         """
-    ) == ["pending ", "executing ", "failed ia_failed", "end"]
+    ) == ["pending ", "executing ", "failed ia_failed", "executing has_failure_plan", "finished ", "end"]
 
 
 def test_a_goal_can_be_failed_before_it_is_taken_up() -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from jacaros.asl.formatter import format_term
 from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import Rule, parts
 from jacaros.bdi.context import Context
@@ -60,7 +61,7 @@ def list_rules(ctx: Context) -> None:
     for table in ctx.agent.beliefs.values():
         for entry, _ in table.entries():
             if isinstance(entry, Rule):
-                ctx.architecture.print(text(entry.head()))
+                ctx.architecture.print(format_term(entry.node))
 
 
 @internal_action(".eval", arity=2)
