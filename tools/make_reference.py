@@ -13,7 +13,7 @@ from pathlib import Path
 
 import click
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+import jacaros.bdi.stdlib
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.artifacts.ros.wheels import WheeledArtifact
