@@ -3,6 +3,7 @@
 from contextlib import suppress
 from typing import Final, NoReturn
 
+from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS
 from jacaros.mas.project_cursor import ProjectCursor, ProjectPanic, Token, text_of
 from jacaros.mas.project_parts import AgentPart, ProjectPart
 
@@ -61,13 +62,25 @@ class _Mas2jReader:
                 self.part.world = text_of(self.value("the name of a world file"))
                 cursor.accept(";")
             case "environment":
-                self.part.environment = self.class_text()
+                self.environment()
             case "infrastructure":
                 self.part.infrastructure.append(self.class_text())
             case _:
                 span = cursor.span_of(key)
                 cursor.raw(self.at_section_or_end)
                 cursor.warn(f"'{key.text}' is about Java code and has no effect", span)
+
+    def environment(self) -> None:
+        """The class of the environment; one of Java has no effect."""
+        token = self.cursor.token
+        self.part.environment = self.class_text()
+        name = self.part.environment.partition("(")[0]
+        if name not in CARTAGO_ENVIRONMENTS:
+            self.cursor.warn(
+                f"the Java environment {name} has no effect",
+                self.cursor.span_of(token),
+                "write it as an artifact in Python, and here: environment: jacaros.Environment",
+            )
 
     def no_section(self) -> NoReturn:
         what = self.cursor.token.text
