@@ -1,6 +1,7 @@
 """The arithmetic functions, which the parser tells from internal actions by name and number of arguments."""
 
 import math
+from collections.abc import Mapping
 from typing import Final
 
 ARITIES: Final[dict[str, tuple[int, float]]] = {
@@ -34,3 +35,17 @@ def is_function(name: str, arity: int, registered: dict[str, int]) -> bool:
     if limits is not None and limits[0] <= arity <= limits[1]:
         return True
     return registered.get(name) == arity
+
+
+class FunctionNames(dict[str, int]):
+    """The functions that a running program has registered, with their numbers of arguments.
+
+    Attributes:
+        known: those of the project, with their least and greatest numbers of arguments.
+    """
+
+    def __init__(
+        self, registered: Mapping[str, int], known: Mapping[str, tuple[int, int | None]] | None = None
+    ) -> None:
+        super().__init__(registered)
+        self.known = {} if known is None else known

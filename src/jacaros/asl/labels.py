@@ -21,7 +21,7 @@ def check_labels(plans: list[nodes.Plan], diagnostics: list[Diagnostic]) -> None
         first = known.setdefault((plan.label.namespace, plan.label.functor), plan)
         if first is plan:
             continue
-        if _shape(first) == _shape(plan):
+        if shape(first) == shape(plan):
             repeated.append(index)
         else:
             diagnostics.append(_two_plans(first, plan))
@@ -45,13 +45,16 @@ def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
     )
 
 
-def _shape(node: object) -> object:
-    """The tree without places and without the numbers of unnamed variables, to be compared."""
-    if isinstance(node, nodes.Variable) and node.unnamed:
-        return "_"
+def shape(node: object, names: dict[str, int] | None = None) -> object:
+    """The tree without places and with variables numbered, to be compared: equal for trees that differ in the names
+    of their variables only."""
+    names = {} if names is None else names
+    if isinstance(node, nodes.Variable):
+        number = names.setdefault(node.name, len(names))
+        return (number, shape(node.annotations, names), shape(node.namespace, names), node.negated)
     if isinstance(node, tuple):
-        return tuple(_shape(part) for part in node)
+        return tuple([shape(part, names) for part in node])
     if is_dataclass(node):
-        parts = (_shape(getattr(node, part.name)) for part in fields(node) if part.name != "span")
+        parts = [shape(getattr(node, part.name), names) for part in fields(node) if part.name != "span"]
         return (type(node).__name__, *parts)
     return node

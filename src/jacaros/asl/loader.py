@@ -10,7 +10,9 @@ from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
 from jacaros.asl.errors import AslError
+from jacaros.asl.functions import FunctionNames
 from jacaros.asl.labels import check_labels
+from jacaros.asl.namespaces import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import SourceFile
 
@@ -44,6 +46,32 @@ def load_program(
     section = processor.read_file(SourceFile(name, text))
     check_labels(section.plans, diagnostics)
     return section.program(), _settled(diagnostics)
+
+
+def include_program(
+    path: str,
+    read: Callable[[str], tuple[str, str]],
+    functions: Mapping[str, int],
+    namespace: str | None = None,
+) -> nodes.Program:
+    """A program file that is included at run time, in *namespace* (None: the default one).
+
+    Args:
+        path: as the program writes it.
+        read: ``read(path) -> (name, text)`` finds it; raises FileNotFoundError.
+        functions: registered arithmetic functions with their numbers of arguments.
+
+    Raises:
+        FileNotFoundError: the file is not there.
+        AslError: with all errors.
+    """
+    name, text = read(path)
+    diagnostics: list[Diagnostic] = []
+    processor = DirectiveProcessor(lambda inner, _: read(inner), _names_with(functions), diagnostics)
+    section = processor.read_file(SourceFile(name, text), Namespaces(namespace))
+    check_labels(section.plans, diagnostics)
+    _settled(diagnostics)
+    return section.program()
 
 
 def parse_term(text: str, name: str = "<string>", functions: Mapping[str, int] | None = None) -> nodes.Term:
@@ -170,7 +198,8 @@ def _parse(
 
 
 def _names_with(functions: Mapping[str, int] | None) -> Names:
-    return replace(_run_time_names, functions=dict(functions or {}))
+    known = functions.known if isinstance(functions, FunctionNames) else {}
+    return replace(_run_time_names, functions=dict(functions or {}), known=known)
 
 
 def _settled(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

@@ -4,13 +4,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from jacaros.asl import nodes
+from jacaros.asl.loader import include_program
 from jacaros.bdi import (
     belief_update,
     body_terms,
+    cloning,
     cycle,
     deadlines,
+    edge_signals,
     forks,
     formulas,
+    functions,
     goals,
     meta_events,
     plan_changes,
@@ -33,7 +37,7 @@ from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
-from jacaros.terms.arithmetic import settle
+from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.plans import is_body
 from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, undo, unify
 from jacaros.terms.values import (
@@ -81,17 +85,62 @@ class Agent(Circumstance):
         self.context = Context(self)
         self._acts = 0
         self._messages = 0
+        self._namespaces = 0
+        self.register_functions(program.functions)
         plan_changes.look_at_plans(self)
 
     # --- life ----------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Take up the initial beliefs and goals."""
-        for belief in reversed(self.program.beliefs):
+        with functions.evaluating(self):
+            self.take_up(self.program)
+
+    def take_up(self, program: nodes.Program) -> None:
+        """Take up the beliefs and goals of a program."""
+        for belief in reversed(program.beliefs):
             self._initial_belief(belief)
-        for goal in self.program.goals:
-            self.post_goal(lower_value(goal))
+        for goal in program.goals:
+            term = self._initial_value(goal)
+            if term is not None:
+                self.post_goal(term)
         self.architecture.ready()
+
+    def _initial_value(self, node: nodes.Literal) -> Term:
+        """The term of an initial belief or goal; None when it holds an expression without a value."""
+        try:
+            return lower_value(node)
+        except ArithmeticFault as fault:
+            place = f"{node.span.file.name}:{node.span.line}: " if node.span is not None else ""
+            self.architecture.log("error", f"{place}an initial belief or goal cannot be evaluated: {fault}")
+            return None
+
+    def include(self, path: str, namespace: str | None = None) -> None:
+        """Take in a program file at run time, all of it in a namespace if one is given.
+
+        Raises:
+            FileNotFoundError: there is none.
+            AslError: it is wrong.
+            ActionError: a label is that of another plan.
+        """
+        program = include_program(
+            path, self.architecture.read_program, functions.known_names(self), namespace
+        )
+        self.register_functions(program.functions)
+        plan_changes.include_plans(self, program.plans)
+        self.take_up(program)
+
+    def fresh_namespace(self) -> str:
+        """The name of a namespace that nothing is in."""
+        self._namespaces += 1
+        return f"ns#{self._namespaces}_{self.name}"
+
+    def register_functions(self, declared: tuple[nodes.RegisteredFunction, ...]) -> None:
+        """Make the arithmetic functions of a program known."""
+        for function in declared:
+            self.functions[function.name] = functions.RegisteredFunction(
+                function.arity, function.implementation
+            )
 
     def _initial_belief(self, node: nodes.Literal | nodes.Rule) -> None:
         if isinstance(node, nodes.Rule):
@@ -100,7 +149,9 @@ class Agent(Circumstance):
             assert head is not None
             belief_update.add_rule(self, rule, head, last=False)
             return
-        term = lower_value(node)
+        term = self._initial_value(node)
+        if term is None:
+            return
         symbol, _, annotations = parts(term)
         assert symbol is not None
         if free_variables(term):
@@ -120,7 +171,10 @@ class Agent(Circumstance):
         meta_events.post_new_goal(self, event)
         self.architecture.ready()
 
-    run = cycle.run
+    def run(self, fuel: int) -> bool:
+        """Make at most *fuel* reasoning cycles; True when there is more to do."""
+        with functions.evaluating(self):
+            return cycle.run(self, fuel)
 
     # --- from outside --------------------------------------------------------------------------------------
 
@@ -151,6 +205,15 @@ class Agent(Circumstance):
                 return
         del self.trail[mark:]
         waiting.resume()
+
+    def shut_down_in(self, milliseconds: float) -> None:
+        """The agent will be ended after so many milliseconds; its plans may prepare for it."""
+        edge_signals.shutting_down(self, milliseconds)
+
+    def copy_mind_of(self, original: "Agent") -> None:
+        """Begin with what another agent believes, wants and knows how to do; this one must be new."""
+        cloning.copy_mind(original, self)
+        self.architecture.ready()
 
     # --- ends of waits -------------------------------------------------------------------------------------
 
@@ -224,18 +287,7 @@ class Agent(Circumstance):
     solve_in_namespaces = formulas.solve_in_namespaces
     collect_formula = formulas.collect_formula
     drop_desire = goals.drop_desire
-
-    def call_function(self, term: Term) -> Term:
-        """Evaluate an arithmetic function; those that need the agent are looked at first."""
-        name = term[0].name
-        if name == ".count":
-            return float(sum(1 for _ in self.context.answers(term[1])))
-        if name == "system.time":
-            return float(round(self.architecture.now() * 1000))
-        if name == "math.random":
-            limit = settle(term[1]) if len(term) > 1 else 1.0
-            return self.architecture.random.random() * limit
-        return settle(term)
+    call_function = functions.call_function
 
     def annotated_goal(
         self, goal: tuple[Any, ...], items: tuple[Term, ...], tail: Term, separate: bool = False

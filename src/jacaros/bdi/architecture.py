@@ -73,8 +73,11 @@ class Architecture(Protocol):
         """Make an agent (from the program file *source*, default NAME.asl); its final name, or None with the
         reason logged."""
 
-    def kill_agent(self, name: str) -> bool:
-        """End another agent; False when there is none of that name."""
+    def clone_agent(self, name: str) -> str | None:
+        """Make an agent with a copy of this mind; its final name, or None with the reason logged."""
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds; False when there is none of that name."""
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file (for ``.include``).
@@ -82,3 +85,29 @@ class Architecture(Protocol):
         Raises:
             FileNotFoundError: when there is none.
         """
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        """The files in a folder and in the folders in it, as paths that begin with *folder*, sorted.
+
+        Raises:
+            OSError: when it cannot be read.
+        """
+
+    def write_file(self, path: str, text: str) -> None:
+        """Write a text file; what it held before is gone.
+
+        Raises:
+            OSError: when it cannot be written.
+        """
+
+    def register_service(self, service: str) -> None:
+        """Tell the directory facilitator that this agent provides a service."""
+
+    def deregister_service(self, service: str) -> None:
+        """Take that back."""
+
+    def providers(self, service: str) -> Sequence[str]:
+        """The agents that provide a service, in the order in which they registered."""
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Have this agent told of all providers of a service, those to come as well."""

@@ -10,7 +10,7 @@ from jacaros.bdi.belief_base import OpenFact, Row, Rule, Table, literal, parts, 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
 from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
-from jacaros.compiler.triggers import trigger
+from jacaros.compiler.triggers import Trigger, trigger
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import ATOMIC, free_variables, is_key, rename, resolve, undo, unify_annotations
@@ -45,7 +45,7 @@ def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations 
 
 def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
     """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
-    unplanned = not agent.may_handle(goal[0])
+    unplanned = not _is_kept(agent, goal[0])
     if apart or agent.options.new_focus:
         if unplanned and not agent.event_waits:
             return None
@@ -55,6 +55,11 @@ def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations,
         # Nothing comes in between: the event would only be taken up and passed over.
         return None
     return goal if annotations is BY_SELF else Posted(goal, annotations)
+
+
+def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
+    """Whether an external event would not simply be taken up and passed over."""
+    return agent.may_handle(kind) or agent.options.events != "discard"
 
 
 def _apart(goal: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -254,7 +259,7 @@ def external_change(
 ) -> None:
     """Raise the external event of a belief change, if anybody cares."""
     kind = trigger(operator, "", symbol)
-    if agent.may_handle(kind) or agent.event_waits:
+    if _is_kept(agent, kind) or agent.event_waits:
         agent.post(Event((kind, *row), None, annotations, cause))
     if agent.condition_waits:
         agent.tasks.append(_nothing)

@@ -18,7 +18,7 @@ from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.runtime import literal_of
 from jacaros.compiler.triggers import Trigger
 from jacaros.terms.unifier import Trail, rename, unify
-from jacaros.terms.values import Term
+from jacaros.terms.values import Term, functor
 
 
 class Circumstance:
@@ -30,7 +30,10 @@ class Circumstance:
         trail: bindings of the search under way; empty between two steps.
         beliefs, library, selects: what it believes, its plans, and their select functions.
         events: the queue of events, oldest first.
+        requeued: external events without plan that are to be tried again (``events=requeue``).
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
+        option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
+        refused_options: there were applicable plans for the last event, and the filter let none pass.
         alive: every intention that is not over, by id.
         current: the intention whose step is being made.
         atomic: the intention that has an atomic plan on its stack, or None.
@@ -49,9 +52,16 @@ class Circumstance:
         goal_conditions: whether plans have goal conditions, which are tested in every cycle.
         subplans: whether plans have plans of their own.
         outer_frame: frame of the plan whose sub-plans are being tried.
+        context: the view of itself that it gives to internal actions.
+        namespace_properties: properties that programs give to namespaces.
+        functions: arithmetic functions that its program registers, by name.
+        project_functions: those of the project, with their least and greatest numbers of arguments.
         cycles: number of steps made.
+        next_look: number of the cycle in which percepts and messages are looked at next.
         stopped: the agent is over.
         face: what the project's Python code sees of the agent; made when it is first asked for.
+        drowsy: it has had nothing to do since it last awoke, and has been told so.
+        asleep: it is drowsy, and has done what its plans do before sleep.
     """
 
     def __init__(
@@ -68,10 +78,14 @@ class Circumstance:
         self.options = options
         self.trail = Trail()
         self.beliefs = BeliefBase()
+        self.option_filter = self.beliefs[functor("select__option", 4)]
+        self.refused_options = False
         self.library = PlanLibrary(plans)
         self.library.report = lambda text: architecture.log("error", text)
         self.selects: Selects = self.library.selects
         self.events: deque[Event] = deque()
+        self.requeued: list[Event] = []
+        self.next_look = 0
         self.intentions: deque[Intention] = deque()
         self.alive: dict[int, Intention] = {}
         self.current: Intention | None = None
@@ -90,9 +104,15 @@ class Circumstance:
         self.goal_conditions = False
         self.subplans = False
         self.outer_frame: Any = None
+        self.namespace_properties: dict[str, dict[Term, Term]] = {}
+        self.functions: dict[str, Any] = {}
+        self.project_functions: Mapping[str, tuple[int, int | None]] = {}
+        self.context: Any = None
         self.cycles = 0
         self.stopped = False
         self.face: Any = None
+        self.drowsy = False
+        self.asleep = False
         self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}
         self.plans_made = len(plans.plans)
         self.bodies: dict[int, tuple[Term, Any]] = {}

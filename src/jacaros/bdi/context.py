@@ -7,6 +7,7 @@ from jacaros.asl.loader import parse_term
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
+from jacaros.bdi.functions import known_names
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.lowering import Names, lower_value
@@ -80,7 +81,7 @@ class Context:
             frame = current.frames[-1]
             slots = frame[4].slots
             names.update({n: frame[s] for n, s in slots.items() if frame[s] is not None})
-        return lower_value(parse_term(text), names.__getitem__)
+        return lower_value(parse_term(text, functions=known_names(self.agent)), names.__getitem__)
 
     def report(self, action: str, fault: object) -> None:
         """Tell people of an internal action that could not be done in a condition."""

@@ -6,7 +6,7 @@ of this one, so it stays with an intention as long as nothing else wants a cycle
 
 from typing import Any
 
-from jacaros.bdi import failure, meta_events, speech_acts, subplans
+from jacaros.bdi import edge_signals, failure, meta_events, option_selection, speech_acts, subplans
 from jacaros.bdi.belief_update import apply_percepts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
@@ -28,9 +28,12 @@ _HAS_FAILURE_PLAN = atom("has_failure_plan")
 def run(agent: Circumstance, fuel: int) -> bool:
     """Make at most *fuel* cycles; True when there is more to do."""
     begun = fuel
+    if agent.asleep:
+        edge_signals.awake(agent)
     while fuel > 0 and not agent.stopped:
-        _housekeeping(agent)
-        if agent.inbox:
+        looks = agent.options.percept_interval == 1 or _looks_around(agent, agent.cycles + begun - fuel)
+        _housekeeping(agent, looks)
+        if agent.inbox and looks:
             speech_acts.process(agent, agent.inbox.popleft())
         if agent.events:
             if agent.atomic is None:
@@ -42,9 +45,12 @@ def run(agent: Circumstance, fuel: int) -> bool:
         intention = _select_intention(agent)
         if intention is not None:
             fuel = _execute(agent, intention, fuel)
+            if agent.requeued:
+                agent.events.extendleft(reversed(agent.requeued))
+                agent.requeued.clear()
         elif (agent.events and agent.atomic is None) or agent.inbox:
             fuel -= 1
-        elif not (agent.percepts or agent.tasks):
+        elif not (agent.percepts or agent.tasks or edge_signals.fall_asleep(agent)):
             break
     agent.cycles += begun - fuel
     return not agent.stopped and _has_work(agent)
@@ -59,9 +65,17 @@ def _has_work(agent: Circumstance) -> bool:
     return bool(agent.events or agent.intentions)
 
 
-def _housekeeping(agent: Circumstance) -> None:
+def _looks_around(agent: Circumstance, cycle: int) -> bool:
+    """Whether an agent that does not look at percepts and messages in every cycle (``nrcbp``) does in this one."""
+    if cycle < agent.next_look and (agent.events or agent.intentions or agent.tasks):
+        return False
+    agent.next_look = cycle + agent.options.percept_interval
+    return True
+
+
+def _housekeeping(agent: Circumstance, looks: bool = True) -> None:
     """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
-    while agent.percepts:
+    while agent.percepts and looks:
         apply_percepts(agent, agent.percepts.popleft())
     while agent.tasks:
         agent.tasks.popleft()()
@@ -150,6 +164,8 @@ def _external(agent: Circumstance, event: Event) -> bool:
     frame = select_plan(agent, goal, annotations)
     if frame is None:
         if trigger.kind == "" or trigger.operator == "^":
+            if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
+                agent.requeued.append(event)
             return reacted
         intention = agent.new_intention(event.cause)
         posted = _unplanned(agent, intention, goal, annotations)
@@ -192,6 +208,8 @@ def select_plan(
             return inner
     if select is None:
         return None
+    if agent.option_filter.rows:
+        return option_selection.first_option(agent, goal, annotations, intention)
     frame = select(agent, goal, annotations)
     if agent.trail:
         agent.trail.clear()

@@ -236,7 +236,10 @@ def no_plan(
     """The reason of a goal that has no relevant or no applicable plan."""
     relevant = agent.selects[goal[0]] is not None
     shown = goal[0].kind + text(literal_of(goal, ()))
-    if relevant:
+    if relevant and agent.refused_options:
+        agent.refused_options = False
+        terms = error_terms("no_option", f"no option is selected for {shown}")
+    elif relevant:
         terms = error_terms("no_applicable", f"no applicable plan for {shown}")
     else:
         terms = error_terms("no_relevant", f"no relevant plan for {shown}")

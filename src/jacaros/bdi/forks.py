@@ -38,7 +38,7 @@ def fork(agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ..
     del frame
     for number, first in enumerate(firsts):
         branch = agent.new_intention(parent.cause)
-        branch.frames = _copied(parent.frames)
+        branch.frames = copied(parent.frames)
         branch.frames[-1][STEP] = first
         branch.handlers = list(parent.handlers)
         branch.on_failed = parent.on_failed
@@ -50,7 +50,7 @@ def fork(agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ..
     return SUSPENDED
 
 
-def _copied(frames: list[Frame]) -> list[Frame]:
+def copied(frames: list[Frame]) -> list[Frame]:
     """The stack with frames and free variables of its own."""
     names: dict[Var, Var] = {}
     copies = []

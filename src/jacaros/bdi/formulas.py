@@ -159,7 +159,7 @@ def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], t
             yield ()
         undo(trail, mark)
         return
-    context = agent.context  # type: ignore[attr-defined]
+    context = agent.context
     action = agent.actions.get(symbol.name)
     if action is None:
         unknown(context, symbol.name)

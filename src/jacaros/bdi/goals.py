@@ -154,6 +154,7 @@ def drop_all_events(agent: Circumstance) -> None:
         if event.intention is not None:
             drop_intention(agent, event.intention)
     agent.events.clear()
+    agent.requeued.clear()
     agent.suspended_events.clear()
 
 

@@ -8,13 +8,17 @@ class Options:
     """How an agent handles its events.
 
     Attributes:
-        events: what becomes of external events without a plan: ``discard`` or ``requeue``.
+        events: what becomes of external events without a plan: ``discard``; ``requeue``, they wait until there is one;
+            ``retrieve``, the choice among no plans is left to the selection function, and is none without one.
         new_focus: belief changes of plans are handled as intentions of their own (``intBels=newFocus``).
         tail_calls: a plan whose last formula calls its own goal again is replaced by the new one (``tro``).
-        verbose: 0 prints only what the program prints, 2 tells of every step.
+        verbose: what people are told of the agent besides what it prints: 0 only trouble, 2 details as well.
+        percept_interval: percepts and messages are looked at every so many cycles (``nrcbp``), and when there is nothing
+            else to do.
     """
 
     events: str = "discard"
     new_focus: bool = False
     tail_calls: bool = True
     verbose: int = 1
+    percept_interval: int = 1

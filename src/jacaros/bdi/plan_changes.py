@@ -1,10 +1,12 @@
 """Changes of the plan library and of rules at run time, and the loading of plans."""
 
 from jacaros.asl import nodes
+from jacaros.asl.labels import shape
 from jacaros.asl.loader import parse_plans
 from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import Rule
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.functions import known_names
 from jacaros.bdi.internal_action import ActionError
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.compiler.plan import Plan, label_of, with_subplans
@@ -29,7 +31,9 @@ ERROR = functor("error", 1)
 
 def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
     """Whether two plans are equal, labels aside."""
-    return (left.trigger, left.context, left.body) == (right.trigger, right.context, right.body)
+    return left.trigger.operator == right.trigger.operator and shape(
+        (left.trigger, left.context, left.body, left.goal_condition, left.subplans)
+    ) == shape((right.trigger, right.context, right.body, right.goal_condition, right.subplans))
 
 
 def add_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
@@ -60,7 +64,9 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
     term = resolve(term)
     if term.__class__ is String:
         written = str(term).strip()
-        for node in parse_plans(written if written.endswith(".") else written + "."):
+        for node in parse_plans(
+            written if written.endswith(".") else written + ".", functions=known_names(agent)
+        ):
             _add_node(agent, node, source, first)
         return
     if is_list(term):
@@ -68,6 +74,25 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
             add_plan(agent, item, source, first)
         return
     _add_node(agent, Reflection(shared=False).plan(term), source, first)
+
+
+def include_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
+    """Take in plans of a program that is included at run time; those that are held already stay as they are.
+
+    Raises:
+        ActionError: a label is that of another plan; nothing has been added then.
+    """
+    for node in plan_nodes:
+        if node.label is not None:
+            held = agent.library.by_label(label_of(node, 0))
+            if held is not None and not _same(held.node, node):
+                raise _label_taken(held.label)
+    for node in plan_nodes:
+        _add_node(agent, node, SELF, first=False)
+
+
+def _label_taken(label: Term) -> ActionError:
+    return ActionError(f"another plan has the label {text(label)} already")
 
 
 def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) -> None:
@@ -80,7 +105,7 @@ def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) 
     agent.plans_made += 1
     plan = Plan(node, label_of(node, agent.plans_made))
     if agent.library.by_label(plan.label) is not None:
-        raise ActionError(f"another plan has the label {text(plan.label)} already")
+        raise _label_taken(plan.label)
     agent.library.add(with_subplans(plan, agent.plans_made), first)
     agent.library.set_sources(plan, (source,))
     look_at_plans(agent)
@@ -134,7 +159,7 @@ def change_rule(agent: Circumstance, operator: str, term: Term) -> None:
     table = agent.beliefs[head]
     if operator in ("-", "--"):
         for entry, _ in table.entries():
-            if isinstance(entry, Rule) and entry.node == node:
+            if isinstance(entry, Rule) and shape(entry.node) == shape(node):
                 table.remove(entry)
                 return
         return

@@ -1,12 +1,14 @@
 """The plans of one agent by trigger, and their select functions."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import cast
 
+from jacaros.bdi.intention import Frame
 from jacaros.bdi.program_plans import ProgramPlans, concerns, made, relevant
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import Trigger
-from jacaros.compiler.unit import Select
+from jacaros.compiler.unit import Select, compile_select
 from jacaros.terms.values import SELF, Term, bare
 
 _BY_SELF = (SELF,)
@@ -30,17 +32,20 @@ class PlanLibrary:
         self.removed: list[Plan] = []
         self.selects = Selects(self)
         self._sources: dict[Plan, tuple[Term, ...]] = {}
+        self._every: dict[Trigger, Callable[..., Iterator[Frame]] | None] = {}
 
     def add(self, plan: Plan, first: bool = False) -> None:
         """Add a plan at the end, or before all others."""
         self.plans.insert(0 if first else len(self.plans), plan)
         self.own.append(plan)
+        self._every.clear()
         self.selects.forget(plan)
 
     def extend(self, plans: list[Plan]) -> None:
         """Add many plans at the end."""
         self.plans.extend(plans)
         self.own.extend(plans)
+        self._every.clear()
         self.selects.clear()
 
     def remove(self, plan: Plan) -> None:
@@ -51,7 +56,13 @@ class PlanLibrary:
         else:
             self.removed.append(plan)
         self._sources.pop(plan, None)
+        self._every.clear()
         self.selects.forget(plan)
+
+    def take_over(self, other: "PlanLibrary") -> None:
+        """Have the plans of the library of another agent that runs the same program."""
+        self.plans, self.own, self.removed = list(other.plans), list(other.own), list(other.removed)
+        self._sources = dict(other._sources)
 
     def sources(self, plan: Plan) -> tuple[Term, ...]:
         """Who told a plan; it goes when nobody is left."""
@@ -78,6 +89,14 @@ class PlanLibrary:
         """Whether the plans of an event kind are those of the program."""
         changed = (*self.own, *self.removed)
         return not any(concerns(plan, trigger) for plan in changed)
+
+    def every_option(self, trigger: Trigger) -> Callable[..., Iterator[Frame]] | None:
+        """A generator function of the frames of all applicable plans of an event kind; None without relevant plans."""
+        if trigger not in self._every:
+            plans = self.relevant(trigger)
+            select = compile_select(trigger, plans, self.actions, every=True)[0] if plans else None
+            self._every[trigger] = cast("Callable[..., Iterator[Frame]] | None", select)
+        return self._every[trigger]
 
     def has_subplans(self) -> bool:
         """Whether any plan has plans of its own."""

@@ -12,8 +12,8 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.compiler.building import annotation_parts, build, functor_of_literal, tuple_of
 from jacaros.compiler.conditions import accepts, condition, question, resolved
+from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
-from jacaros.compiler.reflection import Constant
 from jacaros.compiler.triggers import trigger
 from jacaros.compiler.variables import names_in, nodes_in
 from jacaros.terms.unifier import ATOMIC

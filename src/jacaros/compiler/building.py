@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 from jacaros.asl import nodes
+from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.lowering import lower
-from jacaros.compiler.reflection import Constant
 from jacaros.compiler.variables import variables_in
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, NO_LABEL, PLAN, RULE, TRIGGER

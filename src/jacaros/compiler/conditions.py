@@ -23,9 +23,9 @@ from jacaros.compiler.building import (
     is_static,
     tuple_of,
 )
+from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.matching import MAX_DEPTH, Then, match, match_all, settle_fresh
-from jacaros.compiler.reflection import Constant
 from jacaros.compiler.variables import names_in
 
 _MAX_LOOPS = 12

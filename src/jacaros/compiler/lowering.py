@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from jacaros.asl import nodes
+from jacaros.compiler.constant import Constant
 from jacaros.terms import plans
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.negation import qualify
@@ -203,6 +204,7 @@ def _fork(node: nodes.Fork, lookup: Lookup) -> Term:
 
 
 _LOWER: dict[type, Callable[..., Term]] = {
+    Constant: lambda node, _: node.value,
     nodes.Number: _number,
     nodes.String: _string,
     nodes.Variable: _variable,

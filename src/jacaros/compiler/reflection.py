@@ -4,10 +4,10 @@ A variable that has no value either stands for itself (a body that shares variab
 it: `Shared`), or becomes a variable of the new plan (`Closing`), for plans added to the library.
 """
 
-from dataclasses import dataclass
 from typing import cast
 
 from jacaros.asl import nodes
+from jacaros.compiler.constant import Constant
 from jacaros.terms import plans
 from jacaros.terms.plans import body_steps, is_body, step_parts, trigger_parts
 from jacaros.terms.text import text
@@ -26,13 +26,6 @@ from jacaros.terms.values import (
     Var,
     deref,
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Constant(nodes.Node):
-    """A value that is no text: a shared variable, a map, a reference."""
-
-    value: Term
 
 
 class NotAPlan(Exception):

@@ -58,6 +58,10 @@ class Failure(Fail):
         self.annotations = annotations
 
 
+class NextPlan(Exception):
+    """Among all applicable plans, one answer of a plan's context is enough."""
+
+
 SUSPENDED = object()
 """What a step returns when its intention has to wait."""
 
@@ -415,7 +419,7 @@ _FUNCTIONS = (
     unify_rows,
     unknown,
 )
-_CLASSES = (Annotated, Fail, InternalError, Remaining, Functor, String, Trail, Var)
+_CLASSES = (Annotated, Fail, InternalError, NextPlan, Remaining, Functor, String, Trail, Var)
 
 NAMES: dict[str, Any] = {
     **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},

@@ -14,7 +14,9 @@ from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.matching import match_all, settle_fresh
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.variables import names_in, nodes_in, occurrences
+from jacaros.terms.values import atom
 
+ALL_UNIFIERS = atom("all_unifs")
 _BY_NAME = (".term2string", ".puts", ".print_unifier")
 """Internal actions that reach variables by their names: all variables of the plan are kept for them."""
 
@@ -23,13 +25,16 @@ class SelectCompiler:
     """Writes the select function of one event kind, and the steps of its plans.
 
     Attributes:
+        every: the function is a generator of the frames of all applicable plans: of each plan the first one, or, when
+            its label says ``all_unifs``, one for each answer of its context.
         bodies: for each plan, the names of its step functions and what is known of them.
         firsts: for each plan, the name of the first step function.
     """
 
-    def __init__(self, unit: Unit, arity: int) -> None:
+    def __init__(self, unit: Unit, arity: int, every: bool = False) -> None:
         self.unit = unit
         self.arity = arity
+        self.every = every
         self.bodies: list[tuple[Plan, BodyCompiler, str]] = []
 
     def select(self, plans: Sequence[Plan], outer: Plan | None = None) -> str:
@@ -48,9 +53,13 @@ class SelectCompiler:
                 with fn.branch(), fn.writer.block("try:"):
                     self._plan(fn, plan)
                 fn.line("except InternalError: raise")
+                if self.every:
+                    fn.line("except NextPlan: pass")
                 fn.line(f"except Exception as fault: agent.context.report_plan({fn.constant(plan)}, fault)")
             fn.line("if t: undo(t, 0)")
-            fn.line("return None")
+            fn.line("return" if self.every else "return None")
+            if self.every:
+                fn.line("yield")
         self.unit.add(fn.writer)
         return name
 
@@ -122,7 +131,13 @@ class SelectCompiler:
         values = [fn.values[v] for v in bound]
         rest = frame.size - len(values)
         fixed = [first, "goal", "annotations", "t.serial", fn.constant(plan)]
-        fn.line(f"return [{', '.join([*fixed, *values, *(['None'] * rest)])}]")
+        made = f"[{', '.join([*fixed, *values, *(['None'] * rest)])}]"
+        if not self.every:
+            fn.line(f"return {made}")
+            return
+        fn.line(f"yield {made}")
+        if ALL_UNIFIERS not in plan.annotations:
+            fn.line("raise NextPlan")
 
 
 def _read_outer(fn: FunctionBuilder, outer: Plan, plans: Sequence[Plan]) -> None:

@@ -70,11 +70,18 @@ def _prefix(value: Term) -> str:
 
 
 def compile_select(
-    trigger: Trigger, plans: Sequence[Plan], actions: Mapping[str, ActionInfo], outer: Plan | None = None
+    trigger: Trigger,
+    plans: Sequence[Plan],
+    actions: Mapping[str, ActionInfo],
+    outer: Plan | None = None,
+    every: bool = False,
 ) -> tuple[Select, str]:
-    """The select function of an event kind, and the generated text; *outer* is the plan that sub-plans belong to."""
+    """The select function of an event kind, and the generated text; *outer* is the plan that sub-plans belong to.
+
+    With *every* it is a generator of the frames of all applicable plans.
+    """
     unit = CodeUnit(plans[0].file, actions)
-    compiler = SelectCompiler(unit, trigger.functor.arity)
+    compiler = SelectCompiler(unit, trigger.functor.arity, every)
     name = compiler.select(plans, outer)
     conditions = {
         plan: compile_goal_condition(unit, plan) for plan in plans if plan.node.goal_condition is not None

@@ -6,12 +6,14 @@ from typing import Any, Protocol
 
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.architecture import Timer
+from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.console import Console
 from jacaros.mas.coroutines import Coroutines, Ended
 from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.service_directory import ServiceDirectory
 from jacaros.terms.values import String, Term, atom, functor
 
 OUTPUT_GONE = 141
@@ -26,6 +28,10 @@ class Mind(Protocol):
 
     stopped: bool
     """Set by the host: no further cycle."""
+
+    @property
+    def options(self) -> Options:
+        """How it handles its events, and how much it tells."""
 
     def start(self) -> None:
         """Take up initial beliefs and goals."""
@@ -44,6 +50,9 @@ class Mind(Protocol):
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Be told the end of an action."""
+
+    def shut_down_in(self, milliseconds: float) -> None:
+        """Be told that the end comes after so many milliseconds."""
 
 
 class Body(Protocol):
@@ -73,6 +82,10 @@ class Run(Protocol):
     activity: Activity
     console: Console
 
+    @property
+    def services(self) -> ServiceDirectory:
+        """The directory facilitator."""
+
     def deliver(self, message: SpeechAct) -> bool:
         """Bring a message to its receiver; False when there is none."""
 
@@ -85,11 +98,20 @@ class Run(Protocol):
     def create_agent(self, name: str, source: str | None) -> str | None:
         """Make and start an agent; its final name, or None with the reason logged."""
 
-    def kill_agent(self, name: str) -> bool:
-        """End an agent; False when there is none of that name."""
+    def clone_agent(self, original: str, name: str) -> str | None:
+        """Make an agent with a copy of another one's mind; its final name, or None with the reason logged."""
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds; False when there is none of that name."""
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file."""
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        """The files below a folder."""
+
+    def write_file(self, path: str, text: str) -> None:
+        """Write a text file."""
 
 
 class AgentHost:
@@ -201,8 +223,12 @@ class AgentHost:
             self._run.stop_system(0.0, OUTPUT_GONE)
 
     def log(self, level: str, text: str) -> None:
-        """Tell people about trouble."""
-        self._run.console.log(f"[{self.name}] {level}: {text}", level)
+        """Tell people about trouble, and what else the agent's option ``verbose`` lets through."""
+        verbose = self.mind.options.verbose
+        if verbose > 0 or level not in ("debug", "info"):
+            # Details that an agent is to tell are wanted, whatever is shown of others.
+            shown = "info" if level == "debug" and verbose > 1 else level
+            self._run.console.log(f"[{self.name}] {level}: {text}", shown)
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
@@ -212,13 +238,41 @@ class AgentHost:
         """Make an agent."""
         return self._run.create_agent(name, source)
 
-    def kill_agent(self, name: str) -> bool:
-        """End another agent."""
-        return self._run.kill_agent(name)
+    def clone_agent(self, name: str) -> str | None:
+        """Make an agent with a copy of this one's mind."""
+        return self._run.clone_agent(self.name, name)
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent."""
+        return self._run.kill_agent(name, delay)
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file."""
         return self._run.read_program(path)
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        """The files below a folder."""
+        return self._run.list_files(folder)
+
+    def write_file(self, path: str, text: str) -> None:
+        """Write a text file."""
+        self._run.write_file(path, text)
+
+    def register_service(self, service: str) -> None:
+        """This agent provides a service."""
+        self._run.services.register(self.name, service)
+
+    def deregister_service(self, service: str) -> None:
+        """It does not any more."""
+        self._run.services.deregister(self.name, service)
+
+    def providers(self, service: str) -> Sequence[str]:
+        """The agents that provide a service."""
+        return self._run.services.providers(service)
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Have this agent told of all providers of a service."""
+        self._run.services.subscribe(self.name, service)
 
 
 def without_environment(act: Act) -> Completion:

@@ -171,6 +171,7 @@ class _JcmReader(JcmValues):
                     "roles in organisations are not supported and have no effect", cursor.span_of(key)
                 )
             case _:
+                agent.option_places[key.text] = cursor.span_of(key)
                 agent.options[key.text] = ", ".join(text.strip('"') for text, _ in self.pieces())
 
     def instances(self, agent: AgentPart) -> None:

@@ -4,19 +4,19 @@ import asyncio
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.errors import AslError
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.options import Options
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.compiler.lowering import lower_value
-from jacaros.mas.activity import Activity
+from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_options import mind_options
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import Directory
@@ -26,6 +26,8 @@ from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.service_directory import NAME as DIRECTORY_NAME
+from jacaros.mas.service_directory import ServiceDirectory
 from jacaros.project_modules import ProjectModules
 from jacaros.terms import arithmetic
 from jacaros.terms.text import text
@@ -54,6 +56,7 @@ class Mas:
         ros: the ROS graph and the embedded world.
         scheduler: gives the agents their turns.
         activity: what the agents wait for.
+        services: the directory facilitator.
     """
 
     def __init__(
@@ -74,8 +77,10 @@ class Mas:
         self._code = PythonCode(self._modules)
         self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"), self._code)
         self._mailboxes = Mailboxes(self._mailbox_of)
+        self.services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
+        self._specs: dict[str, AgentSpec] = {}
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
         self._error: BaseException | None = None
@@ -151,9 +156,12 @@ class Mas:
 
     def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
         name = spec.name
+        self._specs[name] = spec
         host = AgentHost(name, self, Random(f"{self._seed}/{name}"))
         plans = self._plans_of(program)
-        host.mind = Agent(name, _initial(spec, program), host, _options(spec), self._code.actions, plans)
+        options = mind_options(spec.options)
+        host.mind = Agent(name, _initial(spec, program), host, options, self._code.actions, plans)
+        host.mind.project_functions = self._code.functions
         self.directory.add(name, host)
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
@@ -168,6 +176,17 @@ class Mas:
             made = ProgramPlans(program.plans, self._code.actions)
             self._plans[id(program.plans)] = made
         return made
+
+    def _make_directory_agent(self) -> Agent:
+        """The agent of the directory facilitator; an agent of the project that has its name takes its place."""
+        host = self.directory.find(DIRECTORY_NAME)
+        if host is None:
+            host = AgentHost(DIRECTORY_NAME, self, Random(f"{self._seed}/{DIRECTORY_NAME}"))
+            host.mind = Agent(DIRECTORY_NAME, Program(), host)
+            self.directory.add(DIRECTORY_NAME, host)
+        mind = host.mind
+        assert isinstance(mind, Agent)
+        return mind
 
     # ---- the end
 
@@ -227,9 +246,11 @@ class Mas:
         return self.directory.names()
 
     def stop_system(self, delay: float, exit_code: int) -> None:
-        """End the run after *delay* seconds."""
+        """End the run after *delay* seconds; the agents are told that it will."""
         if delay > 0:
-            self.clock.call_later(delay, lambda: self.end(exit_code))
+            for host in self.directory:
+                host.mind.shut_down_in(delay * 1000)
+            AgentTimer(self.clock, self.activity, delay, lambda: self.end(exit_code))
         else:
             self.end(exit_code)
 
@@ -251,14 +272,52 @@ class Mas:
         _begin(host, spec, program)
         return host.name
 
-    def kill_agent(self, name: str) -> bool:
-        """End an agent; False when there is none of that name."""
-        host = self.directory.remove(name)
+    def clone_agent(self, original: str, name: str) -> str | None:
+        """Make an agent with a copy of the mind of *original*; its final name, or None with the reason logged."""
+        host = self.directory.find(original)
+        spec = self._specs.get(original)
+        if host is None or spec is None or not isinstance(host.mind, Agent):
+            self.console.log(f"error: agent {name}: there is no agent {original} to be cloned", "error")
+            return None
+        empty = replace(host.mind.program, beliefs=(), goals=())
+        copy = self._add(replace(spec, name=self.directory.free_name(name)), empty)
+        assert isinstance(copy.mind, Agent)
+        copy.mind.copy_mind_of(host.mind)
+        return copy.name
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds, of which it is told; False when there is none of that name."""
+        host = self.directory.find(name)
         if host is None:
             return False
+        if delay > 0:
+            host.mind.shut_down_in(delay * 1000)
+            AgentTimer(self.clock, self.activity, delay, lambda: self._kill(host))
+        else:
+            self._kill(host)
+        return True
+
+    def _kill(self, host: AgentHost) -> None:
+        if self.directory.find(host.name) is host:
+            self.directory.remove(host.name)
         host.halt()
         host.end()
-        return True
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        """The files in a folder and in the folders in it, as paths that begin with *folder*, sorted.
+
+        Raises:
+            OSError: when it cannot be read.
+        """
+        return self._programs.list_files(folder, self.deployment.base_path)
+
+    def write_file(self, path: str, text: str) -> None:
+        """Write a text file; a path that is not absolute is one of the project's folder.
+
+        Raises:
+            OSError: when it cannot be written.
+        """
+        (self.deployment.base_path / path).write_text(text, encoding="utf-8")
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file.
@@ -267,22 +326,6 @@ class Mas:
             FileNotFoundError: there is none.
         """
         return self._programs.include(path, str(self.deployment.base_path / "."))
-
-
-def _options(spec: AgentSpec) -> Options:
-    """The options of an agent, as its project file has them."""
-    given = spec.options
-    options = Options()
-    changes: dict[str, Any] = {}
-    if given.get("events") in ("discard", "requeue"):
-        changes["events"] = given["events"]
-    if "intBels" in given:
-        changes["new_focus"] = given["intBels"] == "newFocus"
-    if "tro" in given:
-        changes["tail_calls"] = given["tro"] != "false"
-    if given.get("verbose", "").isdigit():
-        changes["verbose"] = int(given["verbose"])
-    return replace(options, **changes)
 
 
 def _is_situated(spec: AgentSpec) -> bool:

@@ -213,5 +213,6 @@ class _Mas2jReader:
                 agent.goals.append((text, cursor.span_of(value)))
             else:
                 agent.options[key.text] = text
+                agent.option_places[key.text] = cursor.span_of(value)
             if cursor.token.kind != "]":
                 cursor.expect(",", "options are separated by ','")

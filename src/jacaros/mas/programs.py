@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from errno import ENOTDIR
 from importlib import resources
 from pathlib import Path
 
@@ -103,6 +104,19 @@ class Programs:
                 if (folder / candidate).is_file():
                     return folder / candidate
         raise FileNotFoundError(name)
+
+    def list_files(self, folder: str, base: Path) -> list[str]:
+        """The files below a folder, as paths that begin with *folder*, sorted; *base* is the project's folder.
+
+        Raises:
+            OSError: the folder cannot be read.
+        """
+        root = base / folder
+        if not root.is_dir():
+            raise NotADirectoryError(ENOTDIR, "it is no folder", str(root))
+        return sorted(
+            f"{Path(folder) / path.relative_to(root)}" for path in root.rglob("*") if path.is_file()
+        )
 
     def include(self, path: str, including: str) -> tuple[str, str]:
         """Name and text of an included file: beside the including one, in one of the folders, or (``$jacaros/…``)

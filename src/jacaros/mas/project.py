@@ -9,6 +9,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import parse_literals
 from jacaros.asl.source import SourceFile, Span
+from jacaros.mas.agent_options import check_option
 from jacaros.mas.deployment import (
     CARTAGO_ENVIRONMENTS,
     AgentSpec,
@@ -167,6 +168,10 @@ class _Resolver:
             names = [agent.name]
         else:
             names = [f"{agent.name}{number}" for number in range(1, agent.instances + 1)]
+        for option, value in agent.options.items():
+            found = check_option(option, value, agent.option_places.get(option))
+            if found is not None:
+                self.diagnostics.append(found)
         first = AgentSpec(
             name=agent.name,
             source_path=self._source(agent),

@@ -32,6 +32,7 @@ class AgentPart:
     source: str | None = None
     instances: int | list[str] | None = None
     options: dict[str, str] = field(default_factory=dict)
+    option_places: dict[str, Span] = field(default_factory=dict)
     beliefs: list[Written] = field(default_factory=list)
     goals: list[Written] = field(default_factory=list)
     join: list[Written] = field(default_factory=list)

@@ -37,6 +37,8 @@ class RecordingHost:
         self.cancelled: list[int] = []
         self.suspended: list[int] = []
         self.resumed: list[int] = []
+        self.files: dict[str, str] = {}
+        self.services: list[str] = []
         self.sent: list[SpeechAct] = []
         self.stopped = False
         self.exit_code = 0
@@ -96,12 +98,34 @@ class RecordingHost:
         del name, source
         return None
 
-    def kill_agent(self, name: str) -> bool:
+    def clone_agent(self, name: str) -> str | None:
         del name
+        return None
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        del name, delay
         return False
 
     def read_program(self, path: str) -> tuple[str, str]:
         raise FileNotFoundError(path)
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        raise FileNotFoundError(folder)
+
+    def write_file(self, path: str, text: str) -> None:
+        self.files[path] = text
+
+    def register_service(self, service: str) -> None:
+        self.services.append(service)
+
+    def deregister_service(self, service: str) -> None:
+        self.services.remove(service)
+
+    def providers(self, service: str) -> Sequence[str]:
+        return [self.agent.name] if service in self.services else []
+
+    def subscribe_to_service(self, service: str) -> None:
+        pass
 
     def run(self, fuel: int = 1000, seconds: float = 1000.0) -> None:
         """Let the agent run, and time pass, until it stops, is idle for good, or time is up."""

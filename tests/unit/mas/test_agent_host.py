@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from random import Random
 
 from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import VirtualClock, run
 from jacaros.mas.activity import Activity
@@ -17,6 +18,7 @@ class Mind:
     """Takes notes."""
 
     stopped = False
+    options = Options()
 
     def __init__(self) -> None:
         self.log: list[str] = []
@@ -96,7 +98,8 @@ class FakeRun:
     def create_agent(self, name: str, source: str | None) -> str | None:
         return name
 
-    def kill_agent(self, name: str) -> bool:
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        del delay
         return name == "ann"
 
     def read_program(self, path: str) -> tuple[str, str]:

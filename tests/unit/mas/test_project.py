@@ -176,6 +176,36 @@ def test_errors_of_a_mas2j_file_are_reported_together(folder: Path):
     ]
 
 
+def test_wrong_options_are_reported_at_their_line(folder: Path):
+    text = """\
+        MAS m {
+            agents: bob [events=discord, intBels=here,
+                         verbose=9, tro=yes];
+                    carl [nrcbp=0, own="anything"];
+        }
+        """
+    assert located(report(folder, "p.mas2j", text)) == [
+        ("2:25", "events is one of discard, requeue, retrieve, not 'discord'"),
+        ("2:42", "intBels is one of sameFocus, newFocus, not 'here'"),
+        ("3:26", "verbose is one of 0, 1, 2, not '9'"),
+        ("3:33", "tro is one of true, false, not 'yes'"),
+        ("4:25", "nrcbp is a whole number from 1 on, not '0'"),
+    ]
+
+
+def test_options_without_effect_are_passed_over_with_a_warning(folder: Path):
+    deployment = load(
+        folder,
+        "p.mas2j",
+        'MAS m { agents: bob [mindinspector="web(ms,100)", cycles_act=2, synchronised=true, own=x]; }',
+    )
+    assert [warning.message for warning in deployment.ignored] == [
+        "the option 'mindinspector' has no effect: use --view or --record",
+        "the option 'cycles_act' has no effect: every cycle has each stage once",
+        "the option 'synchronised' has no effect: agents take turns anyway",
+    ]
+
+
 def test_an_error_shows_the_line_and_a_hint(folder: Path):
     assert report(folder, "p.mas2j", "MAS m {\n    agents: bob\n            alice;\n}\n") == dedent(
         """\

@@ -54,31 +54,41 @@ def _warn_of_class(ctx: Context, option: Term) -> None:
     ctx.architecture.log("warning", f".create_agent: {text(option)} names a class of Java and is not used")
 
 
+@internal_action(".clone", arity=1)
+def clone(ctx: Context, name: Term) -> bool:
+    """``.clone(Name)`` makes an agent with the same beliefs, rules, plans, events and intentions.
+
+    The calling intention is not copied, nor are intentions that wait for something.  The name is made unique; a
+    variable is bound to the final one, as by ``.create_agent``.
+
+    Raises:
+        ActionError: the agent could not be made.
+    """
+    wanted = _name_from_variable(name) if isinstance(name, Var) else characters(name)
+    made = ctx.architecture.clone_agent(wanted)
+    if made is None:
+        raise ActionError(f".clone: the agent {wanted} could not be made")
+    return not isinstance(name, Var) or ctx.unify(String(made), name)
+
+
 @internal_action(".kill_agent", arity=(1, 2))
 def kill_agent(ctx: Context, name: Term, deadline: Term = 0.0) -> bool:
     """``.kill_agent(Name[, Ms])`` ends an agent, at once or after some milliseconds.  Fails if there is none.
 
+    With a time, the agent is given ``+jag_shutting_down(Ms)`` so that it can prepare.
+
     Raises:
         WrongArguments: the time is no number.
     """
-    victim = characters(name)
     delay = number(deadline, "the second argument of .kill_agent") / 1000
-    architecture = ctx.architecture
-    if delay <= 0:
-        return architecture.kill_agent(victim)
-    if victim not in architecture.agent_names():
-        return False
-    architecture.set_timer(delay, lambda: _kill(ctx, victim))
-    return True
-
-
-def _kill(ctx: Context, victim: str) -> None:
-    ctx.architecture.kill_agent(victim)
+    return ctx.architecture.kill_agent(characters(name), max(delay, 0.0))
 
 
 @internal_action(".stopMAS", arity=(0, 2), suspends=True)
 def stop_mas(ctx: Context, delay: Term = 0.0, code: Term = 0.0) -> None:
     """``.stopMAS([Ms[, Code]])`` ends the whole run after some milliseconds, with an exit code (default 0).
+
+    With a time, all agents are given ``+jag_shutting_down(Ms)`` so that they can prepare.
 
     ``true`` and ``false`` in place of the code stand for 0: there is no virtual machine to be kept running.
 

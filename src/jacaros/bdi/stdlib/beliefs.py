@@ -2,17 +2,20 @@
 
 from collections.abc import Iterator
 
+from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
 from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import Rule, parts
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.bdi.stdlib.terms import without_sources
+from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.compiler.runtime import own_annotations
 from jacaros.terms.order import compare
 from jacaros.terms.plans import RULE
 from jacaros.terms.text import text
-from jacaros.terms.unifier import rename, resolve
-from jacaros.terms.values import FALSE, TRUE, Term, atom, functor_of
+from jacaros.terms.unifier import rename, resolve, undo, unify, unify_annotations
+from jacaros.terms.values import FALSE, TRUE, Term, bare, functor_of, make_list
 
 
 @internal_action(".abolish", arity=1)
@@ -64,6 +67,31 @@ def list_rules(ctx: Context) -> None:
                 ctx.architecture.print(format_term(entry.node))
 
 
+@internal_action(".relevant_rules", arity=2)
+def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
+    """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the base.
+
+    Raises:
+        WrongArguments: *P* is no literal.
+    """
+    symbol, _, annotations = parts(pattern)
+    if symbol is None:
+        raise WrongArguments(f"a literal is expected, not {text(pattern)}")
+    found = []
+    for entry, held in ctx.agent.beliefs[symbol].entries():
+        if not isinstance(entry, Rule):
+            continue
+        rule = lower(nodes.RuleTerm(entry.node), fresh_names())
+        mark = len(ctx.trail)
+        fits = unify(bare(pattern), bare(rule[1]), ctx.trail) and unify_annotations(
+            annotations, None, held, None, ctx.trail
+        )
+        undo(ctx.trail, mark)
+        if fits:
+            found.append((rule[0], without_sources(rule[1]), rule[2]))
+    return ctx.unify(target, make_list(found))
+
+
 @internal_action(".eval", arity=2)
 def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
     """``.eval(X, F)``: X is ``true`` or ``false``."""
@@ -109,20 +137,3 @@ def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
 def perceive(ctx: Context) -> None:
     """Look at the environment at once: nothing is left unseen between two cycles anyway."""
     del ctx
-
-
-@internal_action(".namespace", arity=1, backtracks=True)
-def namespace(ctx: Context, target: Term) -> Iterator[None]:
-    """``.namespace(N)``: each namespace in use."""
-    names: dict[str, None] = {"default": None}
-    for symbol, table in ctx.agent.beliefs.items():
-        if symbol.namespace and len(table):
-            names[symbol.namespace] = None
-    for plan in ctx.agent.library.plans:
-        symbol = plan.trigger_functor()
-        if symbol is not None and symbol.namespace:
-            names[symbol.namespace] = None
-
-    for name in names:
-        if ctx.unify(target, atom(name)):
-            yield

@@ -3,11 +3,14 @@
 from collections.abc import Iterator
 from typing import Any
 
+from jacaros.asl import nodes
+from jacaros.asl.walk import walk
 from jacaros.bdi import goals
 from jacaros.bdi.body_terms import is_body_frame
 from jacaros.bdi.context import Context
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.bdi.plan_terms import bindings_of, variables_of
 from jacaros.bdi.stack import achieve
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
@@ -88,12 +91,7 @@ def _state(candidate: Intention) -> Term:
 def _means(ctx: Context, frame: Any) -> Term:
     """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done."""
     plan = frame[4]
-    values = {
-        name: frame[slot]
-        for name, slot in plan.slots.items()
-        if slot < len(frame) and frame[slot] is not None
-    }
-    bindings = [structure("map", atom(f"'{name}'"), resolve(value)) for name, value in values.items()]
+    values = variables_of(frame)
     kind = frame[GOAL][0]
     goal = resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))
     rest = make_body(
@@ -101,7 +99,7 @@ def _means(ctx: Context, frame: Any) -> Term:
         for node in _remaining(frame[STEP])
     )
     event = trigger(kind.operator + kind.kind, goal)
-    return structure("im", ctx.agent.library.label(plan), event, resolve(rest), make_list(bindings))
+    return structure("im", ctx.agent.library.label(plan), event, resolve(rest), bindings_of(frame))
 
 
 def _remaining(step: Any) -> Iterator[Any]:
@@ -132,6 +130,24 @@ def drop_intention(ctx: Context, goal: Term = None) -> Any:
         goals.drop_intention(ctx.agent, ctx.intention)
     else:
         goals.drop_goal(ctx.agent, _goal(goal))
+
+
+@internal_action(".drop_future_intention", arity=1, suspends=True)
+def drop_future_intention(ctx: Context, goal: Term) -> None:
+    """``.drop_future_intention(G)``: intentions whose plan on top has ``!G`` (or ``!!G``) in its body vanish."""
+    wanted = _goal(goal)
+    for candidate in list(ctx.agent.alive.values()):
+        if candidate.frames and any(goals.matches(ctx.agent, wanted, g) for g in _goals_in(candidate)):
+            goals.drop_intention(ctx.agent, candidate)
+
+
+def _goals_in(candidate: Intention) -> Iterator[Term]:
+    """The goals that stand in the body of the plan on top."""
+    frame = candidate.frames[-1]
+    values = variables_of(frame)
+    for node in walk(frame[PLAN].node.body):
+        if isinstance(node, nodes.Achieve):
+            yield resolve(lower(node.goal, lambda name: values[name] if name in values else Var(name)))
 
 
 @internal_action(".drop_event", arity=1, suspends=True)

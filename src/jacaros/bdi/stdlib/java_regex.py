@@ -39,6 +39,15 @@ def replace_all(text: str, pattern: str, by: str) -> str:
     return compiled.sub(lambda match: _expand(by, match), text)
 
 
+def matches_whole(pattern: str, text: str) -> bool:
+    """Whether *pattern* matches all of *text*.
+
+    Raises:
+        ValueError: for a pattern that is wrong or beyond what is translated.
+    """
+    return _compile(pattern).fullmatch(text) is not None
+
+
 @lru_cache(maxsize=64)
 def _compile(pattern: str) -> re.Pattern[str]:
     with warnings.catch_warnings():

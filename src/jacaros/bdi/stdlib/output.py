@@ -1,11 +1,12 @@
 """Internal actions that show text to people."""
 
 import re
+from dataclasses import replace
 
 from jacaros.bdi.context import Context
 from jacaros.bdi.intention import PLAN
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
-from jacaros.bdi.stdlib.arguments import characters, number, string
+from jacaros.bdi.stdlib.arguments import characters, string, whole
 from jacaros.bdi.stdlib.java_format import java_format
 from jacaros.errors import JacarosError
 from jacaros.terms.text import display, text
@@ -100,15 +101,17 @@ def log(ctx: Context, level: Term, *arguments: Term) -> None:
 
 
 @internal_action(".verbose", arity=1)
-def verbose(_ctx: Context, level: Term) -> None:
-    """``.verbose(N)`` is accepted for the sake of Jason's programs, and changes nothing.
-
-    How much is told of a run is chosen when it is started.
+def verbose(ctx: Context, level: Term) -> None:
+    """``.verbose(N)``: what people are told of the agent from now on, besides what it prints: 0 only trouble, 1 the
+    usual, 2 details as well.
 
     Raises:
-        WrongArguments: *level* is no number.
+        WrongArguments: *level* is not 0, 1 or 2.
     """
-    number(level, "the argument of .verbose")
+    wanted = whole(level, "the argument of .verbose")
+    if not 0 <= wanted <= 2:
+        raise WrongArguments(f"the argument of .verbose must be 0, 1 or 2, not {text(level)}")
+    ctx.agent.options = replace(ctx.agent.options, verbose=wanted)
 
 
 @internal_action(".print_unifier", arity=0)

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from jacaros.asl.errors import AslError
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.plan_terms import plan_term
 from jacaros.bdi.stdlib.waiting import trigger_of
-from jacaros.compiler.lowering import fresh_names, lower_plan
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.reflection import NotAPlan
 from jacaros.terms.text import text
@@ -20,8 +20,7 @@ def _source(term: Term) -> Term:
 
 def _term(ctx: Context, plan: Plan) -> Term:
     """A plan as a term, with its label and what is known of it."""
-    term = lower_plan(plan.node, fresh_names())
-    return (term[0], ctx.agent.library.label(plan), *term[2:])
+    return plan_term(ctx.agent, plan)
 
 
 @internal_action(".add_plan", arity=(1, 3))

@@ -3,20 +3,25 @@
 from collections.abc import Callable
 
 from jacaros.bdi.context import Context
+from jacaros.bdi.intention import STEP
 from jacaros.bdi.internal_action import internal_action
 from jacaros.terms.order import annotation_set
-from jacaros.terms.plans import PLAN
+from jacaros.terms.plans import PLAN, body_steps, is_body, step_parts
 from jacaros.terms.unifier import rename
 from jacaros.terms.values import (
     SOURCE,
     Annotated,
+    String,
     Term,
     annotations_of,
+    functor,
     functor_of,
     is_list,
     list_items,
     make_list,
 )
+
+CODE_LINE, CODE_SRC = functor("code_line", 1), functor("code_src", 1)
 
 
 @internal_action(".copy_term", arity=2)
@@ -78,7 +83,7 @@ def annotated(term: Term, annotations: tuple[Term, ...]) -> Term:
 def told_by(term: Term, source: Term) -> Term:
     """The literal as heard from *source*: its own sources become annotations of the new one."""
     sources = tuple(a for a in annotations_of(term) if _is_source(a))
-    return annotated(_without_sources(term), (annotated((SOURCE, source), sources),))
+    return annotated(without_sources(term), (annotated((SOURCE, source), sources),))
 
 
 def _is_source(annotation: Term) -> bool:
@@ -86,7 +91,8 @@ def _is_source(annotation: Term) -> bool:
     return symbol is not None and symbol.name == SOURCE.name
 
 
-def _without_sources(term: Term) -> Term:
+def without_sources(term: Term) -> Term:
+    """The literal without its sources."""
     if not isinstance(term, Annotated):
         return term
     kept = tuple(a for a in term.annotations if not _is_source(a))
@@ -95,5 +101,28 @@ def _without_sources(term: Term) -> Term:
 
 def _without_source(term: Term) -> Term:
     if term.__class__ is tuple and term[0] is PLAN:
-        return (PLAN, _without_sources(term[1]), *term[2:])
-    return _without_sources(term)
+        return (PLAN, without_sources(term[1]), *term[2:])
+    return without_sources(term)
+
+
+@internal_action(".get_src_info", arity=2)
+def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
+    """``.get_src_info(L, R)``: *R* is the literal *L* with ``code_line(N)`` and ``code_src("file:…")``: where it is
+    written, that is, the place of the step that asks.  Fails when *L* is no literal."""
+    inner = _only_operand(term)
+    if functor_of(inner) is None:
+        return False
+    current = ctx.intention
+    place: tuple[Term, ...] = ()
+    if current is not None and current.frames:
+        info = getattr(current.frames[-1][STEP], "info", None)
+        if info is not None and info.node.span is not None:
+            line, file = info.node.span.line, info.node.span.file.name
+            place = ((CODE_LINE, float(line)), (CODE_SRC, String(f"file:{file}")))
+    return ctx.unify(annotated(inner, place), result)
+
+
+def _only_operand(term: Term) -> Term:
+    """What the only step of a plan body is about; any other term is itself."""
+    steps = list(body_steps(term)) if is_body(term) else []
+    return step_parts(steps[0])[1][0] if len(steps) == 1 else term

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills STANDARD
 from jacaros.bdi.internal_action import STANDARD
+from jacaros.bdi.options import Options
 from jacaros.errors import JacarosError
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, resolve, undo, unify
@@ -41,6 +42,7 @@ class FakeArchitecture:
     agents: list[str] = field(default_factory=lambda: ["bob", "carl"])
     timers: list[tuple[float, Callable[[], None]]] = field(default_factory=list)
     broken: bool = False
+    delay: float = 0.0
 
     def now(self) -> float:
         return self.time
@@ -61,7 +63,8 @@ class FakeArchitecture:
         self.created.append((name, source))
         return None if self.broken else f"{name}_1" if name in self.agents else name
 
-    def kill_agent(self, name: str) -> bool:
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        self.delay = delay
         known = name in self.agents
         self.agents = [other for other in self.agents if other != name]
         return known
@@ -74,7 +77,7 @@ class FakeContext:
     """Runs internal actions as a mind does: arguments resolved, bindings undone between the answers."""
 
     def __init__(self) -> None:
-        self.agent = SimpleNamespace(name="bob")
+        self.agent = SimpleNamespace(name="bob", options=Options())
         self.architecture = FakeArchitecture()
         self.trail = Trail()
         self.intention: object = None

@@ -127,10 +127,15 @@ def test_log_needs_a_level(mind: FakeContext, level: object) -> None:
         mind.succeeds(".log", level)
 
 
-def test_verbose_is_accepted(mind: FakeContext) -> None:
+def test_verbose_sets_what_is_told(mind: FakeContext) -> None:
     assert mind.succeeds(".verbose", 2)
+    assert mind.agent.options.verbose == 2
+
+
+@pytest.mark.parametrize("level", ["loud", -1, 3])
+def test_verbose_knows_three_levels(mind: FakeContext, level: object) -> None:
     with pytest.raises(WrongArguments):
-        mind.succeeds(".verbose", "loud")
+        mind.succeeds(".verbose", level)
 
 
 def test_print_unifier_shows_the_variables_that_have_values(mind: FakeContext) -> None:

@@ -1,0 +1,66 @@
+"""The options of agents in project files: what they may be, and what becomes of them."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from difflib import get_close_matches
+from typing import Final
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.source import Span
+from jacaros.bdi.options import Options
+
+_TRUTH: Final = ("true", "false")
+_CHOICES: Final[dict[str, tuple[str, ...]]] = {
+    "events": ("discard", "requeue", "retrieve"),
+    "intBels": ("sameFocus", "newFocus"),
+    "verbose": ("0", "1", "2"),
+    "synchronised": _TRUTH,
+    "tro": _TRUTH,
+    "qcache": _TRUTH,
+    "qprofiling": _TRUTH,
+}
+_NUMBERS: Final = ("nrcbp", "cycles", "cycles_sense", "cycles_deliberate", "cycles_act")
+_WITHOUT_EFFECT: Final = {
+    "synchronised": "agents take turns anyway",
+    "qcache": "queries are answered by indexes",
+    "qprofiling": "queries are not measured",
+    "mindinspector": "use --view or --record",
+    "rc": "there is one reasoning cycle",
+    "cycles": "agents take turns in one loop",
+    "cycles_sense": "every cycle has each stage once",
+    "cycles_deliberate": "every cycle has each stage once",
+    "cycles_act": "every cycle has each stage once",
+}
+
+
+def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
+    """What is wrong with an option, or that it has no effect here; None for the others, the user's own as well."""
+    choices = _CHOICES.get(name)
+    if choices is not None and value not in choices:
+        close = get_close_matches(value, choices, 1)
+        hint = f"did you mean {close[0]}?" if close else None
+        return Diagnostic("error", f"{name} is one of {', '.join(choices)}, not '{value}'", span, hint)
+    if name in _NUMBERS and not (value.isdigit() and int(value) > 0):
+        return Diagnostic("error", f"{name} is a whole number from 1 on, not '{value}'", span)
+    if name in _WITHOUT_EFFECT:
+        why = _WITHOUT_EFFECT[name]
+        return Diagnostic("warning", f"the option '{name}' has no effect: {why}", span)
+    return None
+
+
+def mind_options(given: Mapping[str, str]) -> Options:
+    """What the options of an agent mean for its mind."""
+    options = Options()
+    return replace(
+        options,
+        events=given.get("events", options.events),
+        new_focus=given.get("intBels") == "newFocus",
+        tail_calls=given.get("tro") != "false",
+        verbose=_number(given, "verbose", options.verbose),
+        percept_interval=_number(given, "nrcbp", options.percept_interval),
+    )
+
+
+def _number(given: Mapping[str, str], name: str, default: int) -> int:
+    value = given.get(name, "")
+    return int(value) if value.isdigit() else default

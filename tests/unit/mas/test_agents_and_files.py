@@ -1,0 +1,158 @@
+"""Internal actions that reach beyond one mind: files, copies of agents, the directory, the end of agents."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.testing import RunResult, run_project
+
+
+def run(folder: Path, **files: str) -> RunResult:
+    """Write files (``a_asl`` is a.asl) and run the first until nothing is left to do."""
+    paths = []
+    for name, text in files.items():
+        stem, _, suffix = name.rpartition("_")
+        paths.append(folder / f"{stem}.{suffix}")
+        paths[-1].write_text(text, encoding="utf-8")
+    return run_project(paths[0], until_idle=True)
+
+
+def test_the_directory_knows_who_provides_what(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        m_mas2j="MAS m { agents: a; b; }",
+        a_asl="""!go. +!go <- .df_register("sell(book)"); .df_register(paint, "art"); .wait(50);
+            .df_search("sell(book)", L); .print(L); .df_search(paint, art, P); .print(P);
+            .df_deregister(paint); .df_search("paint", E); .print(E); .all_names(N); .print(N).""",
+        b_asl=""" !go. +!go <- .wait(10); .df_register("sell(book)").""",
+    )
+    assert result.lines == ["[a] [a,b]", "[a] [a]", "[a] []", "[a] [a,b,df]"]
+
+
+def test_there_is_no_directory_before_it_is_used(tmp_path: Path) -> None:
+    assert run(tmp_path, a_asl="!go. +!go <- .all_names(N); .print(N).").lines == ["[a] [a]"]
+
+
+def test_subscribers_are_told_of_providers_that_are_there_and_that_come(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        m_mas2j="MAS m { agents: a; b; c; }",
+        a_asl="""!go. +!go <- .wait(10); .df_subscribe("sell"); .df_subscribe("sell").
+            +provider(A, S)[source(W)] <- .print(A, " ", S, " ", W).""",
+        b_asl='!go. +!go <- .df_register("sell").',
+        c_asl='!go. +!go <- .wait(20); .df_register("sell"); .df_register("buy").',
+    )
+    assert result.lines == ["[a] b sell df", "[a] c sell df"]
+
+
+def test_the_directory_can_be_asked(tmp_path: Path) -> None:
+    program = '!go. +!go <- .df_register("sell"); .send(df, askOne, provider(A, "sell"), R); .print(R).'
+    assert run(tmp_path, a_asl=program).lines == ['[a] provider(a,"sell")[source(df)]']
+
+
+def test_files_are_listed_with_those_of_inner_folders(tmp_path: Path) -> None:
+    (tmp_path / "data" / "inner").mkdir(parents=True)
+    for name in ("b.txt", "a.asl", "inner/c.asl"):
+        (tmp_path / "data" / name).write_text("", encoding="utf-8")
+    result = run(
+        tmp_path,
+        a_asl="""!go. +!go <- .list_files("data", L); .print(L); .list_files("data", ".*[.]asl", R); .print(R);
+            !failing({ .list_files("nowhere", _) }); !failing({ .list_files(data, _) });
+            !failing({ .list_files("data", "[", _) }).
+            +!failing(B) <- B.
+            -!failing(_)[error(E)] <- .print(E).""",
+    )
+    assert result.lines == [
+        '[a] ["data/a.asl","data/b.txt","data/inner/c.asl"]',
+        '[a] ["data/a.asl","data/inner/c.asl"]',
+        "[a] internal_action",
+        "[a] wrong_arguments",
+        "[a] wrong_arguments",
+    ]
+
+
+def test_a_saved_agent_can_be_run(tmp_path: Path) -> None:
+    first = run(
+        tmp_path,
+        a_asl="""{ register_function("my.twice", 1, "twice") }
+            twice(X, Y) :- Y = X * 2.
+            p(1)[source(bob)]. p(2). ~q("x"). open(_).
+            @known[atomic] +!go(N) : p(N) & not r <- X = my.twice(N); +seen(X); .print(X); ?seen(X).
+            !begin. +!begin <- +p(3); .add_plan("+!more <- .print(more)."); .save_agent("b.asl", [go(2), more]).""",
+    )
+    assert first.errors == []
+    again = run_project(tmp_path / "b.asl", until_idle=True)
+    assert sorted(again.lines) == ["[b] 4", "[b] more"]
+    text = (tmp_path / "b.asl").read_text(encoding="utf-8")
+    assert "p(1)[source(bob)]." in text
+    assert "p(3).\np(1)" in text
+
+
+def test_a_program_is_included_at_run_time(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        a_asl="""!go. +!go <- .include("other.asl"); .include("other.asl"); !hello; .include("other.asl", ns);
+            ?ns::q(X); .print(X); .include("other.asl", N); !N::hello; .findall(P, .plan_label(_, P), L);
+            .length(L, C); .print(C); .include("none.asl").
+            -!go[error(E)] <- .print(E).""",
+        other_asl="q(1). +!hello <- .print(hello).",
+    )
+    assert result.lines == ["[a] hello", "[a] 1", "[a] hello", "[a] 5", "[a] internal_action"]
+
+
+def test_a_wrong_program_is_not_included(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        a_asl="""!go. @same +!go <- .include("other.asl").
+            -!go[error(E), error_msg(M)] <- .print(E, " ", M).""",
+        other_asl="@ok +!hello <- .print(hello). @same +!hello <- .print(other).",
+    )
+    assert result.lines == [
+        "[a] internal_action .include: other.asl cannot be included: another plan has the label same already"
+    ] or result.lines == ["[a] internal_action another plan has the label same already"]
+
+
+def test_a_clone_has_the_mind_of_its_original(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        a_asl="""p(1). r(X) :- p(X).
+            !count(3). !go.
+            +!go <- +p(2); .add_plan({ +!new <- .print(new) }); .clone("b"); .print(cloned);
+                .send(b, achieve, show); .send(b, achieve, new).
+            +!show <- .findall(X, r(X), L); .my_name(N); .print(N, L).
+            +!count(0) <- .print(counted).
+            +!count(N) <- !count(N - 1).""",
+    )
+    assert result.of("a") == ["cloned", "counted"]
+    assert sorted(result.of("b")) == ["b[2,1]", "counted", "new"]
+
+
+def test_the_name_of_a_clone_is_made_unique(tmp_path: Path) -> None:
+    program = "!go. +!go <- .clone(a); .clone(Other); .print(Other); .all_names(N); .print(N)."
+    assert run(tmp_path, a_asl=program).of("a") == ["other", "[a,a_1,other]"]
+
+
+def test_agents_are_told_that_they_will_be_shut_down(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        m_mas2j="MAS m { agents: a; b; }",
+        a_asl="!go. +!go <- .kill_agent(b, 100); .wait(200); .all_names(N); .print(N); .stopMAS(50, 4).",
+        b_asl="+jag_shutting_down(T) <- .print(T); .wait(90); .print(last); .wait(20); .print(never).",
+    )
+    assert result.lines == ["[b] 100", "[b] last", "[a] [a]"]
+    assert result.exit_code == 4
+
+
+def test_the_end_of_the_run_is_told_to_all(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        a_asl="!go. +!go <- .stopMAS(70). +jag_shutting_down(T) <- .wait(60); .print(ready(T)).",
+    )
+    assert result.lines == ["[a] ready(70)"]
+
+
+@pytest.mark.parametrize("plan", ["+jag_sleeping <- .print(sleep).", "+jag_awaking <- .print(awake)."])
+def test_an_agent_is_told_that_it_falls_asleep_and_awakes(tmp_path: Path, plan: str) -> None:
+    result = run(tmp_path, a_asl=f"!go. +!go <- .wait(10); .print(up); .wait(10). {plan}")
+    word = "sleep" if "sleep" in plan else "awake"
+    assert sorted(result.of("a")) == sorted(["up", *([word] * (3 if word == "sleep" else 2))])
