@@ -8,7 +8,7 @@ no more.
 
 import re
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NamedTuple
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import SourceFile, Span
@@ -64,8 +64,22 @@ class Token:
         return f"Token({self.kind!r}, {self.text!r}, {self.line}:{self.column})"
 
 
-def tokenize(file: SourceFile, report: Callable[[Diagnostic], None]) -> list[Token]:
-    """The tokens of *file*, closed by two of kind ``end`` that stand right behind the last of the others."""
+class Comment(NamedTuple):
+    """A comment with its marks; ``next_token`` is the index of the token behind it."""
+
+    text: str
+    line: int
+    column: int
+    next_token: int
+
+
+def tokenize(
+    file: SourceFile, report: Callable[[Diagnostic], None], comments: list[Comment] | None = None
+) -> list[Token]:
+    """The tokens of *file*, closed by two of kind ``end`` that stand right behind the last of the others.
+
+    Comments are put into *comments*, if it is given.
+    """
     tokens: list[Token] = []
     append = tokens.append
     line, begin, last_line = 1, 0, 0
@@ -80,6 +94,8 @@ def tokenize(file: SourceFile, report: Callable[[Diagnostic], None]) -> list[Tok
             if text in RESERVED:
                 kind = text
         elif kind in ("lines", "long_comment", "comment"):
+            if comments is not None and kind != "lines":
+                comments.append(Comment(text, line, found.end() - len(text) - begin + 1, len(tokens)))
             count = text.count("\n")
             if count:
                 line += count

@@ -40,12 +40,20 @@ def load_program(
     Raises:
         AslError: with all errors of all files.
     """
+    program, diagnostics = read_program(SourceFile(name, text), read, functions)
+    _refuse_errors(diagnostics)
+    return program, diagnostics
+
+
+def read_program(
+    file: SourceFile, read: Read | None = None, functions: Mapping[str, tuple[int, int | None]] | None = None
+) -> tuple[nodes.Program, list[Diagnostic]]:
+    """What can be read of the program in *file*, and all errors and warnings; as `load_program`."""
     diagnostics: list[Diagnostic] = []
     names = Names(count(1), count(1), count(1), known={} if functions is None else functions)
-    processor = DirectiveProcessor(read, names, diagnostics)
-    section = processor.read_file(SourceFile(name, text))
+    section = DirectiveProcessor(read, names, diagnostics).read_file(file)
     check_labels(section.plans, diagnostics)
-    return section.program(), _settled(diagnostics)
+    return section.program(), _ordered(diagnostics)
 
 
 def include_program(
@@ -202,8 +210,18 @@ def _names_with(functions: Mapping[str, int] | None) -> Names:
     return replace(_run_time_names, functions=dict(functions or {}), known=known)
 
 
-def _settled(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
-    """The warnings, if there is no error; everything in the order of the text, file by file."""
+def _settled(diagnostics: list[Diagnostic]) -> None:
+    """Refuse a text with errors; the diagnostics are put into the order of the text, file by file."""
+    _refuse_errors(_ordered(diagnostics))
+
+
+def _refuse_errors(diagnostics: list[Diagnostic]) -> None:
+    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
+        raise AslError(diagnostics)
+
+
+def _ordered(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """In the order of the text, file by file."""
     files: dict[str, int] = {}
     for diagnostic in diagnostics:
         if diagnostic.span is not None:
@@ -213,7 +231,4 @@ def _settled(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
         span = diagnostic.span
         return (-1, 0, 0) if span is None else (files[span.file.name], span.line, span.column)
 
-    ordered = sorted(diagnostics, key=place)
-    if any(diagnostic.severity == "error" for diagnostic in ordered):
-        raise AslError(ordered)
-    return ordered
+    return sorted(diagnostics, key=place)

@@ -21,6 +21,16 @@ def walk(*roots: object) -> Iterator[nodes.Node]:
             stack.extend(getattr(part, name) for name in _names_of(type(part)))
 
 
+def children(node: nodes.Node) -> Iterator[nodes.Node]:
+    """The nodes right below *node*, in the order of the text."""
+    for name in reversed(_names_of(type(node))):
+        part = getattr(node, name)
+        if isinstance(part, nodes.Node):
+            yield part
+        elif isinstance(part, tuple):
+            yield from part
+
+
 def _names_of(node_type: type[nodes.Node]) -> tuple[str, ...]:
     """The fields that hold further nodes, last one first."""
     known = _fields.get(node_type)

@@ -1,15 +1,39 @@
 """Warnings about programs that can be run."""
 
+from typing import NamedTuple
+
 from asl_lab import program
 
 from jacaros.asl.checker import check
+from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import Diagnostic
 
-KNOWN = {".print", ".findall", ".length", ".add_plan", ".puts"}
+
+class Signature(NamedTuple):
+    minimum: int = 0
+    maximum: int | None = None
+    suspends: bool = False
+
+
+STANDARD = {
+    ".print": Signature(),
+    ".findall": Signature(3, 3),
+    ".length": Signature(2, 2),
+    ".add_plan": Signature(1, 3),
+    ".puts": Signature(1, 2),
+    ".fail": Signature(suspends=True),
+    ".send": Signature(3, 5, True),
+    ".remove_plan": Signature(1, 2),
+}
+KNOWN = KnownActions(STANDARD, lambda name: name.startswith("own."))
 
 
 def warnings(text: str) -> list[Diagnostic]:
     return check(program(text), KNOWN)
+
+
+def codes(text: str) -> list[str]:
+    return [warning.code for warning in warnings(text)]
 
 
 def messages(text: str) -> list[str]:
@@ -17,7 +41,7 @@ def messages(text: str) -> list[str]:
 
 
 def test_a_good_program_has_no_warning():
-    assert messages("!g. +!g : p(X) <- .print(X); !h(X). +!h(X). -!h(Y) : false <- .print(Y). p(1).") == []
+    assert messages("!g. +!g : p(X) <- .print(X); !h(X). +!h(X). -!h(Y) <- .print(Y). p(1).") == []
 
 
 def test_an_unknown_internal_action_is_named_with_what_may_be_meant():

@@ -1,0 +1,1 @@
+"""What can be said about a program that is read without errors, one kind of mistake per function."""

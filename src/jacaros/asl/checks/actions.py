@@ -1,0 +1,154 @@
+"""Internal actions: their names, numbers of arguments, and where they stand."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Final, Protocol
+
+from jacaros.asl import nodes
+from jacaros.asl.checks.formulas import conditions, parts_of
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.functions import ARITIES
+from jacaros.asl.spelling import is_slip_of
+from jacaros.asl.walk import walk
+
+_PERFORMATIVES: Final = (
+    *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
+    *("tellHow", "untellHow", "signal"),
+)
+
+
+class Signature(Protocol):
+    """What is to be known of an internal action; ``maximum`` is None for any number of arguments."""
+
+    @property
+    def minimum(self) -> int:
+        """The least number of arguments."""
+
+    @property
+    def maximum(self) -> int | None:
+        """The greatest number of arguments."""
+
+    @property
+    def suspends(self) -> bool:
+        """Whether it acts or waits, so that it cannot be asked as a condition."""
+
+
+def _nowhere(_: str) -> bool:
+    return False
+
+
+@dataclass(frozen=True)
+class KnownActions:
+    """The internal actions that a program may use.
+
+    Attributes:
+        standard: those of the language, by their names with the leading dot.
+        elsewhere: whether there is an action of this name, such as ``my.norm``, besides them.
+    """
+
+    standard: Mapping[str, Signature]
+    elsewhere: Callable[[str], bool] = _nowhere
+
+
+def unknown_actions(
+    program: nodes.Program, roots: tuple[nodes.Node, ...], known: KnownActions
+) -> Iterator[Diagnostic]:
+    """Internal actions that there are not."""
+    functions = {function.implementation for function in program.functions}
+    registered = {function.name for function in program.functions}
+    for node in walk(*roots):
+        if not isinstance(node, nodes.InternalAction):
+            continue
+        name = node.name
+        if name in known.standard or name in functions or name in registered:
+            continue
+        if name in ARITIES:
+            yield _wrong_function(node)
+            continue
+        if not name.startswith(".") and (not node.arguments or known.elsewhere(name)):
+            # An atom with a dot, such as a class name, or an action of the program's own.
+            continue
+        close = get_close_matches(name, known.standard, 1)
+        yield Diagnostic(
+            "warning",
+            f"there is no internal action {name}",
+            node.span,
+            f"did you mean {close[0]}?" if close else None,
+            "unknown-internal-action",
+        )
+
+
+def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
+    least, most = ARITIES[node.name]
+    return _arguments_message(node, least, None if most == float("inf") else int(most), "the function")
+
+
+def wrong_arguments(roots: tuple[nodes.Node, ...], known: KnownActions) -> Iterator[Diagnostic]:
+    """Internal actions of the language with too few or too many arguments."""
+    for node in walk(*roots):
+        if isinstance(node, nodes.InternalAction):
+            signature = known.standard.get(node.name)
+            count = len(node.arguments)
+            if signature is not None and not (
+                signature.minimum <= count and (signature.maximum is None or count <= signature.maximum)
+            ):
+                yield _arguments_message(node, signature.minimum, signature.maximum, "the internal action")
+
+
+def _arguments_message(node: nodes.InternalAction, least: int, most: int | None, what: str) -> Diagnostic:
+    if most is None:
+        wanted = f"at least {_arguments(least)}"
+    elif least == most:
+        wanted = _arguments(least)
+    else:
+        wanted = f"{least} to {most} arguments"
+    return Diagnostic(
+        "warning",
+        f"{what} {node.name} cannot have {_arguments(len(node.arguments))}",
+        node.span,
+        f"it takes {wanted}",
+        "wrong-arguments",
+    )
+
+
+def _arguments(count: int) -> str:
+    return f"{count or 'no'} argument{'' if count == 1 else 's'}"
+
+
+def acting_conditions(roots: tuple[nodes.Node, ...], known: KnownActions) -> Iterator[Diagnostic]:
+    """Internal actions that act or wait and are asked whether they hold."""
+    for node in walk(*roots):
+        for formula in conditions(node):
+            for part in parts_of(formula):
+                if isinstance(part, nodes.InternalAction):
+                    signature = known.standard.get(part.name)
+                    if signature is not None and signature.suspends:
+                        yield Diagnostic(
+                            "warning",
+                            f"{part.name} acts and cannot be asked as a condition",
+                            part.span,
+                            "make it a step of the body",
+                            "acting-condition",
+                        )
+
+
+def unknown_performatives(roots: tuple[nodes.Node, ...]) -> Iterator[Diagnostic]:
+    """Performatives that are nearly those of the language; any other word may be one of the program's own."""
+    places = {".send": 1, ".broadcast": 0}
+    for node in walk(*roots):
+        if not isinstance(node, nodes.InternalAction) or len(node.arguments) <= places.get(node.name, 99):
+            continue
+        word = node.arguments[places[node.name]]
+        if not isinstance(word, nodes.Literal) or word.arguments or word.functor in _PERFORMATIVES:
+            continue
+        meant = [each for each in _PERFORMATIVES if is_slip_of(word.functor.lower(), each.lower())]
+        meant += [each for each in _PERFORMATIVES if word.functor.lower() == each.lower()]
+        if meant:
+            yield Diagnostic(
+                "warning",
+                f"there is no performative {word.functor}",
+                word.span,
+                f"did you mean {meant[0]}?",
+                "unknown-performative",
+            )

@@ -1,0 +1,64 @@
+"""Goals that are posted and that no plan is for."""
+
+from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
+from typing import Final
+
+from jacaros.asl import nodes
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.walk import walk
+
+_ADDING_PLANS: Final = frozenset({".add_plan", ".include"})
+_Signature = tuple[object, str, int]
+
+
+def goals_without_plan(program: nodes.Program) -> Iterator[Diagnostic]:
+    """Goals that are posted and that no plan (nor ``-!`` handler) is for.
+
+    Programs with plans for any goal (``+!G``) and programs that add plans are left alone.
+    """
+    handled: set[_Signature] = set()
+    posted: list[nodes.Literal] = list(program.goals)
+    for node in walk(program.beliefs, program.plans):
+        if isinstance(node, nodes.Trigger) and node.kind == "!":
+            if isinstance(node.literal, nodes.Variable):
+                return
+            handled.add(_signature(node.literal))
+        elif isinstance(node, nodes.Achieve) and isinstance(node.goal, nodes.Literal):
+            posted.append(node.goal)
+        elif isinstance(node, nodes.InternalAction) and node.name in _ADDING_PLANS:
+            return
+    reported: set[_Signature] = set()
+    for goal in posted:
+        signature = _signature(goal)
+        if signature in handled or signature in reported or isinstance(goal.namespace, nodes.Variable):
+            continue
+        reported.add(signature)
+        yield Diagnostic(
+            "warning",
+            f"no plan for {_goal_text(signature)}",
+            goal.span,
+            _meant_goal(signature, handled),
+            "unknown-goal",
+        )
+
+
+def _signature(literal: nodes.Literal) -> _Signature:
+    functor = f"~{literal.functor}" if literal.negated else literal.functor
+    return (literal.namespace, functor, len(literal.arguments))
+
+
+def _goal_text(signature: _Signature) -> str:
+    namespace, functor, arity = signature
+    return f"!{f'{namespace}::' if namespace is not None else ''}{functor}/{arity}"
+
+
+def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str | None:
+    """The goal with a plan that is most like *wanted*: of the same name or of a like one."""
+    texts = sorted(_goal_text(signature) for signature in handled)
+    same_name = [_goal_text(signature) for signature in handled if signature[1] == wanted[1]]
+    close = sorted(same_name) or get_close_matches(_goal_text(wanted), texts, 1)
+    if not close:
+        return None
+    name, _, arity = close[0].rpartition("/")
+    return f"did you mean {name if arity == str(wanted[2]) else close[0]}?"

@@ -1,0 +1,154 @@
+"""Plans that can never be selected, and handlers that give up more than people expect."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from jacaros.asl import nodes
+from jacaros.asl.checks.contradiction import contradiction
+from jacaros.asl.checks.formulas import is_true
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.spelling import is_slip_of
+from jacaros.asl.walk import walk
+
+_REMOVING: Final = frozenset({".remove_plan", ".add_plan", ".include"})
+_LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs")
+
+
+def never_selected(program: nodes.Program) -> Iterator[Diagnostic]:
+    """Plans behind one that is always taken before them.
+
+    Programs that change their plans or choose among them by rules of their own are left alone.
+    """
+    for node in walk(program.beliefs, program.plans):
+        if isinstance(node, nodes.InternalAction) and node.name in _REMOVING:
+            return
+        if isinstance(node, nodes.BeliefChange) and isinstance(node.operand, nodes.PlanTerm | nodes.Variable):
+            return
+        if isinstance(node, nodes.Rule) and node.head.functor == "select__option":
+            return
+    yield from _shadowed(program.plans)
+
+
+def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
+    taken: dict[object, list[nodes.Plan]] = {}
+    for plan in plans:
+        yield from _shadowed(plan.subplans)
+        trigger = plan.trigger
+        literal = trigger.literal
+        if isinstance(literal, nodes.Variable):
+            continue
+        key = (trigger.operator, trigger.kind, literal.functor, len(literal.arguments))
+        before = next((each for each in taken.get(key, ()) if _covers(each.trigger, literal)), None)
+        if before is not None:
+            if _is_made(plan):
+                continue
+            where = _where(before, plan)
+            yield Diagnostic(
+                "warning",
+                f"this plan is never selected: the one before it{where} is for all these events",
+                trigger.span,
+                "give that one a condition, or put it behind this plan",
+                "plan-never-selected",
+            )
+        elif is_true(plan.context):
+            taken.setdefault(key, []).append(plan)
+
+
+def _is_made(plan: nodes.Plan) -> bool:
+    """Whether a directive made the plan: such plans have the place of the directive."""
+    span = plan.span
+    return span is not None and span.file.lines[span.line - 1][span.column - 1 :].startswith("{")
+
+
+def _where(before: nodes.Plan, plan: nodes.Plan) -> str:
+    if before.span is None or plan.span is None:
+        return ""
+    file = "" if before.span.file is plan.span.file else f" of {before.span.file.name}"
+    return f" at line {before.span.line}{file}"
+
+
+def _covers(general: nodes.Trigger, literal: nodes.Literal) -> bool:
+    """Whether the trigger *general* is for every event that *literal* is for (name and arity are the same)."""
+    wide = general.literal
+    if isinstance(wide, nodes.Variable) or (wide.negated, wide.namespace) != (
+        literal.negated,
+        literal.namespace,
+    ):
+        return False
+    if wide.annotations is not None and not _same(wide.annotations, literal.annotations):
+        return False
+    met: set[str] = set()
+    for mine, theirs in zip(wide.arguments, literal.arguments, strict=True):
+        if isinstance(mine, nodes.Variable):
+            if mine.annotations is not None or mine.negated or mine.name in met:
+                return False
+            met.add(mine.name)
+        elif not _same(mine, theirs):
+            return False
+    return True
+
+
+def _same(one: nodes.Node, two: nodes.Node | None) -> bool:
+    """Whether two terms are the same and hold no variables."""
+    return one == two and not any(isinstance(node, nodes.Variable) for node in walk(one))
+
+
+def contexts_never_true(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
+    """Plans whose condition contradicts itself."""
+    for node in walk(*plans):
+        if isinstance(node, nodes.Plan) and node.context is not None:
+            why = contradiction(node.context)
+            if why is not None:
+                yield Diagnostic(
+                    "warning",
+                    f"this plan is never selected: {why}",
+                    node.context.span or node.trigger.span,
+                    None,
+                    "context-never-true",
+                )
+
+
+def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
+    """Goals whose ``-!`` plans all have conditions: when none holds, the whole intention is dropped."""
+    handlers: dict[object, list[nodes.Plan]] = {}
+    for plan in program.plans:
+        trigger = plan.trigger
+        if trigger.operator != "-" or not trigger.kind:
+            continue
+        if isinstance(trigger.literal, nodes.Variable):
+            if is_true(plan.context):
+                return
+            continue
+        literal = trigger.literal
+        key = (trigger.kind, literal.namespace, literal.negated, literal.functor, len(literal.arguments))
+        handlers.setdefault(key, []).append(plan)
+    for plans in handlers.values():
+        if not any(is_true(plan.context) for plan in plans):
+            trigger = plans[-1].trigger
+            yield Diagnostic(
+                "note",
+                "when no condition of the plans for this failure holds, the whole intention is dropped",
+                trigger.span,
+                "the failure does not go on to the goals further out; add a plan without a condition",
+                "narrow-handler",
+            )
+
+
+def misspelt_label_words(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
+    """Annotations of labels that are nearly those with a meaning."""
+    for node in walk(*plans):
+        if not isinstance(node, nodes.Plan) or not isinstance(node.label, nodes.Literal):
+            continue
+        annotations = node.label.annotations
+        for item in () if annotations is None else annotations.items:
+            if not isinstance(item, nodes.Literal):
+                continue
+            meant = [word for word in _LABEL_WORDS if is_slip_of(item.functor, word)]
+            if meant:
+                yield Diagnostic(
+                    "warning",
+                    f"the annotation {item.functor} has no meaning for the choice of plans",
+                    item.span,
+                    f"did you mean {meant[0]}?",
+                    "misspelt-annotation",
+                )
