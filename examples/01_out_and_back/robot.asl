@@ -15,6 +15,6 @@
         move(25);               // drive ahead for 2.6 seconds: 26 commands, ten a second
         rotate(180);            // degrees, to the left; ends when odometry says so
      };
-     getCurrentPose(X, Y, Heading);   // names with a capital are variables: they get their values here
+     getCurrentPose(X, Y, _Heading);   // names with a capital are variables: they get their values here
      .print("I believe to be ", math.round(1000 * math.sqrt(X * X + Y * Y)), " mm from where I started");
      .stopMAS.                  // end the whole system

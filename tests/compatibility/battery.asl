@@ -1,4 +1,5 @@
 // As listing 21: the battery that a timer drains.
+// jacaros: ignore-file singleton-variable
 
 !start.
 

@@ -1,4 +1,5 @@
 // As listings 24 and 25: the patrol with a household.
+// jacaros: ignore-file singleton-variable
 
 { include("$jacaros/artifacts.asl") }   /* plans for ArtSimBattery and ArtCmdVelMuxAndOdometry */
 

@@ -1,4 +1,5 @@
 // As listing 26: odometry with and without the name of a robot, plans with an empty context.
+// jacaros: ignore-file missing-context, singleton-variable
 
 !watch.
 

@@ -1,4 +1,5 @@
 // As listing 19: out and back by time.
+// jacaros: ignore-file singleton-variable
 
 !start.
 

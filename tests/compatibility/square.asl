@@ -1,4 +1,5 @@
 // As listing 20: a square by odometry.
+// jacaros: ignore-file singleton-variable
 
 !start.
 

@@ -46,7 +46,7 @@ class Example:
 
 def is_file(block: Block) -> bool:
     """Whether a block is a file that commands or examples may use."""
-    return bool(block.purpose) and not block.purpose.startswith("excerpt")
+    return bool(block.purpose) and block.purpose.partition(" ")[0] not in ("excerpt", "wrong", "right")
 
 
 def examples(page: Path) -> Iterator[Example]:

@@ -7,6 +7,8 @@ What stands behind the language of a block says what becomes of it::
     ```output                      what the file before it prints (see `examples`)
     ```errors                      what is told besides when that file is run
     ```sh                          commands that are only read: set-up, real robots
+    ```agentspeak wrong CODE       a program for which `jacaros check` tells this code, and nothing else
+    ```agentspeak right CODE       one for which it tells nothing
     ```python excerpt src/a.py     lines that stand in that file, in this order ("..." leaves some out)
 """
 

@@ -22,9 +22,10 @@ class Diagnostic:
     hint: str | None = None
     code: str = ""
 
-    def render(self) -> str:
-        """The message as people read it: place, message, excerpt with carets, hint."""
-        lines = [f"{self.place()}{self.severity}: {self.message}"]
+    def render(self, with_code: bool = False) -> str:
+        """The message as people read it: place, message (with its code, if wanted), excerpt with carets, hint."""
+        code = f" [{self.code}]" if with_code and self.code else ""
+        lines = [f"{self.place()}{self.severity}: {self.message}{code}"]
         if self.span is not None:
             lines.extend(excerpt(self.span))
         if self.hint is not None:

@@ -70,7 +70,8 @@ class ProgramParser(PlanParser):
                     "end-without-begin", "'{ end }' without a '{ begin ... }' before it", hint="remove it"
                 )
                 self._take_end_directive()
-            self._recovering(self._clause, section)
+            else:
+                self._recovering(self._clause, section)
         return section
 
     def block(self, begin: nodes.Literal) -> Section:

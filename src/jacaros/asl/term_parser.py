@@ -124,13 +124,14 @@ class TermParser(LiteralParser):
         operator = self.advance()
         # All are left associative but **.
         right = self.expression(level if level == _POWER else level + 1)
-        self._require_number(operator, left)
-        self._require_number(operator, right)
+        if self._require_number(operator, left):
+            self._require_number(operator, right)
         return nodes.Arithmetic(operator.kind, (left, right), span=_across(left, right))
 
-    def _require_number(self, operator: Token, operand: nodes.Term) -> None:
+    def _require_number(self, operator: Token, operand: nodes.Term) -> bool:
+        """Whether *operand* may be a number; reports it otherwise."""
         if isinstance(operand, _NUMERIC):
-            return
+            return True
         hint = None
         if isinstance(operand, nodes.InternalAction):
             what = f"'{operand.name}' with {len(operand.arguments)} arguments is not a function"
@@ -148,6 +149,7 @@ class TermParser(LiteralParser):
             elif isinstance(operand, nodes.Literal):
                 hint = "a belief gives its value through a variable: ask ?b(X) first, then count with X"
         self.report("not-a-number", what, operand.span or self.span_of(operator), hint)
+        return False
 
     def _relation(self, left: nodes.Term) -> nodes.Term:
         operator = self.advance()

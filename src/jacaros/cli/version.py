@@ -11,13 +11,14 @@ _LIBRARIES = ("rosbags", "ruamel.yaml", "click", "rich", "numpy")
 @click.command("version")
 def command() -> None:
     """Tell the versions of jacaros and of what it uses."""
-    click.echo(f"jacaros {_version('jacaros')}")
+    click.echo(f"jacaros {version_of('jacaros')}")
     click.echo(f"Python {platform.python_version()} on {platform.platform()}")
     for library in _LIBRARIES:
-        click.echo(f"{library} {_version(library)}")
+        click.echo(f"{library} {version_of(library)}")
 
 
-def _version(library: str) -> str:
+def version_of(library: str) -> str:
+    """The version of an installed package, or words that tell that there is none."""
     try:
         return version(library)
     except PackageNotFoundError:

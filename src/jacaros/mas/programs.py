@@ -1,18 +1,18 @@
 """The agent programs of a run: found, read once, shared by all agents that run them."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from errno import ENOTDIR
 from importlib import resources
 from pathlib import Path
 
 from jacaros.asl import nodes
-from jacaros.asl.checker import check_names
+from jacaros.asl.checker import check_for_run
+from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_literals
-from jacaros.asl.walk import walk
-from jacaros.bdi.internal_action import STANDARD, InternalAction
+from jacaros.asl.suppression import wanted
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_code import PythonCode
 
@@ -75,8 +75,8 @@ class Programs:
         program = self._read.get(path)
         if program is None:
             program, warnings = self._parse(path)
-            found = check_names(program, self._code.actions, self._code.hint)
-            for warning in (*warnings, *found, *_waits_in_conditions(program, self._code.actions)):
+            found = check_for_run(program, KnownActions(self._code.actions, self._code.hint))
+            for warning in wanted([*warnings, *found]):
                 self._warn(warning.render())
             self._read[path] = program
         return program
@@ -84,7 +84,7 @@ class Programs:
     def _parse(self, path: Path) -> tuple[nodes.Program, list[Diagnostic]]:
         """The program in a file; the project's modules that it names are imported, too."""
         try:
-            program, warnings = load_program(str(path), _text(path), self.include, self._code.functions)
+            program, warnings = load_program(str(path), text_of(path), self.include, self._code.functions)
         except AslError as wrong:
             raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
         errors = self._code.take_errors()
@@ -133,27 +133,19 @@ class Programs:
         return str(file), file.read_text(encoding="utf-8")
 
 
-def _waits_in_conditions(
-    program: nodes.Program, actions: Mapping[str, InternalAction]
-) -> Iterator[Diagnostic]:
-    """The project's coroutines that stand where nothing can wait."""
-    conditions = [plan.context for plan in program.plans]
-    rules = [belief.body for belief in program.beliefs if isinstance(belief, nodes.Rule)]
-    for node in walk(*conditions, *rules):
-        action = actions.get(node.name) if isinstance(node, nodes.InternalAction) else None
-        if action is not None and action.suspends and action.name not in STANDARD:
-            yield Diagnostic(
-                "warning",
-                f"{action.name} takes time and never holds as a condition",
-                node.span,
-                "call it in the body of a plan",
-            )
+def text_of(path: Path) -> str:
+    """The text of a program.
 
-
-def _text(path: Path) -> str:
+    Raises:
+        AslError: it is not there, or no text.
+    """
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
-        raise AslError([Diagnostic("error", f"{path} is not found")]) from None
+        raise AslError([_unreadable(f"{path} is not found")]) from None
     except (OSError, UnicodeError) as error:
-        raise AslError([Diagnostic("error", f"{path} cannot be read: {error}")]) from error
+        raise AslError([_unreadable(f"{path} cannot be read: {error}")]) from error
+
+
+def _unreadable(message: str) -> Diagnostic:
+    return Diagnostic("error", message, code="unreadable-file")

@@ -36,16 +36,25 @@ def load_deployment(path: str | Path) -> Deployment:
     path = Path(path)
     if path.suffix == ".asl":
         return _lone_agent(path)
-    reader = _READERS.get(path.suffix)
-    if reader is None:
+    if path.suffix not in _READERS:
         raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm or .asl file")])
+    deployment, diagnostics = read_project(path)
+    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
+        raise ProjectError(diagnostics)
+    return replace(deployment, ignored=tuple(diagnostics))
+
+
+def read_project(path: Path) -> tuple[Deployment, list[Diagnostic]]:
+    """What can be made of a `.mas2j` or `.jcm` file, and what is wrong in it, in the order of the text.
+
+    Raises:
+        ProjectError: the file cannot be read at all.
+    """
     diagnostics: list[Diagnostic] = []
     part = _read(path, diagnostics, [])
     deployment = _Resolver(path, part, diagnostics).deployment()
     diagnostics.sort(key=_place)
-    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
-        raise ProjectError(diagnostics)
-    return replace(deployment, ignored=tuple(diagnostics))
+    return deployment, diagnostics
 
 
 def _lone_agent(path: Path) -> Deployment:

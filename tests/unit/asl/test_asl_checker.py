@@ -2,11 +2,16 @@
 
 from typing import NamedTuple
 
-from asl_lab import program
+import pytest
+from asl_lab import errors, program
 
-from jacaros.asl.checker import check
+from jacaros.asl.checker import check, check_for_run
 from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.loader import read_program
+from jacaros.asl.source import SourceFile
+from jacaros.asl.spelling import is_slip_of
+from jacaros.asl.suppression import Suppressions, wanted
 
 
 class Signature(NamedTuple):
@@ -25,7 +30,7 @@ STANDARD = {
     ".send": Signature(3, 5, True),
     ".remove_plan": Signature(1, 2),
 }
-KNOWN = KnownActions(STANDARD, lambda name: name.startswith("own."))
+KNOWN = KnownActions(STANDARD, lambda name: f"write {name}" if name.startswith("my.") else None)
 
 
 def warnings(text: str) -> list[Diagnostic]:
@@ -112,3 +117,214 @@ def test_patterns_give_no_warnings():
 
 def test_warnings_come_in_the_order_of_the_text():
     assert [w.span.line for w in warnings("+!a <- .x.\n+!b <- p(X).\n+!c <- !d.") if w.span] == [1, 2, 3]
+
+
+def test_who_knows_more_of_an_action_gives_the_hint():
+    (warning,) = warnings("+!g <- my.act(1).")
+    assert warning.hint == "write my.act"
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "hint"),
+    [
+        (
+            "+!g <- .findall(a, b).",
+            "the internal action .findall cannot have 2 arguments",
+            "it takes 3 arguments",
+        ),
+        (
+            "+!g <- .add_plan.",
+            "the internal action .add_plan cannot have no arguments",
+            "it takes 1 to 3 arguments",
+        ),
+        (
+            "+!g <- .length(L, N, L, N).",
+            "the internal action .length cannot have 4 arguments",
+            "it takes 2 arguments",
+        ),
+        (
+            "+!g(X) : math.sin(X, X) <- a.",
+            "the function math.sin cannot have 2 arguments",
+            "it takes 1 argument",
+        ),
+    ],
+)
+def test_wrong_numbers_of_arguments(text: str, message: str, hint: str):
+    (found,) = [each for each in warnings(text) if each.code == "wrong-arguments"]
+    assert (found.message, found.hint) == (message, hint)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "+!g : not .fail <- a.",
+        "+!g <- if (p & .fail) { a }.",
+        "+!g <- ?(p | .fail).",
+        "r(X) :- p(X) & .fail.",
+        "+!g <- while (.fail) { a }.",
+    ],
+)
+def test_actions_that_act_are_no_conditions(text: str):
+    assert codes(text) == ["acting-condition"]
+
+
+def test_performatives_that_are_nearly_known():
+    assert codes("+!g <- .send(bob, tel, p); .send(bob, tell, p); .send(bob, propose, p).") == [
+        "unknown-performative"
+    ]
+    assert warnings("+!g <- .send(bob, askone, p).")[0].hint == "did you mean askOne?"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "+!g(X) <- a(X). +!g(1) <- b.",
+        "+!g(_, Y) : true <- a(Y). +!g(Y, Y) : p <- b(Y).",
+        "+p(1). +p(1) : q.",
+        "@a[atomic] +!g <- a. @b[priority(3)] +!g <- b.",
+        "+!h <- a. { +e <- a. +e <- b. }",
+    ],
+)
+def test_a_plan_behind_one_for_the_same_events_is_never_selected(text: str):
+    assert codes(text) == ["plan-never-selected"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "+!g(1) <- a. +!g(X) <- b(X).",
+        "+!g(X, X) <- a. +!g(X, Y) <- b(X, Y).",
+        "+!g : p <- a. +!g <- b.",
+        "+!g[source(bob)] <- a. +!g <- b.",
+        "+!g[source(S)] <- a(S). +!g <- b.",
+        "+!g <- a. -!g <- b. +g <- c. -g <- d. +?g <- e.",
+        "+!g <- a. +!m::g <- b. +!~g <- c.",
+        "+!g <- a. +!g <- b. +!h <- .remove_plan(l).",
+        "select__option(_, _, P, _) :- P = 1. +!g <- a. +!g <- b.",
+        "+!X <- a(X). +!g <- b.",
+    ],
+)
+def test_plans_that_may_be_selected(text: str):
+    assert "plan-never-selected" not in codes(text)
+
+
+@pytest.mark.parametrize(
+    "context",
+    [
+        "false",
+        "p & false",
+        "not true",
+        "2 > 3",
+        "p(X) & q & not p(X)",
+        "not p & p",
+        "p(X) & X == a & X == b",
+        'p(X) & X = 1 & X == "1"',
+        "p(X) & X < 3 & X > 5",
+    ],
+)
+def test_conditions_that_contradict_themselves(context: str):
+    assert "context-never-true" in codes(f"+!g : {context} <- a.")
+
+
+@pytest.mark.parametrize(
+    "context",
+    [
+        "p(_) & not p(_)",
+        "p & (not p | q)",
+        "p(X) & not p(Y) & q(Y)",
+        "p(X) & not q(X)",
+        "p(X) & X \\== a & X \\== b",
+        "p(X) & X >= 3 & X <= 3",
+        "p(X)[source(S)] & not p(X) & q(S)",
+        "not false",
+    ],
+)
+def test_conditions_that_may_hold(context: str):
+    assert "context-never-true" not in codes(f"+!g : {context} <- a.")
+
+
+def test_handlers_that_all_have_conditions_are_worth_a_note():
+    (found,) = warnings("+!g <- a. -!g : p <- a. -!g : q <- a.")
+    assert (found.severity, found.code) == ("note", "narrow-handler")
+    assert codes("+!g <- a. -!g : p <- a. -!g <- b.") == []
+    assert codes("+!g <- a. -!g : p <- a. -!G <- b(G).") == []
+
+
+def test_comparisons_with_variables_without_a_value():
+    assert codes("+!g <- X == 3; a(X).") == ["comparison-without-value"]
+    assert codes("+!g : X == 3 & p(X) <- a.") == ["comparison-without-value"]
+    assert codes("+!g(X) <- X == 3. +!h <- ?p(X); X == 3. +!i <- .findall(X, p(X) & X == 2, _).") == []
+    assert codes("+!g <- F = (X == 2); X = 1; ?F.") == []
+
+
+def test_a_variable_cannot_get_another_value():
+    assert codes("+!g(X) <- X = X + 1; a(X).") == ["changed-variable"]
+    assert codes("+!g(X) <- Y = X + 1; a(Y).") == []
+
+
+def test_true_and_none_of_python_are_variables():
+    (found,) = warnings("+!g <- a(True).")
+    assert (found.code, found.hint) == ("capital-constant", "true is written in lower case")
+
+
+def test_annotations_of_labels_that_are_nearly_known():
+    assert codes("@a[atomc] +!g. @b[atomic, priority(2), tests] +!h.") == ["misspelt-annotation"]
+
+
+def test_clauses_with_errors_are_passed_over():
+    text = "+!a <- b(; .prnt(x); c(Y).\n+!d <- .prnt(Z).\n!nobody."
+    file = SourceFile("main.asl", text)
+    program, diagnostics = read_program(file)
+    found = check(program, KNOWN, [each for each in diagnostics if each.severity == "error"])
+    assert [(each.span.line, each.code) for each in found if each.span] == [
+        (2, "unknown-internal-action"),
+        (2, "singleton-variable"),
+    ]
+
+
+def test_a_run_leaves_out_matters_of_style():
+    text = "+!g <- .prnt(X). -!g : p <- a. +!h <- b(True)."
+    assert [each.code for each in check_for_run(program(text), KNOWN)] == ["unknown-internal-action"]
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        ("+!g <- a(X).   // jacaros: ignore singleton-variable\n+!h <- a(Y).", ["Y"]),
+        ("+!g <- a(X).\n// jacaros: ignore singleton-variable (as in the book)\n@l\n+!h\n  <- a(Y).", ["X"]),
+        ("+!g\n  <- b;\n// jacaros: ignore singleton-variable\n a(X);\n c(Z).", ["Z"]),
+        ("+!g <- a(X).\n/* jacaros: ignore-file singleton-variable */\n+!h <- a(Y).", []),
+        ("// jacaros: ignore unknown-goal, singleton-variable\n+!g <- a(X).", []),
+        ("// jacaros: ignore unknown-goal\n+!g <- a(X).", ["X"]),
+        ('+!g <- a(X, "// jacaros: ignore singleton-variable").', ["X"]),
+    ],
+)
+def test_comments_switch_warnings_off(text: str, left: list[str]):
+    found = [each.message.split()[2] for each in wanted(warnings(text))]
+    assert found == left
+
+
+def test_errors_cannot_be_switched_off():
+    diagnostics = list(wanted(errors("// jacaros: ignore-file missing-body\n+!g <- .")))
+    assert [each.code for each in diagnostics] == ["missing-body"]
+
+
+def test_codes_that_there_are_not_are_told():
+    (found,) = Suppressions(SourceFile("x", "p. // jacaros: ignore singletons")).unknown
+    assert (found.code, found.message) == ("unknown-code", "there is no code singletons")
+
+
+@pytest.mark.parametrize(
+    ("written", "meant", "like"),
+    [
+        ("whlie", "while", True),
+        ("wile", "while", True),
+        ("whhile", "while", True),
+        ("whale", "while", True),
+        ("while", "while", False),
+        ("which", "while", False),
+        ("", "a", True),
+    ],
+)
+def test_slips_of_the_pen(written: str, meant: str, like: bool):
+    assert is_slip_of(written, meant) is like

@@ -34,8 +34,8 @@ class Signature(Protocol):
         """Whether it acts or waits, so that it cannot be asked as a condition."""
 
 
-def _nowhere(_: str) -> bool:
-    return False
+def _no_hint(_: str) -> str | None:
+    return None
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,12 @@ class KnownActions:
     """The internal actions that a program may use.
 
     Attributes:
-        standard: those of the language, by their names with the leading dot.
-        elsewhere: whether there is an action of this name, such as ``my.norm``, besides them.
+        signatures: by name; those of the language have a leading dot.
+        hint: what to do about a name that is not among them, as far as that is known.
     """
 
-    standard: Mapping[str, Signature]
-    elsewhere: Callable[[str], bool] = _nowhere
+    signatures: Mapping[str, Signature]
+    hint: Callable[[str], str | None] = _no_hint
 
 
 def unknown_actions(
@@ -61,22 +61,26 @@ def unknown_actions(
         if not isinstance(node, nodes.InternalAction):
             continue
         name = node.name
-        if name in known.standard or name in functions or name in registered:
+        if name in known.signatures or name in functions or name in registered:
             continue
         if name in ARITIES:
             yield _wrong_function(node)
             continue
-        if not name.startswith(".") and (not node.arguments or known.elsewhere(name)):
-            # An atom with a dot, such as a class name, or an action of the program's own.
+        if not name.startswith(".") and not node.arguments:
+            # An atom with a dot, such as a class name.
             continue
-        close = get_close_matches(name, known.standard, 1)
         yield Diagnostic(
             "warning",
             f"there is no internal action {name}",
             node.span,
-            f"did you mean {close[0]}?" if close else None,
+            _meant_action(name, known),
             "unknown-internal-action",
         )
+
+
+def _meant_action(name: str, known: KnownActions) -> str | None:
+    close = get_close_matches(name, known.signatures, 1)
+    return known.hint(name) or (f"did you mean {close[0]}?" if close else None)
 
 
 def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
@@ -85,10 +89,10 @@ def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
 
 
 def wrong_arguments(roots: tuple[nodes.Node, ...], known: KnownActions) -> Iterator[Diagnostic]:
-    """Internal actions of the language with too few or too many arguments."""
+    """Internal actions with too few or too many arguments."""
     for node in walk(*roots):
         if isinstance(node, nodes.InternalAction):
-            signature = known.standard.get(node.name)
+            signature = known.signatures.get(node.name)
             count = len(node.arguments)
             if signature is not None and not (
                 signature.minimum <= count and (signature.maximum is None or count <= signature.maximum)
@@ -122,11 +126,11 @@ def acting_conditions(roots: tuple[nodes.Node, ...], known: KnownActions) -> Ite
         for formula in conditions(node):
             for part in parts_of(formula):
                 if isinstance(part, nodes.InternalAction):
-                    signature = known.standard.get(part.name)
+                    signature = known.signatures.get(part.name)
                     if signature is not None and signature.suspends:
                         yield Diagnostic(
                             "warning",
-                            f"{part.name} acts and cannot be asked as a condition",
+                            f"{part.name} acts or takes time and never holds as a condition",
                             part.span,
                             "make it a step of the body",
                             "acting-condition",

@@ -53,12 +53,12 @@ def _goal_text(signature: _Signature) -> str:
     return f"!{f'{namespace}::' if namespace is not None else ''}{functor}/{arity}"
 
 
-def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str | None:
+def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
     """The goal with a plan that is most like *wanted*: of the same name or of a like one."""
     texts = sorted(_goal_text(signature) for signature in handled)
     same_name = [_goal_text(signature) for signature in handled if signature[1] == wanted[1]]
     close = sorted(same_name) or get_close_matches(_goal_text(wanted), texts, 1)
     if not close:
-        return None
+        return f"write a plan for it: +{_goal_text(wanted).rpartition('/')[0]}"
     name, _, arity = close[0].rpartition("/")
     return f"did you mean {name if arity == str(wanted[2]) else close[0]}?"

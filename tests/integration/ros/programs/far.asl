@@ -3,7 +3,7 @@
 
 +!drive
   <- makeArtifact("Wheels", "ArtCmdVel");
-     getCurrentPose(X, Y, Heading);
+     getCurrentPose(X, Y, _Heading);
      .print("standing at ", X, " ", Y);
      driveTo(3, 0);
      .print("arrived");

@@ -1,0 +1,87 @@
+"""``jacaros check FILE|FOLDER...``."""
+
+import os
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from jacaros.asl.diagnostics import Diagnostic, Severity
+from jacaros.asl.kinds import KINDS
+from jacaros.cli.files import existing
+from jacaros.cli.reports import as_json, as_sarif
+from jacaros.errors import UsageError
+from jacaros.mas.checking import Findings, check_files
+
+_COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
+
+
+@click.command("check", short_help="Tell what is wrong in programs and projects.")
+@click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option(
+    "--format",
+    "style",
+    type=click.Choice(["text", "json", "sarif"]),
+    default="text",
+    show_default=True,
+    help="For people, for programs, or SARIF 2.1.0 for editors and code hosts.",
+)
+@click.option("--strict", is_flag=True, help="Warnings, too, make the exit code 1.")
+@click.option(
+    "--ignore",
+    metavar="CODE",
+    multiple=True,
+    help="Leave out warnings of this kind; may be given more often.",
+)
+def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str, ...]) -> int:
+    """Tell what is wrong in each FILE: an agent program (.asl), a project (.mas2j, .jcm) with the programs of
+    its agents, or a folder with all of them.
+
+    All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
+    `// jacaros: ignore CODE` switches a warning off for its line, or, on a line of its own, for the clause below
+    it; `// jacaros: ignore-file CODE` for the file. The exit code is 1 if there is an error.
+    """  # fmt: skip
+    unknown = [code for code in ignore if code not in KINDS]
+    if unknown:
+        raise UsageError(f"there is no code {unknown[0]}")
+    findings = check_files([existing(file) for file in files])
+    findings.diagnostics = [
+        each for each in findings.diagnostics if each.severity == "error" or each.code not in ignore
+    ]
+    if style == "text":
+        _tell(findings)
+    else:
+        click.echo((as_json if style == "json" else as_sarif)(findings))
+    counts = Counter(each.severity for each in findings.diagnostics)
+    return 1 if counts["error"] or (strict and counts["warning"]) else 0
+
+
+def _tell(findings: Findings) -> None:
+    coloured = has_colours()
+    for diagnostic in findings.diagnostics:
+        click.echo(_coloured(diagnostic) if coloured else diagnostic.render(with_code=True), color=coloured)
+        click.echo()
+    click.echo(_summary(findings.diagnostics, len(findings.files)), err=True)
+
+
+def has_colours() -> bool:
+    """Whether the output may be coloured: it is a terminal, and nobody has asked for none (NO_COLOR)."""
+    return sys.stdout.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def _coloured(diagnostic: Diagnostic) -> str:
+    head, newline, rest = diagnostic.render(with_code=True).partition("\n")
+    where = diagnostic.place()
+    colour = _COLOURS[diagnostic.severity]
+    level = click.style(diagnostic.severity, fg=colour, bold=True)
+    return f"{click.style(where, bold=True)}{level}{head[len(where) + len(diagnostic.severity) :]}{newline}{rest}"
+
+
+def _summary(diagnostics: Sequence[Diagnostic], files: int) -> str:
+    counts = Counter(each.severity for each in diagnostics)
+    found = [
+        f"{counts[level]} {level}{'' if counts[level] == 1 else 's'}" for level in _COLOURS if counts[level]
+    ]
+    return f"{', '.join(found) or 'nothing wrong'} in {files} file{'' if files == 1 else 's'}"

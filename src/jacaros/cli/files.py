@@ -1,0 +1,26 @@
+"""Files and folders that a command line names."""
+
+import difflib
+from pathlib import Path
+
+from jacaros.errors import UsageError
+
+_KINDS = (".asl", ".mas2j", ".jcm")
+
+
+def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
+    """*path*, which must be a folder or a file of one of *kinds*.
+
+    Raises:
+        UsageError: it is not; with the names of similar files beside it.
+    """
+    if path.is_dir():
+        return path
+    if not path.is_file():
+        beside = [each.name for each in path.parent.glob("*.*") if each.suffix in kinds]
+        near = difflib.get_close_matches(path.name, beside, n=2)
+        hint = f"; did you mean {' or '.join(str(path.parent / name) for name in near)}?" if near else ""
+        raise UsageError(f"there is no file {path}{hint}")
+    if path.suffix not in kinds:
+        raise UsageError(f"{path} is no {', '.join(kinds)} file")
+    return path

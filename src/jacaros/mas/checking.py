@@ -1,0 +1,151 @@
+"""Checking programs and projects without running them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final
+
+import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+from jacaros.asl import nodes
+from jacaros.asl.checker import check, place
+from jacaros.asl.checks.actions import KnownActions
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import parse_literals, read_program
+from jacaros.asl.source import SourceFile
+from jacaros.asl.suppression import Suppressions, wanted
+from jacaros.mas.deployment import AgentSpec, ProjectError
+from jacaros.mas.programs import Programs, text_of
+from jacaros.mas.project import read_project
+from jacaros.mas.python_code import PythonCode
+from jacaros.project_modules import ProjectModules
+
+PROJECTS: Final = (".mas2j", ".jcm")
+_SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
+
+
+@dataclass
+class Findings:
+    """What there is to say about some files.
+
+    Attributes:
+        diagnostics: sorted by file and place, each once.
+        files: all files that have been read, programs, included files and projects.
+    """
+
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    files: set[Path] = field(default_factory=set)
+
+
+def check_files(paths: Sequence[Path]) -> Findings:
+    """Check programs, projects with the programs of their agents, and whole folders.
+
+    In a folder a program is checked by itself only if no project there names it and no other program includes it.
+    """
+    findings = Findings()
+    for path in paths:
+        if path.is_dir():
+            _check_folder(path, findings)
+        elif path.suffix in PROJECTS:
+            _check_project(path, findings)
+        else:
+            _check_program(path, (path.parent,), findings)
+    findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
+    return findings
+
+
+def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
+    """The files of these kinds in a folder and the folders in it, without hidden and made ones, sorted."""
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or path.name in _SKIPPED:
+            continue
+        if path.is_dir():
+            yield from files_below(path, suffixes)
+        elif path.suffix in suffixes:
+            yield path
+
+
+def _check_folder(folder: Path, findings: Findings) -> None:
+    for path in files_below(folder, PROJECTS):
+        _check_project(path, findings)
+    alone: dict[Path, Findings] = {}
+    included: set[Path] = set()
+    for path in files_below(folder, (".asl",)):
+        if path.resolve() in findings.files:
+            continue
+        own = alone[path.resolve()] = Findings()
+        _check_program(path, (path.parent,), own)
+        included |= own.files - {path.resolve()}
+    for file, own in alone.items():
+        if file not in included:
+            findings.diagnostics += own.diagnostics
+        findings.files |= own.files
+
+
+def _check_project(path: Path, findings: Findings) -> None:
+    findings.files.add(path.resolve())
+    try:
+        deployment, diagnostics = read_project(path)
+    except ProjectError as error:
+        findings.diagnostics += [_of_project(each) for each in error.diagnostics]
+        return
+    findings.diagnostics += [_of_project(each) for each in diagnostics]
+    folders = (deployment.base_path, *deployment.source_paths)
+    different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}
+    for agent in different.values():
+        if agent.source_path.is_file():
+            _check_program(agent.source_path, folders, findings, agent)
+
+
+def _of_project(diagnostic: Diagnostic) -> Diagnostic:
+    return diagnostic if diagnostic.code else replace(diagnostic, code="wrong-project")
+
+
+def _check_program(
+    path: Path, folders: tuple[Path, ...], findings: Findings, agent: AgentSpec | None = None
+) -> None:
+    """Check a program with its includes, and with what a project adds to it for *agent*."""
+    findings.files.add(path.resolve())
+    code = PythonCode(ProjectModules(*folders))
+    programs = Programs(folders, lambda _: None, code)
+    sources: list[SourceFile] = []
+
+    def include(name: str, including: str) -> tuple[str, str]:
+        found, text = programs.include(name, including)
+        if not found.startswith("$"):
+            findings.files.add(Path(found).resolve())
+            sources.append(SourceFile(found, text))
+        return found, text
+
+    try:
+        sources.append(SourceFile(str(path), text_of(path)))
+    except AslError as error:
+        findings.diagnostics += error.diagnostics
+        return
+    program, diagnostics = read_program(sources[0], include, code.functions)
+    diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
+    errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
+    known = KnownActions(code.actions, code.hint)
+    own = [*diagnostics, *check(_with_additions(program, agent), known, errors)]
+    code.close()
+    for source in sources:
+        own += Suppressions(source).unknown
+    findings.diagnostics += [each for each in own if not _is_shipped(each)]
+
+
+def _is_shipped(diagnostic: Diagnostic) -> bool:
+    """Whether the place is in a library that comes with the package: of no use to whom only includes it."""
+    return diagnostic.span is not None and diagnostic.span.file.name.startswith("$")
+
+
+def _with_additions(program: nodes.Program, agent: AgentSpec | None) -> nodes.Program:
+    if agent is None:
+        return program
+    where = f"the declaration of {agent.declared_name}"
+    try:
+        beliefs = parse_literals(agent.beliefs, where) if agent.beliefs.strip() else ()
+        goals = parse_literals(agent.goals, where) if agent.goals.strip() else ()
+    except AslError:
+        # The project file has been blamed for it.
+        return program
+    return replace(program, beliefs=(*program.beliefs, *beliefs), goals=(*goals, *program.goals))

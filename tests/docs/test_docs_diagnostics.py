@@ -1,0 +1,62 @@
+"""The page about diagnostics: every code, with a program for which it is told and one for which nothing is."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from pages import ROOT, Block, blocks
+
+from jacaros.asl.kinds import KINDS
+from jacaros.cli.main import call
+
+PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
+EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]
+OF_FILES = {"unreadable-file", "wrong-project"}
+TOO_LONG = {"nested-too-deeply"}
+LEVELS = {"Errors": "error", "Warnings": "warning", "Notes": "note"}
+
+
+def test_every_code_has_its_section_under_its_level() -> None:
+    level = ""
+    described = {}
+    for line in PAGE.read_text(encoding="utf-8").splitlines():
+        level = LEVELS.get(line.removeprefix("## "), level) if line.startswith("## ") else level
+        if line.startswith("### "):
+            described[line.removeprefix("### ")] = level
+    assert described == {code: kind.level for code, kind in KINDS.items() if code not in OF_FILES}
+    assert all(f"`{code}`" in PAGE.read_text(encoding="utf-8") for code in OF_FILES)
+
+
+def test_every_code_has_examples() -> None:
+    purposes = {block.purpose for block in EXAMPLES}
+    for code in set(KINDS) - OF_FILES:
+        assert f"right {code}" in purposes
+        assert f"wrong {code}" in purposes or code in TOO_LONG
+
+
+@pytest.mark.parametrize("block", EXAMPLES, ids=lambda block: block.purpose)
+def test_an_example_gives_its_code_and_nothing_else(
+    block: Block, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("other.asl").write_text("sum(X, Y, X + Y).\n", encoding="utf-8")
+    Path("example.asl").write_text(block.text, encoding="utf-8")
+    kind, _, code = block.purpose.partition(" ")
+    assert told(capsys) == ([(code, KINDS[code].level)] if kind == "wrong" else [])
+
+
+def test_nesting_has_a_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (limit,) = re.findall(r"At most (\d+) levels", PAGE.read_text(encoding="utf-8"))
+    for depth, expected in ((int(limit), ["nested-too-deeply"]), (int(limit) - 2, [])):
+        Path("example.asl").write_text(f"p({'(' * depth}1{')' * depth}).", encoding="utf-8")
+        assert [code for code, _ in told(capsys)] == expected
+
+
+def told(capsys: pytest.CaptureFixture[str]) -> list[tuple[str, str]]:
+    """Code and level of what there is to say about example.asl."""
+    call(["check", "example.asl", "--format", "json"])
+    return [(each["code"], each["level"]) for each in json.loads(capsys.readouterr().out)["diagnostics"]]

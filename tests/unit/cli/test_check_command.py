@@ -1,0 +1,222 @@
+"""``jacaros check``: what it reads, how it reports, its exit codes."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from jacaros.asl.kinds import KINDS
+from jacaros.cli.main import call
+
+ROOT = Path(__file__).parents[3]
+
+GOOD = "!go.\n+!go <- .print(hi).\n"
+WARNED = "!go.\n+!go <- .print(hi); .prnt(X).\n"
+WRONG = "!go.\n+!go <- a(; b c.\n+!other <- d(X).\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("good", GOOD), ("warned", WARNED), ("wrong", WRONG)):
+        (tmp_path / f"{name}.asl").write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = call(["check", *arguments])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def found(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[tuple[str, int, str]]:
+    """File, line and code of everything that is told."""
+    _, output, _ = outcome(capsys, *arguments, "--format", "json")
+    return [(each["file"], each["line"], each["code"]) for each in json.loads(output)["diagnostics"]]
+
+
+def test_a_good_program_is_clean(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "good.asl", "--strict") == (0, "", "nothing wrong in 1 file\n")
+
+
+def test_warnings_are_told_and_matter_only_when_strict(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, output, errors = outcome(capsys, "warned.asl")
+    assert code == 0
+    assert output.startswith(
+        "warned.asl:2:21: warning: there is no internal action .prnt [unknown-internal-action]\n"
+        "  2 | +!go <- .print(hi); .prnt(X).\n"
+        "    |                     ^^^^^^^^\n"
+        "hint: did you mean .print?\n"
+    )
+    assert errors == "2 warnings in 1 file\n"
+    assert outcome(capsys, "warned.asl", "--strict")[0] == 1
+    ignored = ("--ignore", "singleton-variable", "--ignore", "unknown-internal-action")
+    assert outcome(capsys, "warned.asl", "--strict", *ignored)[0] == 0
+
+
+def test_all_problems_are_told_at_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "wrong.asl")[0] == 1
+    assert found(capsys, "wrong.asl") == [
+        ("wrong.asl", 2, "unexpected-token"),
+        ("wrong.asl", 2, "missing-semicolon"),
+        ("wrong.asl", 3, "singleton-variable"),
+    ]
+
+
+def test_a_folder_is_checked_with_its_projects(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "p.mas2j").write_text('MAS p { agents: bob good.asl [goals="fly"]; }', encoding="utf-8")
+    (folder / "part.asl").write_text("+!part <- !defined_elsewhere.", encoding="utf-8")
+    (folder / "whole.asl").write_text(
+        '{ include("part.asl") }\n!part. +!defined_elsewhere.', encoding="utf-8"
+    )
+    (folder / ".hidden").mkdir()
+    (folder / ".hidden" / "x.asl").write_text("(", encoding="utf-8")
+    assert {code for file, _, code in found(capsys, ".") if file == "part.asl"} == set()
+    assert ("the declaration of bob", 1, "unknown-goal") in found(capsys, ".")
+    assert found(capsys, "part.asl") == [("part.asl", 1, "unknown-goal")]
+
+
+def test_projects_are_checked_themselves(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "p.jcm").write_text(
+        "mas p {\n  agent bob : warned.asl\n  agent eve : nowhere.asl\n  agent joe : good.asl { focus: thing }\n}\n",
+        encoding="utf-8",
+    )
+    assert found(capsys, "p.jcm") == [
+        ("p.jcm", 3, "wrong-project"),
+        ("p.jcm", 4, "wrong-project"),
+        ("warned.asl", 2, "unknown-internal-action"),
+        ("warned.asl", 2, "singleton-variable"),
+    ]
+
+
+def test_actions_of_modules_beside_the_program_are_known(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "own.asl").write_text("!go. +!go <- my.act(1); your.act(1).", encoding="utf-8")
+    (folder / "my.py").write_text(
+        "from jacaros import internal_action\n\n@internal_action\ndef act(x):\n    return True\n",
+        encoding="utf-8",
+    )
+    assert found(capsys, "own.asl") == [("own.asl", 1, "unknown-internal-action")]
+    (folder / "your.py").write_text("oh dear", encoding="utf-8")
+    assert (None, None, "unreadable-file") in found(capsys, "own.asl")
+
+
+def test_files_that_cannot_be_read_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "bytes.asl").write_bytes(b"p(\xff).")
+    code, output, _ = outcome(capsys, "bytes.asl")
+    assert code == 1
+    assert "bytes.asl cannot be read" in output
+    assert "[unreadable-file]" in output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["godo.asl"], "did you mean good.asl?"),
+        (["good.asl", "--ignore", "nonsense"], "there is no code nonsense"),
+        (["notes.txt"], "is no .asl, .mas2j, .jcm file"),
+        ([], "FILE"),
+    ],
+)
+def test_wrong_usage(
+    folder: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
+) -> None:
+    (folder / "notes.txt").write_text("")
+    code, _, errors = outcome(capsys, *arguments)
+    assert code == 2
+    assert told in errors
+
+
+def test_the_sarif_report_has_what_the_schema_asks_for(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "bytes.asl").write_bytes(b"\xff")
+    code, output, _ = outcome(capsys, ".", "--format", "sarif")
+    log = json.loads(output)
+    assert code == 1
+    assert set(log) <= {"$schema", "version", "runs"}
+    assert log["version"] == "2.1.0"
+    (run,) = log["runs"]
+    driver = run["tool"]["driver"]
+    assert isinstance(driver["name"], str)
+    rules = [rule["id"] for rule in driver["rules"]]
+    assert len(set(rules)) == len(rules)
+    assert run["columnKind"] in ("utf16CodeUnits", "unicodeCodePoints")
+    assert len(run["results"]) == 6
+    for rule in driver["rules"]:
+        assert rule["shortDescription"]["text"]
+        assert rule["defaultConfiguration"]["level"] in ("none", "note", "warning", "error")
+    for result in run["results"]:
+        check_result(result, rules)
+
+
+def check_result(result: dict[str, Any], rules: list[str]) -> None:
+    assert result["message"]["text"]
+    assert result["level"] in ("none", "note", "warning", "error")
+    assert rules[result["ruleIndex"]] == result["ruleId"]
+    for location in result.get("locations", ()):
+        place = location["physicalLocation"]
+        assert place["artifactLocation"]["uri"].endswith(".asl")
+        region = place["region"]
+        assert all(isinstance(value, int) and value >= 1 for value in region.values())
+        assert (region["startLine"], region["startColumn"]) <= (region["endLine"], region["endColumn"])
+
+
+def test_files_with_unusual_names_have_right_addresses(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "a b.asl").write_text("+!g <- .", encoding="utf-8")
+    for name, uri in (("a b.asl", "a%20b.asl"), (str(folder / "a b.asl"), (folder / "a b.asl").as_uri())):
+        (result,) = json.loads(outcome(capsys, name, "--format", "sarif")[1])["runs"][0]["results"]
+        assert result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == uri
+
+
+def test_colours_are_for_terminals(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "\x1b[" not in outcome(capsys, "warned.asl")[1]
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    assert "\x1b[" in outcome(capsys, "warned.asl")[1]
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b[" not in outcome(capsys, "warned.asl")[1]
+
+
+def test_the_programs_of_the_project_are_clean(capsys: pytest.CaptureFixture[str]) -> None:
+    folders = ("examples", "tests/compatibility", "tests/integration", "benchmarks/latency", "src")
+    code, output, _ = outcome(capsys, "--strict", *(str(ROOT / folder) for folder in folders))
+    assert (code, output) == (0, "")
+
+
+MEANT = {
+    "failure/goal_variable_failure_continues": {"context-never-true"},
+    "failure/inapplicable_handler_drops_intention": {"context-never-true", "narrow-handler"},
+    "failure/warning_inapplicable_handler": {"narrow-handler"},
+    "namespaces_and_includes/include_without_namespace": {"plan-never-selected"},
+    "plan_selection/first_applicable_in_file_order": {"plan-never-selected"},
+    "plan_selection/priority_annotation_ignored": {"plan-never-selected"},
+}
+"""Cases in which what is told is what the case is about."""
+
+
+def test_conformance_cases_are_told_only_what_is_meant(capsys: pytest.CaptureFixture[str]) -> None:
+    cases = ROOT / "tests" / "conformance"
+    _, output, _ = outcome(capsys, str(cases), "--ignore", "singleton-variable", "--format", "json")
+    told: dict[str, set[str]] = {}
+    for each in json.loads(output)["diagnostics"]:
+        path = Path(each["file"]).relative_to(cases)
+        if path.parts[0] != "syntax_errors":
+            told.setdefault("/".join((path.parts[0], Path(path.parts[1]).stem)), set()).add(each["code"])
+    assert told == MEANT
+
+
+def test_every_code_has_a_level_and_a_meaning() -> None:
+    for code, kind in KINDS.items():
+        assert code == code.lower()
+        assert kind.level in ("error", "warning", "note")
+        assert kind.meaning
