@@ -116,9 +116,10 @@ class TermParser(LiteralParser):
 
     def _continues_sum(self, left: nodes.Term) -> bool:
         """Whether ``+`` or ``-`` behind *left* is arithmetic: after a forgotten ';' or '.' it is not."""
-        if self.at_plan():
-            return False
-        return isinstance(left, _NUMERIC) or not self.token.first
+        number = isinstance(left, _NUMERIC)
+        if number and not self.token.first:
+            return True  # X-Y <- ...: the end of a context, and no deletion of Y
+        return not self.at_plan() and (number or not self.token.first)
 
     def _arithmetic(self, left: nodes.Term, level: int) -> nodes.Term:
         operator = self.advance()

@@ -1,6 +1,6 @@
 """The agent: a mind with a program.  It is given things, makes cycles, and reaches out through its architecture."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from jacaros.asl import nodes
@@ -100,11 +100,15 @@ class Agent(Circumstance):
         """Take up the beliefs and goals of a program."""
         for belief in reversed(program.beliefs):
             self._initial_belief(belief)
-        for goal in program.goals:
+        self.adopt(program.goals)
+        self.architecture.ready()
+
+    def adopt(self, goals: Iterable[nodes.Literal]) -> None:
+        """Take up the goals of a program."""
+        for goal in goals:
             term = self._initial_value(goal)
             if term is not None:
                 self.post_goal(term)
-        self.architecture.ready()
 
     def _initial_value(self, node: nodes.Literal) -> Term:
         """The term of an initial belief or goal; None when it holds an expression without a value."""

@@ -58,6 +58,8 @@ class Circumstance:
         project_functions: those of the project, with their least and greatest numbers of arguments.
         cycles: number of steps made.
         next_look: number of the cycle in which percepts and messages are looked at next.
+        goal_depth: how many plans may be on the stack of an intention.
+        rule_depth: how many rules and conditions may be open at the same time in one search.
         stopped: the agent is over.
         face: what the project's Python code sees of the agent; made when it is first asked for.
         drowsy: it has had nothing to do since it last awoke, and has been told so.
@@ -109,6 +111,8 @@ class Circumstance:
         self.project_functions: Mapping[str, tuple[int, int | None]] = {}
         self.context: Any = None
         self.cycles = 0
+        self.goal_depth = options.goal_depth
+        self.rule_depth = options.rule_depth
         self.stopped = False
         self.face: Any = None
         self.drowsy = False

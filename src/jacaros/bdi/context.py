@@ -62,7 +62,7 @@ class Context:
 
     def answers(self, formula: Term) -> Iterator[None]:
         """The answers of a formula; its bindings hold until the next one is asked for."""
-        for _ in run(solve_formula(self.agent, formula, self.trail)):
+        for _ in run(solve_formula(self.agent, formula, self.trail), self.agent.rule_depth):
             yield
 
     def succeeds(self, formula: Term) -> bool:

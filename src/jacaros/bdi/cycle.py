@@ -6,15 +6,15 @@ of this one, so it stays with an intention as long as nothing else wants a cycle
 
 from typing import Any
 
-from jacaros.bdi import edge_signals, failure, meta_events, option_selection, speech_acts, subplans
+from jacaros.bdi import edge_signals, failure, meta_events, option_selection, rescue, speech_acts, subplans
 from jacaros.bdi.belief_update import apply_percepts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.failure import FailureReason
 from jacaros.bdi.forks import branch_failed
-from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
 from jacaros.bdi.internal_action import Crashed
-from jacaros.bdi.stack import achieve
+from jacaros.bdi.stack import achieve, remove_event
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
 from jacaros.errors import InternalError
@@ -34,7 +34,7 @@ def run(agent: Circumstance, fuel: int) -> bool:
         looks = agent.options.percept_interval == 1 or _looks_around(agent, agent.cycles + begun - fuel)
         _housekeeping(agent, looks)
         if agent.inbox and looks:
-            speech_acts.process(agent, agent.inbox.popleft())
+            _read_message(agent)
         if agent.events:
             if agent.atomic is None:
                 handle_event(agent)
@@ -44,7 +44,13 @@ def run(agent: Circumstance, fuel: int) -> bool:
             _end_achieved_goals(agent)
         intention = _select_intention(agent)
         if intention is not None:
-            fuel = _execute(agent, intention, fuel)
+            try:
+                fuel = _execute(agent, intention, fuel)
+            except InternalError:
+                raise
+            except Exception as fault:
+                fuel -= 1
+                rescue.give_up(agent, agent.current or intention, fault)
             if agent.requeued:
                 agent.events.extendleft(reversed(agent.requeued))
                 agent.requeued.clear()
@@ -76,19 +82,62 @@ def _looks_around(agent: Circumstance, cycle: int) -> bool:
 def _housekeeping(agent: Circumstance, looks: bool = True) -> None:
     """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
     while agent.percepts and looks:
-        apply_percepts(agent, agent.percepts.popleft())
-    while agent.tasks:
-        agent.tasks.popleft()()
+        percepts = agent.percepts.popleft()
+        try:
+            apply_percepts(agent, percepts)
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "what was perceived", fault)
+    _do_tasks(agent)
     if agent.condition_waits:
         _check_conditions(agent)
+
+
+def _do_tasks(agent: Circumstance) -> None:
+    """The housekeeping that is due."""
+    while agent.tasks:
+        task = agent.tasks.popleft()
+        try:
+            task()
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "a delayed change of an intention", fault)
+
+
+def _read_message(agent: Circumstance) -> None:
+    message = agent.inbox.popleft()
+    try:
+        speech_acts.process(agent, message)
+    except InternalError:
+        raise
+    except Exception as fault:
+        rescue.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
+        if message.performative.startswith("ask"):
+            speech_acts.answer(agent, message, None)
+
+
+def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
+    """Whether the goal condition of a frame holds; one that cannot be evaluated is never asked again."""
+    achieved = frame[PLAN].goal_condition
+    if achieved is None:
+        return False
+    try:
+        return bool(achieved(agent, frame))
+    except InternalError:
+        raise
+    except Exception as fault:
+        frame[PLAN].goal_condition = None
+        rescue.passed_over(agent, f"the goal condition of plan {text(frame[PLAN].label)}", fault)
+        return False
 
 
 def _end_achieved_goals(agent: Circumstance) -> None:
     """Goals whose goal condition holds are achieved, whatever their plans are at."""
     for intention in list(agent.alive.values()):
         for index, frame in enumerate(intention.frames):
-            achieved = frame[PLAN].goal_condition
-            if achieved is not None and achieved(agent, frame):
+            if frame[PLAN].goal_condition is not None and _is_achieved(agent, frame):
                 queued = intention in agent.intentions
                 achieve(agent, intention, index)
                 if intention.frames:
@@ -107,11 +156,20 @@ def _check_conditions(agent: Circumstance) -> None:
         holds, waiting = entry
         if waiting.ended:
             agent.condition_waits.remove(entry)
-        elif holds():
+            continue
+        try:
+            held = holds()
+        except InternalError:
+            raise
+        except Exception as fault:
+            undo(agent.trail, 0)
             agent.condition_waits.remove(entry)
-            waiting.resume()
-    while agent.tasks:
-        agent.tasks.popleft()()
+            waiting.fail(rescue.told(fault))
+        else:
+            if held:
+                agent.condition_waits.remove(entry)
+                waiting.resume()
+    _do_tasks(agent)
 
 
 def _select_intention(agent: Circumstance) -> Intention | None:
@@ -137,23 +195,41 @@ def handle_event(agent: Circumstance) -> None:
     """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
     while agent.events:
         event = agent.events.popleft()
-        intention = event.intention
-        if intention is None:
-            if _external(agent, event):
+        try:
+            if _take_up(agent, event):
                 return
-        elif not intention.dropped:
-            if push(agent, intention, event.goal, event.annotations):
-                agent.make_ready(intention)
-            return
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "an event", fault)
+            if event.intention is not None:
+                rescue.give_up(agent, event.intention, fault)
+
+
+def _take_up(agent: Circumstance, event: Event) -> bool:
+    """Handle one event; False when it is passed over and the next one may have its turn in the same cycle."""
+    intention = event.intention
+    if intention is None:
+        return _external(agent, event)
+    if intention.dropped:
+        return False
+    if push(agent, intention, event.goal, event.annotations):
+        agent.make_ready(intention)
+    return True
 
 
 def _handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
     """An atomic intention's own event comes before all others, which wait."""
     event = next((e for e in agent.events if e.intention is intention), None)
     if event is not None:
-        agent.events.remove(event)
-        if push(agent, intention, event.goal, event.annotations):
-            agent.make_ready(intention)
+        remove_event(agent, event)
+        try:
+            _take_up(agent, event)
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "an event", fault)
+            rescue.give_up(agent, intention, fault)
 
 
 def _external(agent: Circumstance, event: Event) -> bool:
@@ -223,10 +299,13 @@ def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annot
         frame = select_plan(agent, goal, annotations, intention)
         if frame is not None:
             _add_frame(agent, intention, frame)
+            if len(intention.frames) <= agent.goal_depth or _has_room(agent, intention):
+                return True
+            posted = _too_deep(agent, intention)
+        elif trigger.kind == "":
             return True
-        if trigger.kind == "":
-            return True
-        posted = _unplanned(agent, intention, goal, annotations)
+        else:
+            posted = _unplanned(agent, intention, goal, annotations)
         if posted is None:
             return False
         if not _alone(agent):
@@ -235,6 +314,26 @@ def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annot
         goal, annotations = posted
         if agent.event_waits:
             agent.notify_event_waits(Event(goal, intention, annotations))
+
+
+def _has_room(agent: Circumstance, intention: Intention) -> bool:
+    """Whether the plan just put on a full stack may stay: handlers have some room of their own, to deal with that."""
+    depth = agent.goal_depth
+    is_handler = intention.frames[-1][GOAL][0].failing
+    return is_handler and len(intention.frames) <= depth + depth // 10 + 100
+
+
+def _too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
+    """The plan just put on a full stack fails before its first step."""
+    frame = intention.frames.pop()
+    goal, annotations = frame[GOAL], frame[ANNOTATIONS]
+    failure.release_bindings(goal, frame[SERIAL])
+    reason = failure.too_deep(goal, annotations, intention.frames[-1], agent.goal_depth)
+    if goal[0].failing:
+        # Handlers of handlers without end: nobody is left who could deal with it.
+        intention.handlers.clear()
+        del intention.frames[1:]
+    return fail_goal(agent, intention, goal, annotations, reason)
 
 
 def _alone(agent: Circumstance) -> bool:
@@ -338,8 +437,8 @@ def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReaso
 
 
 def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
-    goals = [text(literal_of(f[GOAL], ())) for f in intention.frames if f[GOAL][0].kind]
-    what = f"the goal {'!' + goals[0]}" if goals else "an intention"
+    bottom = next((frame[GOAL] for frame in intention.frames if frame[GOAL][0].kind), None)
+    what = "an intention" if bottom is None else f"the goal !{text(literal_of(bottom, ()))}"
     where = reason.where()
     place = f" ({where})" if where else ""
     agent.architecture.log(
@@ -447,8 +546,7 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         frame = frames[-1]
         if frame[0] is not None:
             break
-        achieved = frame[PLAN].goal_condition
-        if achieved is not None and not achieved(agent, frame):
+        if frame[PLAN].goal_condition is not None and not _is_achieved(agent, frame):
             Waiting(agent, intention, atom("goal_condition")).attach(frame, None)
             return False
         trigger = frame[GOAL][0]

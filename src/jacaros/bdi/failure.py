@@ -12,16 +12,18 @@ from jacaros.bdi.internal_action import ActionError, WrongArguments
 from jacaros.bdi.subplans import handles
 from jacaros.compiler.bodies import StepInfo
 from jacaros.compiler.lowering import lower
-from jacaros.compiler.runtime import Fail, Failure, literal_of
+from jacaros.compiler.runtime import Fail, Failure, annotations_of_event, literal_of
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import String, Term, Var, atom, bare, functor
+from jacaros.terms.values import String, Term, Var, atom, bare, functor, functor_of
 
 ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
+_REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
 
 _IDS: dict[type, str] = {
     nodes.Test: "test_goal_failed",
@@ -144,7 +146,9 @@ class _GoalPlace:
         self.caller = caller
 
     def annotations(self) -> tuple[Term, ...]:
-        term = resolve(literal_of(self.goal, self.goal_annotations))
+        # A goal that was posted again by its handler has the reasons of its last failure: they would double each time.
+        shown = tuple(a for a in annotations_of_event(self.goal_annotations) if functor_of(a) not in _REASONS)
+        term = resolve(literal_of(self.goal, shown))
         span, file = self._call()
         return _code(term, span, file)
 
@@ -152,8 +156,9 @@ class _GoalPlace:
         if self.caller is None:
             return None, ""
         plan = self.caller[PLAN]
-        following = self.caller[STEP].__name__ if self.caller[STEP] is not None else "None"
-        steps: dict[str, StepInfo] = getattr(self.caller[STEP], "steps", plan.steps)
+        step = self.caller[STEP]
+        following = step.__name__ if step is not None else "None"
+        steps: dict[str, StepInfo] = getattr(step, "steps", plan.steps)
         for info in steps.values():
             node = info.node
             if isinstance(node, (nodes.Achieve, nodes.Test)) and info.next == following:
@@ -208,7 +213,11 @@ def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
     if isinstance(fault, ArithmeticFault):
         return error_terms("arithmetic_error", str(fault))
     if isinstance(fault, RecursionError):
-        return error_terms("too_deep", "a rule or condition is nested too deeply")
+        return error_terms("too_deep", str(fault))
+    if isinstance(fault, CyclicTerm):
+        return error_terms("cyclic_term", str(fault))
+    if isinstance(fault, MemoryError):
+        return error_terms("no_memory", "there is not enough memory")
     if isinstance(fault, InternalError):
         raise fault
     kind = "internal_action" if isinstance(node, nodes.Constraint) else "unknown"
@@ -246,6 +255,12 @@ def no_plan(
     return FailureReason(terms, _GoalPlace(goal, annotations, caller))
 
 
+def too_deep(goal: tuple[Any, ...], annotations: Any, caller: Frame, depth: int) -> FailureReason:
+    """The reason of a goal whose plan finds no room on the stack of its intention."""
+    message = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
+    return FailureReason(error_terms("too_deep", message), _GoalPlace(goal, annotations, caller))
+
+
 def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
     """Give the variables of a failed goal back as they were when it was posted."""
     stack = [a for a in goal[1:] if a.__class__ is Var or a.__class__ is tuple]
@@ -269,13 +284,14 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
     below the one it handles.
     """
     frames = intention.frames
-    handlers = list(intention.handlers)
+    handlers = len(intention.handlers)
     index = len(frames) - 1
     while index >= 0:
         frame = frames[index]
         trigger = frame[GOAL][0]
         if trigger.failing:
-            index = handlers.pop() - 1
+            handlers -= 1
+            index = intention.handlers[handlers] - 1
             continue
         if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
             event = reason.with_goal(frame[ANNOTATIONS])
@@ -288,12 +304,13 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
 
 def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
     """Whether a goal higher on the stack than the frame *above* has a handler that is not already at work."""
-    handlers = list(intention.handlers)
+    handlers = len(intention.handlers)
     index = len(intention.frames) - 1
     while index > above:
         trigger = intention.frames[index][GOAL][0]
         if trigger.failing:
-            index = handlers.pop() - 1
+            handlers -= 1
+            index = intention.handlers[handlers] - 1
             continue
         if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
             return True

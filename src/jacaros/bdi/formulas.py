@@ -122,7 +122,7 @@ def _logic(agent: Circumstance, name: str, formula: Term, trail: Trail) -> Searc
             search = solve_formula(agent, side, trail)
             while (yield search) is not None:
                 yield ()
-    elif not exists(run(solve_formula(agent, formula[1], trail)), trail):
+    elif not exists(run(solve_formula(agent, formula[1], trail), agent.rule_depth), trail):
         yield ()
 
 
@@ -186,7 +186,7 @@ def collect_formula(agent: Circumstance, name: str, arguments: tuple[Term, ...],
     template, formula, target = arguments if len(arguments) == 3 else (0.0, *arguments)
     mark = len(trail)
     found = []
-    for _ in run(solve_formula(agent, formula, trail)):
+    for _ in run(solve_formula(agent, formula, trail), agent.rule_depth):
         found.append(rename(template))
     undo(trail, mark)
     if name == ".count":
@@ -197,7 +197,7 @@ def collect_formula(agent: Circumstance, name: str, arguments: tuple[Term, ...],
 
 def first_answer(agent: Circumstance, formula: Term) -> bool:
     """Whether a formula holds; its first answer stays bound on the agent's trail."""
-    return any(True for _ in run(solve_formula(agent, formula, agent.trail)))
+    return any(True for _ in run(solve_formula(agent, formula, agent.trail), agent.rule_depth))
 
 
 COUNT = functor(".count", 1)

@@ -67,7 +67,7 @@ def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Te
     trail = agent.trail
     mark = len(trail)
     formula = (_symbol(function), *term[1:], value)
-    for _ in run(solve_formula(agent, formula, trail)):
+    for _ in run(solve_formula(agent, formula, trail), agent.rule_depth):
         found = settle(value)
         undo(trail, mark)
         if found.__class__ is float:

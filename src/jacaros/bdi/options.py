@@ -15,10 +15,16 @@ class Options:
         verbose: what people are told of the agent besides what it prints: 0 only trouble, 2 details as well.
         percept_interval: percepts and messages are looked at every so many cycles (``nrcbp``), and when there is nothing
             else to do.
+        rule_depth: how many rules and conditions may be open at the same time in one search; one more and it fails
+            (some kilobytes each).
+        goal_depth: how many plans may be on the stack of an intention; a goal that would be one more fails (a quarter
+            of a kilobyte each, and what the plans hold).
     """
 
     events: str = "discard"
     new_focus: bool = False
     tail_calls: bool = True
+    rule_depth: int = 500_000
+    goal_depth: int = 1_000_000
     verbose: int = 1
     percept_interval: int = 1

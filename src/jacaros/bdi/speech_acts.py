@@ -185,7 +185,7 @@ def _each_belief(agent: Circumstance, query: Term) -> Any:
         return
     tail = Var()
     question = Annotated((symbol, *arguments) if arguments else symbol, annotations, tail)
-    for _ in run(solve_formula(agent, question, agent.trail)):
+    for _ in run(solve_formula(agent, question, agent.trail), agent.rule_depth):
         found = resolve(question)
         rest = tuple(a for a in annotations_of(found) if a != SOURCE_SELF)
         inner = rename(bare(found))
@@ -220,6 +220,7 @@ def _ask_how(agent: Circumstance, message: SpeechAct) -> None:
     wanted = _trigger_of(message.content)
     if wanted is None:
         _refuse(agent, message)
+        answer(agent, message, None)
         return
     plans = [lower_plan(p.node, fresh_names()) for p in agent.library.relevant(wanted)]
     answer(agent, message, make_list(plans))

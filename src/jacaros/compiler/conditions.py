@@ -223,7 +223,9 @@ def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
     if fn.trampoline:
         _trampolined_rows(fn, arguments, rows, general, test, then)
     else:
-        with fn.writer.block(f"for {arguments.target} in ({rows} if {test} else run({general})):"):
+        with fn.writer.block(
+            f"for {arguments.target} in ({rows} if {test} else run({general}, agent.rule_depth)):"
+        ):
             arguments.match_rest(then)
 
 
@@ -347,7 +349,7 @@ def _loop_binding(fn: FunctionBuilder, generator: str, names: list[str], then: T
         settle_fresh(fn, names)
         then()
 
-    loop_over_answers(fn, generator if fn.trampoline else f"run({generator})", [], settled)
+    loop_over_answers(fn, generator if fn.trampoline else f"run({generator}, agent.rule_depth)", [], settled)
 
 
 def _dynamic(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:

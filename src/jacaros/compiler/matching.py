@@ -25,7 +25,7 @@ def match(
     if isinstance(pattern, nodes.Variable) and _is_plain(pattern):
         _match_variable(fn, pattern, value, then)
     elif isinstance(pattern, nodes.Number):
-        number = repr(pattern.value)
+        number = build(fn, pattern)  # infinite ones are no Python literals
         _test(fn, f"{value} == {number} if {value}.__class__ is float else unify({number}, {value}, t)", then)
     elif isinstance(pattern, nodes.String):
         text = build(fn, pattern)

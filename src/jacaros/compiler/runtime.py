@@ -68,10 +68,13 @@ SUSPENDED = object()
 Answers = Generator[Any, Any, None]
 
 
-def run(question: Answers) -> Iterator[Any]:
+def run(question: Answers, limit: int) -> Iterator[Any]:
     """Drive a search generator: a tuple it yields is an answer, a generator is to be run for it.
 
     The stack of generators is a list, so depth costs no Python recursion.
+
+    Raises:
+        RecursionError: more than *limit* rules and conditions are open at the same time.
     """
     stack: list[Answers] = []
     opened = [question]
@@ -96,6 +99,10 @@ def run(question: Answers) -> Iterator[Any]:
                 stack.append(current)
                 if not item.gi_suspended:
                     opened.append(item)
+                    if len(opened) > limit:
+                        raise RecursionError(
+                            f"more than {limit} rules and conditions are open at once (option rule_depth)"
+                        )
                 current, answer = item, None
     finally:
         # A generator holds the one it asks: freed from the first on, a long chain would overflow the C stack.

@@ -1,9 +1,10 @@
 """What stands between one mind and its run: Jason's agent architecture."""
 
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from random import Random
 from typing import Any, Protocol
 
+from jacaros.asl.nodes import Literal
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.architecture import Timer
 from jacaros.bdi.options import Options
@@ -38,6 +39,9 @@ class Mind(Protocol):
 
     def post_goal(self, goal: Term) -> None:
         """Adopt a goal."""
+
+    def adopt(self, goals: Iterable[Literal]) -> None:
+        """Take up the goals of a program."""
 
     def run(self, fuel: int) -> bool:
         """Make reasoning cycles; True when there is more to do."""

@@ -19,7 +19,15 @@ _CHOICES: Final[dict[str, tuple[str, ...]]] = {
     "qcache": _TRUTH,
     "qprofiling": _TRUTH,
 }
-_NUMBERS: Final = ("nrcbp", "cycles", "cycles_sense", "cycles_deliberate", "cycles_act")
+_NUMBERS: Final = (
+    "nrcbp",
+    "cycles",
+    "cycles_sense",
+    "cycles_deliberate",
+    "cycles_act",
+    "rule_depth",
+    "goal_depth",
+)
 _WITHOUT_EFFECT: Final = {
     "synchronised": "agents take turns anyway",
     "qcache": "queries are answered by indexes",
@@ -58,6 +66,8 @@ def mind_options(given: Mapping[str, str]) -> Options:
         tail_calls=given.get("tro") != "false",
         verbose=_number(given, "verbose", options.verbose),
         percept_interval=_number(given, "nrcbp", options.percept_interval),
+        rule_depth=_number(given, "rule_depth", options.rule_depth),
+        goal_depth=_number(given, "goal_depth", options.goal_depth),
     )
 
 

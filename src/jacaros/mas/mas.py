@@ -13,7 +13,6 @@ from jacaros.bdi.agent import Agent
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
-from jacaros.compiler.lowering import lower_value
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.agent_options import mind_options
@@ -343,5 +342,4 @@ def _begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:
     host.mind.start()
     if _is_situated(spec):
         host.mind.run(1)
-        for goal in program.goals:
-            host.mind.post_goal(lower_value(goal))
+        host.mind.adopt(program.goals)

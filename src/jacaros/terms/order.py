@@ -6,8 +6,10 @@ It never looks at addresses, so that a run repeated with the same seed sorts ali
 import itertools
 from collections.abc import Iterable
 from functools import cmp_to_key
+from typing import Any
 
 from jacaros.terms.arithmetic import settle
+from jacaros.terms.deep import MANY_TURNS
 from jacaros.terms.values import CONS, NIL, Annotated, Functor, Reference, String, Term, Var, annotations_of
 
 _NUMBER, _STRING, _LIST, _LITERAL, _OTHER, _VARIABLE = range(6)
@@ -31,29 +33,87 @@ def _rank(term: Term) -> int:
 
 def compare(left: Term, right: Term) -> int:
     """Negative, zero or positive as *left* comes before, with or after *right*."""
-    while True:
-        left, right = settle(left), settle(right)
-        if left is right:
-            return 0
-        rank = _rank(left)
-        other = _rank(right)
-        if rank != other:
-            return rank - other
-        if rank == _NUMBER:
-            return _compare_numbers(left, right)
-        if rank == _STRING:
-            return -1 if left < right else int(left > right)
-        if rank == _LIST:
-            if left is NIL or right is NIL:
-                return (left is not NIL) - (right is not NIL)
-            order = compare(left[1], right[1])
-            if order:
-                return order
-            left, right = left[2], right[2]
+    turns = 0
+    try:
+        while turns < MANY_TURNS:
+            left, right = settle(left), settle(right)
+            if left is right:
+                return 0
+            rank = _rank(left)
+            other = _rank(right)
+            if rank != other:
+                return rank - other
+            if rank == _NUMBER:
+                return _compare_numbers(left, right)
+            if rank == _STRING:
+                return -1 if left < right else int(left > right)
+            if rank == _LIST:
+                if left is NIL or right is NIL:
+                    return (left is not NIL) - (right is not NIL)
+                order = compare(left[1], right[1])
+                if order:
+                    return order
+                left, right = left[2], right[2]
+                turns += 1
+                continue
+            if rank == _LITERAL:
+                return _compare_literals(left, right)
+            return _compare_variables(left, right) if rank == _VARIABLE else _compare_others(left, right)
+    except RecursionError:
+        pass
+    return _compare_deep(left, right)
+
+
+def _compare_deep(left: Term, right: Term) -> int:
+    """`compare` of terms that are nested too deeply for Python's stack, or without end."""
+    todo: list[Any] = [(left, right)]
+    met: set[tuple[int, int]] = set()
+    while todo:
+        item = todo.pop()
+        if item.__class__ is int:
+            if item:
+                return int(item)
             continue
-        if rank == _LITERAL:
-            return _compare_literals(left, right)
-        return _compare_variables(left, right) if rank == _VARIABLE else _compare_others(left, right)
+        left, right = settle(item[0]), settle(item[1])
+        rank = _rank(left)
+        if left is right:
+            continue
+        if rank != _rank(right) or rank in (_NUMBER, _STRING, _VARIABLE):
+            todo.append(compare(left, right))
+            continue
+        if left is not item[0] or right is not item[1] or rank == _OTHER:
+            # Only by a variable or a collection a term can contain itself.
+            if (id(left), id(right)) in met:
+                continue
+            met.add((id(left), id(right)))
+        todo.extend(reversed(_inner_comparisons(left, right, rank)))
+    return 0
+
+
+def _inner_comparisons(left: Term, right: Term, rank: int) -> list[Any]:
+    """What decides between two terms of the same rank, in turn: pairs of terms to compare, and decisions."""
+    if rank == _OTHER:
+        if left.__class__ is not right.__class__ or left.__class__ is Reference:
+            return [_compare_others(left, right)]
+        return [(left.as_list(), right.as_list())]
+    if rank == _LIST:
+        if left is NIL or right is NIL:
+            return [(left is not NIL) - (right is not NIL)]
+        return [(left[1], right[1]), (left[2], right[2])]
+    left_bare = settle(left.term) if left.__class__ is Annotated else left
+    right_bare = settle(right.term) if right.__class__ is Annotated else right
+    if _rank(left_bare) != _LITERAL or _rank(right_bare) != _LITERAL:
+        return [(left_bare, right_bare)]
+    first = left_bare[0] if left_bare.__class__ is tuple else left_bare
+    second = right_bare[0] if right_bare.__class__ is tuple else right_bare
+    more, others = annotations_of(left), annotations_of(right)
+    return [
+        _compare_functors(first, second),
+        *zip(_arguments(left_bare), _arguments(right_bare), strict=False),
+        int(first.arity - second.arity),
+        *zip(more, others, strict=False),
+        len(more) - len(others),
+    ]
 
 
 def _compare_numbers(left: float, right: float) -> int:
@@ -97,11 +157,9 @@ def _compare_literals(left: Term, right: Term) -> int:
         return compare(left_bare, right_bare)
     first = left_bare[0] if left_bare.__class__ is tuple else left_bare
     second = right_bare[0] if right_bare.__class__ is tuple else right_bare
-    if first is not second:
-        a = (first.namespace or "", first.name, first.negated)
-        b = (second.namespace or "", second.name, second.negated)
-        if a != b:
-            return -1 if a < b else 1
+    order = _compare_functors(first, second)
+    if order:
+        return order
     for x, y in zip(_arguments(left_bare), _arguments(right_bare), strict=False):
         order = compare(x, y)
         if order:
@@ -109,6 +167,15 @@ def _compare_literals(left: Term, right: Term) -> int:
     if first.arity != second.arity:
         return int(first.arity - second.arity)
     return _compare_annotations(annotations_of(left), annotations_of(right))
+
+
+def _compare_functors(first: Functor, second: Functor) -> int:
+    """By namespace, name and negation; the number of arguments counts only after the arguments."""
+    if first is second:
+        return 0
+    a = (first.namespace or "", first.name, first.negated)
+    b = (second.namespace or "", second.name, second.negated)
+    return 0 if a == b else -1 if a < b else 1
 
 
 def _arguments(term: Term) -> tuple[Term, ...]:

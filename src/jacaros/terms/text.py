@@ -1,10 +1,18 @@
 """Terms as AgentSpeak text, printed as Jason prints them."""
 
 import math
-from typing import cast
+from collections.abc import Iterable
+from typing import Any, cast
 
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.plans import BODY_SEQUENCE, body_steps, plan_text_parts, step_parts, trigger_parts
+from jacaros.terms.plans import (
+    BODY_END,
+    BODY_SEQUENCE,
+    body_steps,
+    plan_text_parts,
+    step_parts,
+    trigger_parts,
+)
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
     ARITHMETIC,
@@ -22,8 +30,6 @@ from jacaros.terms.values import (
     Var,
     deref,
 )
-
-_MAX_DEPTH = 300
 
 
 def number_text(value: float) -> str:
@@ -69,7 +75,7 @@ def quoted(text: str) -> str:
 
 def text(term: Term) -> str:
     """The term with all bindings applied, strings in quotes."""
-    return _write(resolve(term), 0)
+    return _write(resolve(term))
 
 
 def display(term: Term) -> str:
@@ -79,27 +85,52 @@ def display(term: Term) -> str:
         return str(term)
     if term.__class__ is Var:
         return f"{term.name}<no-value>"
-    return _write(term, 0)
+    return _write(term)
 
 
-def _write(term: Term, depth: int) -> str:
-    if depth > _MAX_DEPTH:
-        return "..."
-    kind = term.__class__
-    if kind is float:
-        return number_text(term)
-    if kind is String:
-        return quoted(term)
-    if kind is Functor:
-        return _name(term)
-    if kind is Var:
-        bound = deref(term)
-        return str(bound.name) if bound.__class__ is Var else _write(bound, depth + 1)
-    if kind is tuple:
-        return _write_structure(term, depth)
-    if kind is Annotated:
-        return _write_annotated(term, depth)
-    return _write_object(term, depth)
+_Pieces = list[Any]
+"""What a term is written as: texts (plain `str`) and further terms."""
+
+
+def _write(term: Term) -> str:
+    """Terms may be nested as deeply as memory allows, so what is still to be written is kept in a list."""
+    written: list[str] = []
+    todo: _Pieces = [term]
+    inside: set[int] = set()
+    while todo:
+        piece = todo.pop()
+        kind = piece.__class__
+        if kind is str:
+            written.append(piece)
+        elif kind is float:
+            written.append(number_text(piece))
+        elif kind is Functor:
+            written.append(_name(piece))
+        elif kind is String:
+            written.append(quoted(piece))
+        elif kind is tuple:
+            todo.extend(reversed(_structure(piece)))
+        elif kind is Annotated:
+            todo.extend(reversed(_annotated(piece)))
+        elif kind is Var:
+            bound = deref(piece)
+            todo.append(str(bound.name) if bound.__class__ is Var else bound)
+        elif kind is _End:
+            inside.remove(piece.identity)
+        elif id(piece) in inside:
+            written.append("...")
+        else:
+            inside.add(id(piece))
+            todo.append(_End(id(piece)))
+            todo.extend(reversed(_object(piece)))
+    return "".join(written)
+
+
+def _separated(terms: Iterable[Term], separator: str = ",") -> _Pieces:
+    pieces: _Pieces = []
+    for term in terms:
+        pieces += (separator, term)
+    return pieces[1:]
 
 
 def _name(symbol: Functor) -> str:
@@ -107,97 +138,102 @@ def _name(symbol: Functor) -> str:
     return f"{prefix}~{symbol.name}" if symbol.negated else prefix + symbol.name
 
 
-def _write_annotated(term: Annotated, depth: int) -> str:
-    inner = ",".join(_write(a, depth + 1) for a in term.annotations)
-    if term.tail is not None:
-        inner += "|" + _write(term.tail, depth + 1)
-    return f"{_write(term.term, depth + 1)}[{inner}]"
+def _annotated(term: Annotated) -> _Pieces:
+    tail = [] if term.tail is None else ["|", term.tail]
+    return [term.term, "[", *_separated(term.annotations), *tail, "]"]
 
 
-def _write_structure(term: tuple[Term, ...], depth: int) -> str:
+def _structure(term: tuple[Term, ...]) -> _Pieces:
     symbol = term[0]
     if symbol is CONS:
-        return _write_list(term, depth)
+        return _list(term)
     if symbol.kind in (ARITHMETIC, RELATION, LOGIC):
-        return _write_operator(term, depth)
+        return _operator(term)
     if symbol is NEGATED:
-        return "~" + _write(term[1], depth + 1)
+        return ["~", term[1]]
     if symbol.kind == PLAN:
-        return _write_plan_piece(term, depth)
-    arguments = ",".join([_write(a, depth + 1) for a in term[1:]])
-    return f"{_name(symbol)}({arguments})"
+        return _plan_piece(term)
+    return [_name(symbol), "(", *_separated(term[1:]), ")"]
 
 
-def _write_list(term: Term, depth: int) -> str:
-    parts = []
+def _list(term: Term) -> _Pieces:
+    items = []
     while term.__class__ is tuple and term[0] is CONS:
-        parts.append(_write(term[1], depth + 1))
+        items.append(term[1])
         term = deref(term[2])
-    return "[" + ",".join(parts) + ("" if term is NIL else "|" + _write(term, depth + 1)) + "]"
+    tail = [] if term is NIL else ["|", term]
+    return ["[", *_separated(items), *tail, "]"]
 
 
-def _write_operator(term: tuple[Term, ...], depth: int) -> str:
+def _operator(term: tuple[Term, ...]) -> _Pieces:
     symbol = term[0]
-    operands = [_write(a, depth + 1) for a in term[1:]]
     if symbol.arity == 1:
-        return f"not ({operands[0]})" if symbol.name == "not" else f"({symbol.name}{operands[0]})"
+        return ["not (", term[1], ")"] if symbol.name == "not" else ["(" + symbol.name, term[1], ")"]
     if symbol.kind == ARITHMETIC and symbol.name not in ("div", "mod"):
-        return f"({operands[0]}{symbol.name}{operands[1]})"
-    return f"({operands[0]} {symbol.name} {operands[1]})"
+        return ["(", term[1], symbol.name, term[2], ")"]
+    return ["(", term[1], f" {symbol.name} ", term[2], ")"]
 
 
-def _write_plan_piece(term: tuple[Term, ...], depth: int) -> str:
+def _plan_piece(term: tuple[Term, ...]) -> _Pieces:
     name = cast("Functor", term[0]).name
     if name == "plan":
-        return "{ " + _write_plan(term, depth) + " }"
+        return ["{ ", *_plan(term), " }"]
     if name == "trigger":
         operator, literal = trigger_parts(term)
-        return "{ " + operator + _write(literal, depth + 1) + " }"
+        return ["{ " + operator, literal, " }"]
     if name == "rule":
-        return "{ " + _write(term[1], depth + 1) + " :- " + _write(term[2], depth + 1) + " }"
+        return ["{ ", term[1], " :- ", term[2], " }"]
     if term[0] is BODY_SEQUENCE:
-        return "; ".join(_write_step(step, depth + 1) for step in body_steps(term))
-    return _write_step(term, depth)
+        return [piece for step in body_steps(term) for piece in ("; ", *_step(step))][1:]
+    return _step(term)
 
 
-def _write_plan(term: tuple[Term, ...], depth: int) -> str:
+def _plan(term: tuple[Term, ...]) -> _Pieces:
     label, operator, literal, context, body = plan_text_parts(term)
-    text = ""
+    pieces: _Pieces = []
     bare_label = deref(label)
     if bare_label.__class__ is not Functor or bare_label.name != "nolabel":
-        text = "@" + _write(label, depth + 1) + " "
-    text += operator + _write(literal, depth + 1)
+        pieces += ("@", label, " ")
+    pieces += (operator, literal)
     if not (context.__class__ is Functor and context.name == "true"):
-        text += " : " + _write(context, depth + 1)
-    body_text = _write(body, depth + 1)
-    return text + (f" <- {body_text}" if body_text else "")
+        pieces += (" : ", context)
+    if body is not BODY_END:
+        pieces += (" <- ", body)
+    return pieces
 
 
-def _write_step(step: Term, depth: int) -> str:
+def _step(step: Term) -> _Pieces:
     operator, operands = step_parts(step)
-    written = ["{ " + _write(o, depth + 1) + " }" if _is_body(o) else _write(o, depth + 1) for o in operands]
+    written = [["{ ", o, " }"] if _is_body(o) else [o] for o in operands]
     if operator == "if":
-        rest = f" else {written[2]}" if len(written) > 2 else ""
-        return f"if ({written[0]}) {written[1]}{rest}"
+        rest = [" else ", *written[2]] if len(written) > 2 else []
+        return ["if (", *written[0], ") ", *written[1], *rest]
     if operator in ("while", "for"):
-        return f"{operator} ({written[0]}) {written[1]}"
+        return [f"{operator} (", *written[0], ") ", *written[1]]
     if operator in ("|&|", "|||"):
-        return f" {operator} ".join(written)
-    return operator + written[0]
+        return [piece for operand in written for piece in (f" {operator} ", *operand)][1:]
+    return [operator, *written[0]]
 
 
 def _is_body(term: Term) -> bool:
     return term.__class__ is tuple and term[0] is BODY_SEQUENCE
 
 
-def _write_object(term: Term, depth: int) -> str:
+class _End:
+    """The end of a collection that is being written; one that contains itself is not written again inside."""
+
+    __slots__ = ("identity",)
+
+    def __init__(self, identity: int) -> None:
+        self.identity = identity
+
+
+def _object(term: Term) -> _Pieces:
     if isinstance(term, SetValue):
-        return "{" + ",".join(_write(i, depth + 1) for i in term) + "}"
+        return ["{", *_separated(term), "}"]
     if isinstance(term, MapValue):
-        pairs = ((_write(key, depth + 1), _write(term.items[key], depth + 1)) for key in term)
-        return "{" + ",".join(f"{key}->{value}" for key, value in pairs) + "}"
+        pairs = [piece for key in term for piece in (",", key, "->", term.items[key])]
+        return ["{", *pairs[1:], "}"]
     if isinstance(term, QueueValue):
-        return "[" + ",".join(_write(i, depth + 1) for i in term) + "]"
-    if isinstance(term, Reference):
-        return f"cobj_{term.number}"
-    return str(term)
+        return ["[", *_separated(term), "]"]
+    return [f"cobj_{term.number}" if isinstance(term, Reference) else str(term)]

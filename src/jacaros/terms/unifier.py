@@ -8,6 +8,7 @@ subset of those of the right one.
 from collections.abc import Iterator
 
 from jacaros.terms.arithmetic import settle
+from jacaros.terms.deep import MANY_TURNS, Turns, rebuild
 from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import (
@@ -32,13 +33,15 @@ class Trail(list[Var]):
     Attributes:
         serial: number of goals posted so far; stamped on every binding, so that those made for a failed goal
             can be told from older ones.
+        deep: a unification is under way that does without Python's stack.
     """
 
-    __slots__ = ("serial",)
+    __slots__ = ("deep", "serial")
 
     def __init__(self) -> None:
         super().__init__()
         self.serial = 0
+        self.deep = False
 
 
 ATOMIC = frozenset({float, String, Functor})
@@ -65,28 +68,77 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:
 
     On failure bindings may be left on the trail: the caller takes them back.
     """
-    while True:
+    turns = 0
+    try:
+        while turns < MANY_TURNS:
+            left, right = settle(left), settle(right)
+            if left is right:
+                return True
+            kind = left.__class__
+            if kind is Var:
+                return _bind_checked(left, right, trail)
+            if right.__class__ is Var:
+                return _bind_checked(right, left, trail)
+            if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
+                return _unify_negated(left, right, trail)
+            if kind is tuple and right.__class__ is tuple:
+                if left[0] is not right[0]:
+                    return False
+                for i in range(1, len(left) - 1):
+                    if not unify(left[i], right[i], trail):
+                        return False
+                left, right = left[-1], right[-1]
+                turns += 1
+                continue
+            if kind is Annotated or right.__class__ is Annotated:
+                return _unify_annotated(left, right, trail)
+            return kind is right.__class__ and bool(left == right)
+    except RecursionError:
+        # What was bound so far stays: it is made equal once more.
+        if trail.deep:
+            raise
+    trail.deep = True
+    try:
+        return _unify_deep(left, right, trail)
+    finally:
+        trail.deep = False
+
+
+def _unify_deep(left: Term, right: Term, trail: Trail) -> bool:
+    """`unify` of terms that are nested too deeply for Python's stack, or without end.
+
+    Raises:
+        RecursionError: when it is their annotations that are nested so deeply.
+    """
+    todo: list[tuple[Term, ...]] = [(left, right)]
+    met: set[tuple[int, int]] = set()
+    while todo:
+        item = todo.pop()
+        if len(item) == 4:
+            if not unify_annotations(*item, trail):
+                return False
+            continue
+        left, right = item
+        by_variable = left.__class__ is Var or right.__class__ is Var
         left, right = settle(left), settle(right)
-        if left is right:
-            return True
-        kind = left.__class__
-        if kind is Var:
-            return _bind_checked(left, right, trail)
-        if right.__class__ is Var:
-            return _bind_checked(right, left, trail)
-        if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
-            return _unify_negated(left, right, trail)
-        if kind is tuple and right.__class__ is tuple:
+        both = {left.__class__, right.__class__}
+        if Annotated in both and Var not in both:
+            left, left_annotations, left_tail = _parts(left)
+            right, right_annotations, right_tail = _parts(right)
+            todo.append((left_annotations, left_tail, right_annotations, right_tail))
+            todo.append((left, right))
+        elif both != {tuple} or left[0] is NEGATED or right[0] is NEGATED:
+            if not unify(left, right, trail):
+                return False
+        elif left is not right:
             if left[0] is not right[0]:
                 return False
-            for i in range(1, len(left) - 1):
-                if not unify(left[i], right[i], trail):
-                    return False
-            left, right = left[-1], right[-1]
-            continue
-        if kind is Annotated or right.__class__ is Annotated:
-            return _unify_annotated(left, right, trail)
-        return kind is right.__class__ and bool(left == right)
+            if by_variable:
+                if (id(left), id(right)) in met:
+                    continue
+                met.add((id(left), id(right)))
+            todo.extend(zip(left[:0:-1], right[:0:-1], strict=True))
+    return True
 
 
 def _unify_negated(left: Term, right: Term, trail: Trail) -> bool:
@@ -123,19 +175,22 @@ def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
 
 
 def _occurs(variable: Var, value: Term) -> bool:
-    for _ in range(64):
-        if value.__class__ is Annotated:
-            tail = () if value.tail is None else (value.tail,)
-            if any(_occurs(variable, deref(annotation)) for annotation in (*value.annotations, *tail)):
-                return True
-            value = deref(value.term)
-        if value.__class__ is not tuple:
-            return value is variable
-        for argument in value[1:-1]:
-            argument = deref(argument)
-            if argument is variable or (argument.__class__ in HOLDERS and _occurs(variable, argument)):
-                return True
-        value = deref(value[-1])
+    try:
+        for _ in range(64):
+            if value.__class__ is Annotated:
+                tail = () if value.tail is None else (value.tail,)
+                if any(_occurs(variable, deref(annotation)) for annotation in (*value.annotations, *tail)):
+                    return True
+                value = deref(value.term)
+            if value.__class__ is not tuple:
+                return value is variable
+            for argument in value[1:-1]:
+                argument = deref(argument)
+                if argument is variable or (argument.__class__ in HOLDERS and _occurs(variable, argument)):
+                    return True
+            value = deref(value[-1])
+    except RecursionError:
+        return any(variable is other for other in free_variables(value))
     return False
 
 
@@ -202,7 +257,12 @@ def _annotation_matches(
         return
     for index, candidate in enumerate(right):
         mark = len(trail)
-        if unify(left[0], candidate, trail):
+        try:
+            found = unify(left[0], candidate, trail)
+        except RecursionError:
+            undo(trail, mark)
+            raise
+        if found:
             rest = right[:index] + right[index + 1 :]
             for _ in _annotation_matches(left[1:], left_tail, rest, right_tail, trail):
                 yield
@@ -239,14 +299,26 @@ def resolve(term: Term) -> Term:
     kind = term.__class__
     if kind in ATOMIC:
         return term
-    if kind is Var:
-        value = deref(term)
-        return value if value.__class__ is Var else resolve(value)
-    if kind is tuple:
-        return _resolve_list(term) if term[0] is CONS else _resolve_structure(term)
-    if kind is Annotated:
-        return _resolve_annotated(term)
+    try:
+        if kind is Var:
+            value = deref(term)
+            return value if value.__class__ is Var else resolve(value)
+        if kind is tuple:
+            return _resolve_list(term) if term[0] is CONS else _resolve_structure(term)
+        if kind is Annotated:
+            return _resolve_annotated(term)
+    except RecursionError:
+        return rebuild(term, _itself, _settled, _annotate)
     return term
+
+
+def _itself(term: Term) -> Term:
+    return term
+
+
+def _settled(term: Term) -> Term:
+    """A structure whose arguments are resolved; arithmetic is evaluated."""
+    return settle(term) if term[0].kind in (ARITHMETIC, FUNCTION) else term
 
 
 def _resolve_structure(term: Term) -> Term:
@@ -268,6 +340,7 @@ def _resolve_list(term: Term) -> Term:
     heads: list[Term] = []
     changed = False
     cell = term
+    turns: Turns | None = None
     while cell.__class__ is tuple and cell[0] is CONS:
         head = cell[1]
         new = head if head.__class__ in ATOMIC else resolve(head)
@@ -275,6 +348,9 @@ def _resolve_list(term: Term) -> Term:
         heads.append(new)
         tail = cell[2]
         if tail.__class__ is Var:
+            if turns is None:
+                turns = Turns()
+            turns.pass_by(tail)
             cell = deref(tail)
             changed = changed or cell is not tail
         else:
@@ -287,12 +363,14 @@ def _resolve_list(term: Term) -> Term:
 
 
 def _resolve_annotated(term: Annotated) -> Term:
-    inner = resolve(term.term)
     annotations = tuple(resolve(a) for a in term.annotations)
-    tail = term.tail
+    return _annotate(resolve(term.term), annotations, None if term.tail is None else resolve(term.tail))
+
+
+def _annotate(inner: Term, annotations: tuple[Term, ...], tail: Term) -> Term:
+    """A resolved term with resolved annotations."""
     if tail is not None:
         annotations, tail = _with_tail(annotations, tail)
-        annotations = tuple(resolve(a) for a in annotations)
     if inner.__class__ is Annotated:
         annotations += inner.annotations
         inner = inner.term
@@ -310,15 +388,20 @@ def is_ground(term: Term) -> bool:
 def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
     """The unbound variables of a term, each once, in order of appearance."""
     found = [] if found is None else found
+    met = {id(variable) for variable in found}
     stack = [term]
     while stack:
-        term = deref(stack.pop())
+        term = stack.pop()
         kind = term.__class__
         if kind in ATOMIC:
             continue
         if kind is Var:
-            if not any(term is other for other in found):
-                found.append(term)
+            if id(term) not in met:
+                met.add(id(term))
+                if term.ref is None:
+                    found.append(term)
+                else:
+                    stack.append(term.ref)
         elif kind is tuple:
             stack.extend(reversed(term[1:]))
         elif kind is Annotated:
@@ -338,6 +421,13 @@ def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
 
 
 def _rename(term: Term, names: dict[Var, Var]) -> Term:
+    try:
+        return _renamed(term, names)
+    except RecursionError:
+        return rebuild(term, lambda variable: _renamed(variable, names), _itself, Annotated)
+
+
+def _renamed(term: Term, names: dict[Var, Var]) -> Term:
     kind = term.__class__
     if kind is Var:
         fresh = names.get(term)

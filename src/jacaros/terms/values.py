@@ -193,11 +193,19 @@ def deref(term: Term) -> Term:
 
 
 def list_items(term: Term) -> Iterator[Term]:
-    """The elements of a list term; ends at a tail that is no list."""
+    """The elements of a list term; ends at a tail that is no list, or where the list would begin again."""
     term = deref(term)
+    mark, count, limit = None, 0, 1
     while term.__class__ is tuple and term[0] is CONS:
         yield term[1]
-        term = deref(term[2])
+        term = term[2]
+        if term.__class__ is Var:
+            if term is mark:
+                return
+            count += 1
+            if count == limit:
+                mark, limit = term, limit * 2
+            term = deref(term)
 
 
 def is_list(term: Term) -> bool:

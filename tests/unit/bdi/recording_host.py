@@ -133,10 +133,11 @@ class RecordingHost:
         while not self.stopped:
             while self.agent.run(fuel):
                 pass
-            if self.stopped or not self._ring_next(end):
+            if self.stopped or not self.ring_next(end):
                 return
 
-    def _ring_next(self, end: float) -> bool:
+    def ring_next(self, end: float) -> bool:
+        """Ring the next timer that is due before *end*; False when there is none."""
         while self._timers and self._timers[0][2].callback is None:
             heapq.heappop(self._timers)
         if not self._timers or self._timers[0][0] > end:

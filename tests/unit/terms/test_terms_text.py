@@ -137,9 +137,5 @@ def test_text_applies_bindings_and_evaluates() -> None:
     assert text(structure("f", variable, (ADD, variable, 1.0))) == "f(2,3)"
 
 
-def test_text_of_deep_terms_ends() -> None:
-    deep: Term = atom("z")
-    for _ in range(400):
-        deep = structure("s", deep)
-    assert "..." in text(deep)
+def test_long_lists_are_written_whole() -> None:
     assert text(make_list([1.0] * 5000)).count("1") == 5000

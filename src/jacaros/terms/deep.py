@@ -1,0 +1,118 @@
+"""Terms that are nested too deeply for Python's stack, or contain themselves.
+
+The functions on terms call themselves; where Python's stack ends, they hand the rest over to a loop with a list of its
+own, so that the depth of a term is limited by memory alone.  A cycle always leads through a bound variable: a term that
+contains itself is found by a variable that is met again inside its own value.
+"""
+
+from collections.abc import Callable
+
+from jacaros.terms.values import Annotated, Term, Var
+
+MANY_TURNS = 100_000
+"""Elements of a list after which a loop begins to look whether it goes in a circle."""
+
+
+class CyclicTerm(Exception):
+    """A term contains itself: it has no end that could be printed, sent or stored."""
+
+    def __init__(self) -> None:
+        super().__init__("a term contains itself")
+
+
+def rebuild(
+    term: Term,
+    free: Callable[[Var], Term],
+    structure: Callable[[Term], Term],
+    annotated: Callable[[Term, tuple[Term, ...], Term], Term],
+) -> Term:
+    """A copy of a term with the values of its variables; unchanged structures are shared.
+
+    Args:
+        term: any term.
+        free: what takes the place of an unbound variable.
+        structure: finishes a structure.
+        annotated: puts a term and its annotations and tail together.
+
+    Raises:
+        CyclicTerm: the term contains itself.
+    """
+    todo: list[Term] = [term]
+    done: list[Term] = []
+    inside: set[int] = set()
+    while todo:
+        item = todo.pop()
+        if item.__class__ is _Open:
+            made = _structure(item.term, done) if item.term.__class__ is tuple else None
+            done.append(_annotated(item.term, done, annotated) if made is None else structure(made))
+            inside.difference_update(item.variables)
+            continue
+        through: list[int] = []
+        while item.__class__ is Var and item.ref is not None:
+            if id(item) in inside:
+                raise CyclicTerm
+            through.append(id(item))
+            item = item.ref
+        if item.__class__ is tuple or item.__class__ is Annotated:
+            inside.update(through)
+            todo.append(_Open(item, through))
+            todo.extend(reversed(_parts(item)))
+        else:
+            done.append(free(item) if item.__class__ is Var else item)
+    return done[0]
+
+
+class _Open:
+    """A term whose parts are being rebuilt, and the variables that led to it."""
+
+    __slots__ = ("term", "variables")
+
+    def __init__(self, term: Term, variables: list[int]) -> None:
+        self.term, self.variables = term, variables
+
+
+def _parts(term: Term) -> tuple[Term, ...]:
+    if term.__class__ is tuple:
+        return term[1:]
+    return (term.term, *term.annotations, *(() if term.tail is None else (term.tail,)))
+
+
+def _structure(term: Term, done: list[Term]) -> Term:
+    """The structure of the rebuilt arguments at the end of *done*, which are taken off."""
+    arguments = done[1 - len(term) :]
+    del done[1 - len(term) :]
+    same = all(new is old for new, old in zip(arguments, term[1:], strict=True))
+    return term if same else (term[0], *arguments)
+
+
+def _annotated(
+    term: Annotated, done: list[Term], annotated: Callable[[Term, tuple[Term, ...], Term], Term]
+) -> Term:
+    """The same for a term with annotations."""
+    tail = None if term.tail is None else done.pop()
+    count = len(term.annotations)
+    annotations = tuple(done[len(done) - count :])
+    del done[len(done) - count :]
+    return annotated(done.pop(), annotations, tail)
+
+
+class Turns:
+    """Watches a walk along bound variables, and finds out when it goes in a circle (Brent)."""
+
+    __slots__ = ("_count", "_limit", "_mark")
+
+    def __init__(self) -> None:
+        self._mark: Var | None = None
+        self._count, self._limit = 0, 1
+
+    def pass_by(self, variable: Var) -> None:
+        """Take note of a variable on the way.
+
+        Raises:
+            CyclicTerm: it was passed before.
+        """
+        if variable is self._mark:
+            raise CyclicTerm
+        self._count += 1
+        if self._count == self._limit:
+            self._mark, self._limit = variable, self._limit * 2

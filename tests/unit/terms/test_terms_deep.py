@@ -1,0 +1,137 @@
+"""Terms nested far more deeply than Python's stack, and terms that contain themselves."""
+
+from collections.abc import Callable
+
+import pytest
+
+from jacaros.terms.arithmetic import ADD
+from jacaros.terms.collections import MapValue, SetValue
+from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.order import annotation_set, compare, sorted_terms
+from jacaros.terms.text import text
+from jacaros.terms.unifier import Trail, equal, free_variables, is_ground, is_key, rename, resolve, unify
+from jacaros.terms.values import Annotated, Term, Var, atom, list_items, make_list, structure
+
+DEPTH = 10_000
+
+
+def nested(innermost: Term, wrap: Callable[[Term], Term], depth: int = DEPTH) -> Term:
+    term = innermost
+    for _ in range(depth):
+        term = wrap(term)
+    return term
+
+
+WRAPPERS: dict[str, Callable[[Term], Term]] = {
+    "in the last argument": lambda t: structure("f", t),
+    "in the first argument": lambda t: structure("f", t, 1.0),
+    "in a list": lambda t: make_list([t]),
+    "in the middle of a list": lambda t: make_list([1.0, t, atom("z")]),
+    "with annotations": lambda t: Annotated(structure("f", t), (atom("a"),)),
+    "by variables": lambda t: bound(structure("f", t, 2.0)),
+}
+
+
+def bound(term: Term) -> Var:
+    variable = Var("B")
+    variable.ref = term
+    return variable
+
+
+@pytest.fixture(params=WRAPPERS.values(), ids=WRAPPERS.keys())
+def wrap(request: pytest.FixtureRequest) -> Callable[[Term], Term]:
+    wrapper: Callable[[Term], Term] = request.param
+    return wrapper
+
+
+def test_deep_terms_are_written_whole(wrap: Callable[[Term], Term]) -> None:
+    written = text(nested(atom("core"), wrap))
+    assert written.count("core") == 1
+    assert written.count("(") + written.count("[") >= DEPTH
+
+
+def test_deep_terms_unify(wrap: Callable[[Term], Term]) -> None:
+    variable = Var("X")
+    assert unify(nested(variable, wrap), nested(atom("core"), wrap), Trail())
+    assert variable.ref is atom("core")
+    assert not unify(nested(atom("core"), wrap), nested(atom("other"), wrap), Trail())
+
+
+def test_deep_terms_are_compared_and_sorted(wrap: Callable[[Term], Term]) -> None:
+    low, high = nested(atom("a"), wrap), nested(atom("b"), wrap)
+    assert compare(low, high) < 0 < compare(high, low)
+    assert equal(low, nested(atom("a"), wrap))
+    assert not equal(low, high)
+    assert sorted_terms([high, low]) == [low, high]
+    assert len(annotation_set((high, nested(atom("b"), wrap)))) == 1
+
+
+def test_deep_terms_are_resolved_and_renamed(wrap: Callable[[Term], Term]) -> None:
+    variable = Var("X")
+    term = nested(variable, wrap)
+    assert free_variables(term) == [variable]
+    copy = rename(term)
+    assert not is_ground(copy)
+    assert unify(copy, nested(atom("core"), wrap), Trail())
+    assert variable.ref is None
+    variable.ref = atom("core")
+    assert equal(resolve(term), nested(atom("core"), wrap))
+    assert not is_key(resolve(term))
+
+
+def test_a_variable_is_found_deep_inside_its_own_value() -> None:
+    for name in ("in the first argument", "in a list", "in the middle of a list", "by variables"):
+        variable = Var("X")
+        assert not unify(variable, nested(variable, WRAPPERS[name]), Trail())
+
+
+def test_deep_arithmetic_has_its_value() -> None:
+    assert resolve(nested(0.0, lambda t: structure("f", (ADD, 1.0, 2.0), t)))[1] == 3.0
+
+
+def circle(length: int) -> Var:
+    """``X = f(f(...f(X)))``: too long for the check that refuses short ones."""
+    variable = Var("X")
+    variable.ref = nested(variable, lambda t: structure("f", t), length)
+    return variable
+
+
+def ring(length: int) -> Var:
+    """A list whose tail is the list itself."""
+    variable = Var("L")
+    variable.ref = make_list([1.0] * length, variable)
+    return variable
+
+
+@pytest.mark.parametrize("make", [circle, ring])
+@pytest.mark.parametrize("length", [1, 100, 5000])
+def test_a_term_that_contains_itself_never_holds_anybody_up(make: Callable[[int], Var], length: int) -> None:
+    term, twin = make(length), make(length)
+    for use in (resolve, text, rename, lambda t: equal(t, twin)):
+        with pytest.raises(CyclicTerm):
+            use(term)
+    assert is_ground(term)
+    assert unify(term, twin, Trail())
+    assert compare(term, twin) == 0
+    assert not unify(term, atom("a"), Trail())
+    assert sum(1 for _ in list_items(term)) < 10 * length + 10
+
+
+def test_a_variable_is_not_bound_to_what_plainly_contains_it() -> None:
+    variable = Var("X")
+    assert not unify(variable, structure("f", variable), Trail())
+    assert variable.ref is None
+
+
+def test_a_collection_that_contains_itself_is_written_once() -> None:
+    items, pairs = SetValue(), MapValue()
+    items.items[structure("f", items)] = None
+    pairs.items[atom("self")] = pairs
+    assert text(items) == "{f(...)}"
+    assert text(pairs) == "{self->...}"
+    assert text(structure("g", items, items)) == "g({f(...)},{f(...)})"
+
+
+def test_ten_thousand_variables_are_told_apart_quickly() -> None:
+    variables = [Var(f"V{n}") for n in range(100_000)]
+    assert free_variables(make_list([*variables, *variables])) == variables

@@ -1,0 +1,321 @@
+"""Whatever a text is, it is a program or there are diagnostics; and what is a program can be checked, formatted and run.
+
+fuzz_parser.py [--seed N] [--minutes M] [--programs N] [--first N] [--findings DIR]
+
+Texts are soups of tokens, conformance programs with changes, and programs made by the grammar.  A text belongs to its
+seed and number, so that a finding can be made again: `--seed 1 --first 4711 --programs 1`.  Each finding is written to
+DIR (default runs/fuzz), the text beside the traceback.  Exit code 1 when there were findings.
+"""
+
+import argparse
+import os
+import re
+import resource
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "unit" / "bdi")]
+
+from program_grammar import Grammar  # noqa: E402
+from recording_host import RecordingHost  # noqa: E402
+
+from jacaros.asl.checker import check  # noqa: E402
+from jacaros.asl.diagnostics import Diagnostic  # noqa: E402
+from jacaros.asl.errors import AslError  # noqa: E402
+from jacaros.asl.formatter import format_plan, format_term  # noqa: E402
+from jacaros.asl.loader import load_program  # noqa: E402
+from jacaros.asl.nodes import Program  # noqa: E402
+from jacaros.bdi.act import Act, Completion  # noqa: E402
+from jacaros.bdi.agent import Agent  # noqa: E402
+from jacaros.bdi.internal_action import STANDARD  # noqa: E402
+
+CORPUS = [
+    path.read_text(encoding="utf-8")
+    for folder in ("conformance", "conformance_environment", "compatibility")
+    for path in sorted((ROOT / "tests" / folder).rglob("*.asl"))
+]
+_PIECE = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'|[A-Za-z_.][\w.]*|\d+|[-+!?<>=|&:.*\\]+|\s+|.", re.DOTALL)
+PIECES = sorted({piece for text in CORPUS for piece in _PIECE.findall(text) if len(piece) < 30})
+ODD = (
+    *(
+        "\0",
+        "\x07",
+        "\r",
+        "\u2028",
+        "\u200f",
+        "\ufeff",
+        "é",
+        "日",
+        "𝄞",
+        "\ud800",
+        "ß",
+        "ǅ",
+        "\\",
+        '"',
+        "'",
+        "`",
+        "#",
+    ),
+    *(
+        "/*",
+        "*/",
+        "//",
+        "|&|",
+        "|||",
+        "<:",
+        "::",
+        "=..",
+        "\\==",
+        "!!",
+        "{ end }",
+        "{ begin ",
+        "{ include(",
+        "$",
+    ),
+    *(
+        "x" * 5000,
+        "9" * 400,
+        "1e999999",
+        "(" * 40,
+        "[" * 40,
+        "{" * 40,
+        "-" * 40,
+        "not " * 40,
+        "a." * 40,
+        '"' * 3,
+    ),
+)
+_DEFECT = re.compile(r"is given up|\b(?!Arithmetic)[A-Z][A-Za-z]+(Error|Fault): ")
+"""What an agent tells when something happened that no rule of the language foresees."""
+CYCLES = 600
+CROWD = 300
+"""How many intentions an agent may have before its life is long enough."""
+SECONDS = 20.0
+MEMORY = 6 * 2**30
+
+
+class TooLong(BaseException):
+    """A text takes longer than it may; no handler for exceptions can take it for something else."""
+
+
+# texts
+
+
+def text_of(seed: int, number: int) -> tuple[str, str]:
+    """How the text of that number is made, and the text."""
+    random = Random(f"{seed} {number}")
+    how = random.choice(("soup", "changed", "changed", "made", "made", "made and changed"))
+    if how == "soup":
+        return how, soup(random)
+    if how == "changed":
+        return how, changed(random.choice(CORPUS), random)
+    text = Grammar(random, random.randint(1, 4)).program()
+    return how, changed(text, random) if how == "made and changed" else text
+
+
+def soup(random: Random) -> str:
+    """Tokens in any order."""
+    pieces = [piece(random) for _ in range(random.randint(1, 120))]
+    return random.choice(("", " ", "")).join(pieces)
+
+
+def piece(random: Random) -> str:
+    """A token, or something that is none."""
+    return random.choice(ODD) if random.random() < 0.1 else random.choice(PIECES)
+
+
+def changed(text: str, random: Random) -> str:
+    """A program with some of its tokens or characters changed."""
+    for _ in range(random.choice((1, 1, 2, 3, 8))):
+        text = random.choice((_tokens_changed, _tokens_changed, _spliced, _characters_changed))(text, random)
+    return text
+
+
+def _tokens_changed(text: str, random: Random) -> str:
+    tokens = _PIECE.findall(text) or [""]
+    at, other = random.randrange(len(tokens)), random.randrange(len(tokens))
+    length = random.choice((1, 1, 2, 5, 20))
+    kind = random.randrange(5)
+    if kind == 0:
+        del tokens[at : at + length]
+    elif kind == 1:
+        tokens[other:other] = tokens[at : at + length]
+    elif kind == 2:
+        tokens[at], tokens[other] = tokens[other], tokens[at]
+    elif kind == 3:
+        tokens.insert(at, piece(random))
+    else:
+        tokens[at] = piece(random)
+    return "".join(tokens)
+
+
+def _spliced(text: str, random: Random) -> str:
+    other = random.choice(CORPUS)
+    return text[: random.randint(0, len(text))] + other[random.randint(0, len(other)) :]
+
+
+def _characters_changed(text: str, random: Random) -> str:
+    at = random.randint(0, len(text))
+    inserted = random.choice((random.choice(ODD), chr(random.randint(0, 0x2FF)), text[at : at + 9] * 2))
+    return text[:at] + inserted + text[at + random.randint(0, 3) :]
+
+
+# what is done with them
+
+
+def examine(text: str) -> str:
+    """Load, check, format and run a text; ``refused`` or ``program``.  What escapes is a finding."""
+    try:
+        program, warnings = load_program("fuzz.asl", text, _read)
+    except AslError as refused:
+        assert refused.diagnostics  # noqa: PT017 - no test of pytest
+        _show(refused.diagnostics, text)
+        return "refused"
+    _show((*warnings, *check(program, STANDARD)), text)
+    for clause in program.beliefs:
+        format_term(clause)
+    for plan in program.plans:
+        format_plan(plan)
+    live(program)
+    return "program"
+
+
+def _show(diagnostics: Sequence[Diagnostic], text: str) -> None:
+    """Diagnostics have a place inside the text, and can be shown."""
+    for diagnostic in diagnostics:
+        assert diagnostic.span is not None
+        if diagnostic.span.file.name == "fuzz.asl":
+            assert 1 <= diagnostic.span.line <= text.count("\n") + 1
+        assert diagnostic.render()
+
+
+def _read(path: str, including: str) -> tuple[str, str]:
+    del including
+    if path == "x":
+        return "x", 'p. +!g <- a. {include("y")}'
+    raise FileNotFoundError(path)
+
+
+def live(program: Program) -> None:
+    """Let an agent with the program live for a while."""
+    host = RecordingHost(_done)
+    host.agent = agent = Agent("fuzz", program, host)
+    agent.start()
+    end = host.time + 1000.0
+    for _ in range(CYCLES // 50):
+        if host.stopped or len(agent.alive) > CROWD or not (agent.run(50) or host.ring_next(end)):
+            break
+    for _, told in host.logged:
+        if _DEFECT.search(told):
+            raise AssertionError(told)
+
+
+def _done(act: Act) -> Completion | None:
+    """Some actions succeed, some fail, some go on for ever."""
+    return (Completion(True), Completion(False), None)[(act.id + act.functor.arity) % 3]
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Raise `TooLong` inside when it takes more processor time."""
+
+    def ring(number: int, frame: object) -> None:
+        raise TooLong
+
+    before = signal.signal(signal.SIGVTALRM, ring)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
+
+
+# the run
+
+
+@dataclass
+class Tally:
+    """What came of the texts so far."""
+
+    outcomes: Counter[str] = field(default_factory=Counter)
+    findings: Counter[str] = field(default_factory=Counter)
+
+    def __str__(self) -> str:
+        return f"{self.outcomes.total()} texts: {dict(self.outcomes)}; findings: {self.findings.total()}"
+
+
+def fuzz(seed: int, numbers: Iterator[int], seconds: float, findings: Path) -> Tally:
+    """Examine text after text until they, or the time, are over."""
+    tally = Tally()
+    began = told = time.monotonic()
+    for number in numbers:
+        how, text = text_of(seed, number)
+        (findings / "current.asl").write_text(text, encoding="utf-8", errors="surrogatepass")
+        try:
+            with limited(SECONDS):
+                outcome = examine(text)
+            if how == "made" and outcome == "refused":
+                raise AssertionError("a right program is refused")
+        except (Exception, TooLong) as fault:
+            outcome = "finding"
+            _keep(tally, findings, f"{seed}-{number}", text, fault)
+        tally.outcomes[f"{how}, {outcome}"] += 1
+        now = time.monotonic()
+        if now - told > 60:
+            told = now
+            print(f"{number}: {tally}", flush=True)
+        if now - began > seconds:
+            break
+    (findings / "current.asl").unlink(missing_ok=True)
+    return tally
+
+
+def _keep(tally: Tally, findings: Path, name: str, text: str, fault: BaseException) -> None:
+    """Write a finding down, unless there are some of its kind."""
+    where = traceback.extract_tb(fault.__traceback__)[-1]
+    kind = f"{type(fault).__name__} at {Path(where.filename).name}:{where.lineno}"
+    tally.findings[kind] += 1
+    if tally.findings[kind] > 5:
+        return
+    print(f"finding {name}: {kind}: {str(fault)[:200]}", flush=True)
+    (findings / f"{name}.asl").write_text(text, encoding="utf-8", errors="surrogatepass")
+    with (findings / f"{name}.txt").open("w", encoding="utf-8", errors="surrogatepass") as file:
+        traceback.print_exception(fault, file=file, limit=-30)
+
+
+def main(arguments: list[str]) -> int:
+    """Run as told; the exit code."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--minutes", type=float, default=1.0)
+    parser.add_argument("--programs", type=int, default=sys.maxsize, help="how many texts at most")
+    parser.add_argument("--first", type=int, default=1, help="number of the first text")
+    parser.add_argument("--findings", type=Path, default=ROOT / "runs" / "fuzz", help="folder for findings")
+    options = parser.parse_args(arguments)
+    findings = options.findings.resolve()
+    findings.mkdir(parents=True, exist_ok=True)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    numbers = iter(range(options.first, min(options.first + options.programs, sys.maxsize)))
+    with tempfile.TemporaryDirectory() as scratch:
+        os.chdir(scratch)  # programs may save files
+        tally = fuzz(options.seed, numbers, options.minutes * 60, findings)
+        os.chdir(ROOT)
+    print(tally)
+    for kind, count in tally.findings.most_common():
+        print(f"{count:6}  {kind}")
+    return 1 if tally.findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
