@@ -199,7 +199,7 @@ class Agent(Circumstance):
         if waiting is None:
             return
         if not completion.success:
-            waiting.fail("", (ERROR, atom("action_failed")), *completion.annotations)
+            waiting.fail("the action failed", (ERROR, atom("action_failed")), *completion.annotations)
             return
         mark = len(self.trail)
         for variable, value in completion.outputs:
@@ -272,8 +272,11 @@ class Agent(Circumstance):
                 self.make_ready(intention)
             return
         message, annotations = waiting.failure
-        if not any(t.__class__ is tuple and t[0] is ERROR for t in annotations):
-            annotations = (*error_terms("internal_action", message), *annotations)
+        given = {t[0] for t in annotations if t.__class__ is tuple}
+        defaults = (
+            error_terms("internal_action", message) if message else error_terms("internal_action", "")[:1]
+        )
+        annotations = (*(term for term in defaults if term[0] not in given), *annotations)
         reason = step_failure(frame, Failure(*annotations))
         posted = cycle.fail_intention(self, intention, reason)
         if posted is not None:

@@ -30,7 +30,9 @@ def _set(agent: Circumstance, goal: Term, delay: float, intention: Intention | N
 
     def over() -> None:
         if intention is None or _pursues(agent, intention, goal, height):
-            goals.fail_goal(agent, goal, nowhere(*error_terms("deadline_reached", "")))
+            goals.fail_goal(
+                agent, goal, nowhere(*error_terms("deadline_reached", "the goal was not achieved in time"))
+            )
 
     agent.architecture.set_timer(delay, rings)
 

@@ -10,7 +10,7 @@ from jacaros.bdi.failure import FailureReason, nowhere, release_bindings
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.stack import achieve, cut, pending_event, remove_event
 from jacaros.compiler.runtime import literal_of
-from jacaros.terms.unifier import undo, unify
+from jacaros.terms.unifier import rename, undo, unify
 from jacaros.terms.values import Term
 
 
@@ -60,6 +60,30 @@ def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
         ):
             found.append(intention)
     return found
+
+
+def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | None:
+    """The goal of an intention that matches: the lowest on its stack, or the one that is posted; None without any."""
+    index = frame_of(agent, intention, goal)
+    if index is not None:
+        frame = intention.frames[index]
+        return literal_of(frame[GOAL], frame[ANNOTATIONS])
+    event = pending_event(agent, intention)
+    if event is None or not _is_goal(event):
+        return None
+    literal = literal_of(event.goal, event.annotations)
+    return literal if matches(agent, goal, literal) else None
+
+
+def first_match(agent: Circumstance, goal: Term) -> Term | None:
+    """The first goal that matches, of intentions or of events; renamed, as what it is taken from may end."""
+    for intention in list(agent.alive.values()):
+        found = goal_of(agent, intention, goal)
+        if found is not None:
+            return rename(found)
+    for event in goal_events(agent, goal):
+        return rename(literal_of(event.goal, event.annotations))
+    return None
 
 
 def _is_goal(event: Event) -> bool:

@@ -12,6 +12,7 @@ Predicates with rules are searched by generators.  Two ways of running them:
 """
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 from jacaros.asl import nodes
 from jacaros.compiler.building import (
@@ -135,12 +136,24 @@ def _yield(fn: FunctionBuilder, results: list[str]) -> None:
 def _relation(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
     if node.operator == "=":
         _unification(fn, node, then)
+    elif node.operator == "=.." and isinstance(node.left, nodes.Variable) and node.left.namespace is not None:
+        _deconstruction_in_namespace(fn, node, node.left, then)
     elif node.operator == "=..":
         left, right = build(fn, node.left), build(fn, node.right)
         _undoing(fn, f"deconstruct({left}, {right}, t)", [], then)
     else:
         with fn.writer.block(f"if {comparison(fn, node)}:"):
             then()
+
+
+def _deconstruction_in_namespace(
+    fn: FunctionBuilder, node: nodes.Relation, variable: nodes.Variable, then: Then
+) -> None:
+    """``ns::X =.. L`` and ``NS::X =.. L``: the literal that is made may be of that namespace."""
+    namespace = variable.namespace
+    place = build(fn, namespace) if isinstance(namespace, nodes.Variable) else repr(namespace)
+    left, right = build(fn, replace(variable, namespace=None)), build(fn, node.right)
+    _undoing(fn, f"deconstruct_in({place}, {left}, {right}, t)", [], then)
 
 
 def comparison(fn: FunctionBuilder, node: nodes.Relation) -> str:

@@ -324,16 +324,29 @@ def deconstruct(left: Term, right: Term, trail: Trail) -> bool:
     return unify(make_list(parts), right, trail)
 
 
-def _construct(variable: Term, parts: list[Term], trail: Trail) -> bool:
+def deconstruct_in(namespace: Term, left: Term, right: Term, trail: Trail) -> bool:
+    """The relation ``=..`` for a left side that is written in a namespace: its name, or a variable for it."""
+    term = resolve(left)
+    if term.__class__ is not Var:
+        name = namespace if namespace.__class__ is str else namespace_name(resolve(namespace))
+        return deconstruct(qualify(term, name, False), right, trail)
+    parts = [resolve(i) for i in list_items(right)]
+    if len(parts) != 4:
+        return False
+    wanted = atom(namespace) if namespace.__class__ is str else namespace
+    return unify(wanted, parts[0], trail) and _construct(term, parts, trail, namespace_name(parts[0]))
+
+
+def _construct(variable: Term, parts: list[Term], trail: Trail, allowed: str | None = None) -> bool:
     if len(parts) == 3:
         parts = [atom("default"), *parts]
     if len(parts) != 4 or parts[1].__class__ is not Functor:
         return False
     namespace = namespace_name(parts[0])
-    if namespace is not None:
+    if namespace != allowed:
         return False
     arguments = tuple(list_items(parts[2]))
-    symbol = functor(parts[1].name, len(arguments), parts[1].negated)
+    symbol = functor(parts[1].name, len(arguments), parts[1].negated, namespace)
     term: Term = (symbol, *arguments) if arguments else symbol
     annotations = annotation_set(tuple(list_items(parts[3])))
     return unify(variable, Annotated(term, annotations) if annotations else term, trail)
@@ -391,6 +404,7 @@ _FUNCTIONS = (
     binary,
     cannot_wait,
     deconstruct,
+    deconstruct_in,
     deref,
     divide,
     equal,

@@ -1,6 +1,6 @@
 """Internal actions about goals and intentions."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from jacaros.asl import nodes
@@ -16,7 +16,7 @@ from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
 from jacaros.terms.plans import make_body, trigger
 from jacaros.terms.text import text
-from jacaros.terms.unifier import resolve
+from jacaros.terms.unifier import rename, resolve
 from jacaros.terms.values import (
     Annotated,
     String,
@@ -31,6 +31,19 @@ from jacaros.terms.values import (
 )
 
 ERROR, ERROR_MSG, REASON = functor("error", 1), functor("error_msg", 1), functor("reason", 1)
+
+
+def _on_goal(ctx: Context, goal: Term, act: Callable[[Term], Any]) -> Any:
+    """Do something to all goals that match; the variables of *goal* are bound as in the first one.
+
+    Gives what *act* gives: true when the calling intention itself has lost its place.
+    """
+    wanted = _goal(goal)
+    first = goals.first_match(ctx.agent, wanted)
+    own = act(wanted)
+    if first is not None and not own:
+        ctx.unify(goal, first)
+    return own
 
 
 def _goal(term: Term) -> Term:
@@ -129,7 +142,7 @@ def drop_intention(ctx: Context, goal: Term = None) -> Any:
         assert ctx.intention is not None
         goals.drop_intention(ctx.agent, ctx.intention)
     else:
-        goals.drop_goal(ctx.agent, _goal(goal))
+        _on_goal(ctx, goal, lambda wanted: goals.drop_goal(ctx.agent, wanted))
 
 
 @internal_action(".drop_future_intention", arity=1, suspends=True)
@@ -153,13 +166,13 @@ def _goals_in(candidate: Intention) -> Iterator[Term]:
 @internal_action(".drop_event", arity=1, suspends=True)
 def drop_event(ctx: Context, goal: Term) -> None:
     """``.drop_event(G)``: goals that were posted and not taken up yet vanish."""
-    goals.drop_events(ctx.agent, _goal(goal))
+    _on_goal(ctx, goal, lambda wanted: goals.drop_events(ctx.agent, wanted))
 
 
 @internal_action(".drop_desire", arity=1, suspends=True)
 def drop_desire(ctx: Context, goal: Term) -> None:
     """``.drop_desire(G)``: `.drop_event` and `.drop_intention` together."""
-    goals.drop_desire(ctx.agent, _goal(goal))
+    _on_goal(ctx, goal, lambda wanted: goals.drop_desire(ctx.agent, wanted))
 
 
 @internal_action(".drop_all_intentions", arity=0, suspends=True)
@@ -189,13 +202,14 @@ def suspend(ctx: Context, goal: Term = None) -> Any:
         assert current is not None
         goals.suspend_intention(ctx.agent, current, atom("suspended"))
     else:
-        goals.suspend_goal(ctx.agent, _goal(goal), structure("suspended", goal))
+        reason = structure("suspended", rename(goal))
+        _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted, reason))
 
 
 @internal_action(".resume", arity=1, suspends=True)
 def resume(ctx: Context, goal: Term) -> None:
     """``.resume(G)``: suspended intentions with the goal go on."""
-    goals.resume_goal(ctx.agent, _goal(goal))
+    _on_goal(ctx, goal, lambda wanted: goals.resume_goal(ctx.agent, wanted))
 
 
 @internal_action(".suspended", arity=2, backtracks=True)
@@ -206,7 +220,8 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
         if why is None and candidate.waiting is not None:
             why = candidate.waiting.reason
             why = atom("act") if why.__class__ is tuple and why[0].name == "action" else why
-        if why is not None and ctx.unify(reason, why):
+        found = goals.goal_of(ctx.agent, candidate, goal)
+        if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):
             yield
     for _ in goals.goal_events(ctx.agent, goal):
         if any(goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.suspended_events) and ctx.unify(
@@ -224,13 +239,15 @@ def _event(event: Any) -> Term:
 @internal_action(".succeed_goal", arity=1, suspends=True)
 def succeed_goal(ctx: Context, goal: Term) -> Any:
     """``.succeed_goal(G)``: matching goals end as achieved."""
-    return _ended(ctx, goals.succeed_goal(ctx.agent, _goal(goal)))
+    own = _on_goal(ctx, goal, lambda wanted: goals.succeed_goal(ctx.agent, wanted))
+    return _ended(ctx, own)
 
 
 @internal_action(".fail_goal", arity=1, suspends=True)
 def fail_goal(ctx: Context, goal: Term) -> Any:
     """``.fail_goal(G)``: matching goals end as failed; the failure event carries no ``error``."""
-    return SUSPENDED if goals.fail_goal(ctx.agent, _goal(goal)) else None
+    own = _on_goal(ctx, goal, lambda wanted: goals.fail_goal(ctx.agent, wanted))
+    return SUSPENDED if own else None
 
 
 def _ended(ctx: Context, own: bool) -> Any:
