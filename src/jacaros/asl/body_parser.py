@@ -3,6 +3,7 @@
 from typing import Final, NoReturn
 
 from jacaros.asl import nodes
+from jacaros.asl.control_actions import control_statement
 from jacaros.asl.cursor import CLOSERS, SyntaxPanic
 from jacaros.asl.lexer import Token
 from jacaros.asl.term_parser import TermParser
@@ -293,6 +294,8 @@ class BodyParser(TermParser):
             if term.functor == "true" and term.span is not None and not term.arguments:
                 return None
             return nodes.ExternalAction(term, span=term.span)
+        if isinstance(term, nodes.InternalAction) and (statement := control_statement(term)) is not None:
+            return statement
         if isinstance(term, nodes.Relation | nodes.InternalAction):
             return nodes.Constraint(term, span=term.span)
         if isinstance(term, nodes.Variable):

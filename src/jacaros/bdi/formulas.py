@@ -18,6 +18,7 @@ from jacaros.compiler.runtime import (
     run,
     solve,
     solve_annotated,
+    takes_time,
     unknown,
 )
 from jacaros.terms.arithmetic import settle
@@ -169,7 +170,7 @@ def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], t
     ):
         refuse_quietly(context, action, len(arguments))
         return
-    if action.suspends and action.name[0] != ".":
+    if takes_time(action):
         cannot_wait(context, action)
         return
     values = [resolve(a) for a in arguments]

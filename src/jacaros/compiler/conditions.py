@@ -27,6 +27,7 @@ from jacaros.compiler.building import (
 from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.matching import MAX_DEPTH, Then, match, match_all, settle_fresh
+from jacaros.compiler.runtime import takes_time
 from jacaros.compiler.variables import names_in
 
 _MAX_LOOPS = 12
@@ -386,7 +387,7 @@ def _internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then
         return
     constant = fn.constant(action)
     arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
-    if action.suspends and fn.quiet and action.name[0] != ".":
+    if fn.quiet and takes_time(action):
         _undoing(fn, f"cannot_wait(agent.context, {constant})", names, then)
     elif not accepts(action, len(node.arguments)):
         refusal = "refuse_quietly(agent.context, " if fn.quiet else "refuse("

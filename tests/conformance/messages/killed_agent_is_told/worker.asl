@@ -1,0 +1,1 @@
++jag_shutting_down(T) <- .print(T); .wait(100); .print(tidied); .wait(700); .print(never).

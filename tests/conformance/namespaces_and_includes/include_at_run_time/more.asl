@@ -1,0 +1,2 @@
+colour(red).
++!hello(X) <- .print(hello(X)).

@@ -1,0 +1,97 @@
+"""Goal control tells which goal it found; failures of waiting steps have a message; conditions do not wait."""
+
+import pytest
+from recording_host import mind
+
+WAITING = (
+    "!begin. +!w(X, Y) <- .wait(1000). -!w(X, Y) <- .print(failed(X)). +!begin <- !!w(1, a); .wait(10); "
+)
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        "suspend(w(X, a))",
+        "succeed_goal(w(X, a))",
+        "fail_goal(w(X, _))",
+        "drop_intention(w(X, _))",
+        "drop_desire(w(X, _))",
+    ],
+)
+def test_the_variables_of_a_goal_are_bound(action: str) -> None:
+    host = mind(f"{WAITING} .{action}; .print(X).")
+    host.run(seconds=5)
+    assert host.printed[0] == "1"
+
+
+def test_resuming_tells_the_goal_as_well() -> None:
+    host = mind(
+        f"{WAITING} .suspend(w(1, _)); .suspended(w(X, Y), _); .print(X, Y); .resume(w(Z, _)); .print(Z)."
+    )
+    host.run(seconds=5)
+    assert host.printed == ["1a", "1"]
+
+
+def test_nothing_is_bound_when_there_is_no_such_goal() -> None:
+    host = mind(f"{WAITING} .drop_desire(other(X)); .print(X).")
+    host.run(seconds=0.5)
+    assert host.printed == ["X<no-value>"]
+
+
+def test_a_goal_that_ends_itself_goes_on_behind() -> None:
+    host = mind(
+        "!begin. +!begin <- !own(1); .print(after). +!own(X) <- .succeed_goal(own(_)); .print(never)."
+    )
+    host.run()
+    assert host.printed == ["after"]
+
+
+@pytest.mark.parametrize(
+    ("step", "error"),
+    [
+        (".wait({ +never }, 10)", "wait_timeout the wait is over without what it waited for"),
+        (".send(self, askOne, p(_), q(_))", "ask_failed the answer does not fit"),
+        ("act", "action_failed the action failed"),
+    ],
+)
+def test_the_failure_of_a_waiting_step_has_a_message(step: str, error: str) -> None:
+    from jacaros.bdi.act import Completion
+
+    host = mind(
+        f'p(1). !begin. +!begin <- {step}. -!begin[error(E), error_msg(M)] <- .print(E, " ", M).',
+        complete=lambda act: Completion(False, (), ()),
+    )
+    host.run()
+    assert host.printed == [error]
+
+
+@pytest.mark.parametrize("action", [".wait(1)", ".send(self, tell, hi)", ".broadcast(tell, hi)", ".stopMAS"])
+def test_actions_that_wait_or_act_on_others_are_no_conditions(action: str) -> None:
+    host = mind(
+        f"r :- {action}. !begin. +!begin <- if (r) {{ .print(holds) }}; !known({action}). "
+        "+!known(F) : F <- .print(holds). +!known(F) <- .print(end). +hi <- .print(hi)."
+    )
+    host.run()
+    assert host.printed == ["end"]
+    assert len(host.logged) == 2
+
+
+def test_a_failed_formula_that_holds_a_shared_variable_is_shown() -> None:
+    host = mind("""
+        !begin. +!begin <- !do({ .nth(5, [a], X) }); .print(X).
+        +!do(B) <- B.
+        -!do(B)[code(C), error(E)] <- .print(C, " ", E).
+    """)
+    host.run()
+    assert host.printed == [".nth(5,[a],X) internal_action", "X<no-value>"]
+
+
+def test_rules_and_plans_are_removed_whatever_their_variables_are_called() -> None:
+    host = mind("""
+        r(X, Y) :- p(X, Y). p(1, 2).
+        !begin. +!begin <- -{ r(A, B) :- p(A, B) }; .findall(Q, r(Q, _), L); .print(L);
+            .add_plan({ +!more(A) : A > 1 <- .print(A) }); .add_plan({ +!more(B) : B > 1 <- .print(B) });
+            .relevant_plans({ +!more(_) }, Ps); .length(Ps, N); .print(N).
+    """)
+    host.run()
+    assert host.printed == ["[]", "1"]
