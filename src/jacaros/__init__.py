@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from jacaros.bdi.internal_action import ActionError, WrongArguments
     from jacaros.env.values import Atom, Out, Structure
     from jacaros.extension.agent import Agent
+    from jacaros.extension.architecture import Action, AgentArch
+    from jacaros.extension.belief_base import BeliefBase
     from jacaros.extension.declaring import arithmetic_function, internal_action
     from jacaros.extension.literal import Literal
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
@@ -23,9 +25,12 @@ if TYPE_CHECKING:
 __version__ = VERSION
 
 __all__ = [
+    "Action",
     "ActionError",
     "Agent",
+    "AgentArch",
     "Atom",
+    "BeliefBase",
     "Event",
     "Intention",
     "Literal",
@@ -41,9 +46,12 @@ __all__ = [
 ]
 
 _PLACES = {
+    "Action": "jacaros.extension.architecture",
     "ActionError": "jacaros.bdi.internal_action",
     "Agent": "jacaros.extension.agent",
+    "AgentArch": "jacaros.extension.architecture",
     "Atom": "jacaros.env.values",
+    "BeliefBase": "jacaros.extension.belief_base",
     "Event": "jacaros.extension.views",
     "Intention": "jacaros.extension.views",
     "Literal": "jacaros.extension.literal",

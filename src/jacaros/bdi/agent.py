@@ -182,6 +182,11 @@ class Agent(Circumstance):
 
     # --- from outside --------------------------------------------------------------------------------------
 
+    def accept_kill(self, killer: str) -> bool:
+        """Whether another agent may end this one; agent classes of projects may say no."""
+        del killer
+        return True
+
     def receive(self, message: SpeechAct) -> None:
         """Take a message; it is looked at in a later cycle."""
         self.inbox.append(message)
@@ -290,6 +295,8 @@ class Agent(Circumstance):
     delete_belief = belief_update.delete_belief
     delete_any = belief_update.delete_any
     change_mind = belief_update.change_mind
+    tell = belief_update.tell
+    untell = belief_update.untell
     solve_formula = formulas.solve_formula
     solve_in_namespaces = formulas.solve_in_namespaces
     collect_formula = formulas.collect_formula

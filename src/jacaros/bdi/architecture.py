@@ -4,7 +4,7 @@ A mind does no input or output of its own: it is given things by `Agent.receive`
 `Agent.complete`, and reaches out through this port alone.
 """
 
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from random import Random
 from typing import Any, Protocol
 
@@ -69,15 +69,19 @@ class Architecture(Protocol):
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
 
-    def create_agent(self, name: str, source: str | None) -> str | None:
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make an agent (from the program file *source*, default NAME.asl); its final name, or None with the
-        reason logged."""
+        reason logged.
+
+        *classes* are the classes of the project that it is of, by ``agentClass``, ``agentArchClass`` and
+        ``beliefBaseClass``.
+        """
 
     def clone_agent(self, name: str) -> str | None:
         """Make an agent with a copy of this mind; its final name, or None with the reason logged."""
 
     def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent after *delay* seconds; False when there is none of that name."""
+        """End an agent after *delay* seconds; False when there is none of that name, or it does not accept."""
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file (for ``.include``).

@@ -129,20 +129,24 @@ class Table:
         held = self.rows.get(row)
         return self.late.get(row) if held is None and self.late else held
 
-    def set(self, row: Any, annotations: tuple[Term, ...]) -> None:
-        """Replace the annotations of a row that is held."""
+    def set(self, row: Any, annotations: tuple[Term, ...]) -> bool:
+        """Replace the annotations of a row that is held; False when the base refuses."""
         (self.rows if row in self.rows else self.late)[row] = annotations
+        return True
 
-    def add(self, row: Any, annotations: tuple[Term, ...], last: bool = False) -> None:
-        """Put in a row that is not held; *last* puts it behind all others."""
+    def add(self, row: Any, annotations: tuple[Term, ...], last: bool = False) -> tuple[Term, ...] | None:
+        """Put in a row that is not held; *last* puts it behind all others.
+
+        Gives the annotations back, None when the base refuses: those of projects may.
+        """
         if last:
             self.late[row] = annotations
             self.plain = False
-            return
+            return annotations
         self.rows[row] = annotations
         if row.__class__ is not tuple:
             self.plain = False
-            return
+            return annotations
         for positions, index in self._indexes.items():
             key = _key(row, positions)
             bucket = index.get(key)
@@ -150,9 +154,10 @@ class Table:
                 index[key] = {row: None}
             else:
                 bucket[row] = None
+        return annotations
 
-    def remove(self, row: Any) -> None:
-        """Take out a row, rule or open belief that is held."""
+    def remove(self, row: Any) -> bool:
+        """Take out a row, rule or open belief that is held; False when the base refuses."""
         if row in self.late:
             del self.late[row]
         else:
@@ -161,6 +166,7 @@ class Table:
                 self._remove_from_indexes(row)
         if not self.plain:
             self.plain = not self.late and all(r.__class__ is tuple for r in self.rows)
+        return True
 
     def _remove_from_indexes(self, row: Row) -> None:
         for positions, index in self._indexes.items():

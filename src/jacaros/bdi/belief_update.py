@@ -85,8 +85,7 @@ def insert(
     except TypeError:
         return _insert_aside(table, symbol, row, annotations, last)
     if held is None:
-        table.add(row, annotations, last)
-        return annotations
+        return table.add(row, annotations, last)
     if held is annotations:
         return None
     return _merge(table, row, held, annotations)
@@ -97,8 +96,7 @@ def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations
     new = tuple(a for a in annotations if a not in held)
     if not new:
         return None
-    table.set(entry, annotation_set(held + new))
-    return new
+    return new if table.set(entry, annotation_set(held + new)) else None
 
 
 def _insert_aside(
@@ -109,8 +107,7 @@ def _insert_aside(
     if known is not None:
         held = table.get(known)
         return _merge(table, known, held or (), annotations)
-    table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
-    return annotations
+    return table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
 
 
 def delete_belief(
@@ -141,10 +138,10 @@ def _remove_first(
             and unify_annotations(annotations, None, held, None, trail)
         ):
             found = tuple(resolve(a) for a in arguments)
-            take_away(table, entry, held, tuple(resolve(a) for a in annotations))
-            if not bind:
+            taken = take_away(table, entry, held, tuple(resolve(a) for a in annotations))
+            if not (bind and taken):
                 undo(trail, mark)
-            return found
+            return found if taken else None
         undo(trail, mark)
     return None
 
@@ -156,13 +153,10 @@ def _open_row(entry: Any) -> Row | None:
     return None
 
 
-def take_away(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> None:
-    """Take annotations off a belief; it goes when no source is left."""
+def take_away(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> bool:
+    """Take annotations off a belief; it goes when no source is left.  False when the base refuses."""
     rest = tuple(a for a in held if a not in annotations)
-    if _has_source(rest):
-        table.set(entry, rest)
-    else:
-        table.remove(entry)
+    return table.set(entry, rest) if _has_source(rest) else table.remove(entry)
 
 
 def _has_source(annotations: Annotations) -> bool:
@@ -192,8 +186,8 @@ def _delete_own(agent: Circumstance, symbol: Functor) -> None:
     for entry, held in table.entries():
         row = entry if entry.__class__ is tuple else _open_row(entry)
         if row is not None and BY_SELF[0] in held:
-            take_away(table, entry, held, BY_SELF)
-            external_change(agent, "-", symbol, row, BY_SELF)
+            if take_away(table, entry, held, BY_SELF):
+                external_change(agent, "-", symbol, row, BY_SELF)
             return
 
 
@@ -210,13 +204,14 @@ def change_mind(agent: Circumstance, operator: str, term: Term) -> Any:
     if symbol is None:
         raise Failure((functor("error", 1), atom(_operand_error(term))))
     own = own_annotations(annotations)
+    mind: Any = agent
     if operator in ("-", "--"):
-        return delete_belief(agent, symbol, row, own, operator == "--")
+        return mind.delete_belief(symbol, row, own, operator == "--")
     if operator.startswith("-+"):
-        delete_any(agent, symbol, BY_SELF if own == BY_SELF else own)
+        mind.delete_any(symbol, BY_SELF if own == BY_SELF else own)
     if operator in ("++", "-++"):
-        return add_belief_apart(agent, symbol, row, own)
-    return (add_belief_last if operator == "+>" else add_belief)(agent, symbol, row, own)
+        return mind.add_belief_apart(symbol, row, own)
+    return (mind.add_belief_last if operator == "+>" else mind.add_belief)(symbol, row, own)
 
 
 def _operand_error(term: Term) -> str:
@@ -293,8 +288,7 @@ def _abolish_entry(
     )
     taken = tuple(resolve(a) for a in annotations) if annotations else held
     undo(trail, mark)
-    if matches:
-        take_away(table, entry, held, taken)
+    if matches and take_away(table, entry, held, taken):
         external_change(agent, "-", symbol, row, taken)
 
 

@@ -61,6 +61,7 @@ class Circumstance:
         goal_depth: how many plans may be on the stack of an intention.
         rule_depth: how many rules and conditions may be open at the same time in one search.
         stopped: the agent is over.
+        accepts: asked whether a message is acceptable; None accepts all.
         face: what the project's Python code sees of the agent; made when it is first asked for.
         drowsy: it has had nothing to do since it last awoke, and has been told so.
         asleep: it is drowsy, and has done what its plans do before sleep.
@@ -114,6 +115,7 @@ class Circumstance:
         self.goal_depth = options.goal_depth
         self.rule_depth = options.rule_depth
         self.stopped = False
+        self.accepts: Callable[[SpeechAct], bool] | None = None
         self.face: Any = None
         self.drowsy = False
         self.asleep = False

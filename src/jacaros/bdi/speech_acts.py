@@ -53,6 +53,8 @@ def process(agent: Circumstance, message: SpeechAct) -> None:
         return
     if message.in_reply_to is not None and message.performative in ("tell", "untell") and _is_late(message):
         return
+    if agent.accepts is not None and not agent.accepts(message):
+        return
     performative = PERFORMATIVES.get(message.performative, message.performative)
     if _handled_by_program(agent, message):
         return
@@ -115,13 +117,13 @@ def _contents(content: Term) -> list[Term]:
 
 def _tell(agent: Circumstance, message: SpeechAct) -> None:
     for content in _contents(message.content):
-        if not belief_update.tell(agent, from_sender(content, message.sender)):
+        if not agent.tell(from_sender(content, message.sender)):  # type: ignore[attr-defined]
             _refuse(agent, message)
 
 
 def _untell(agent: Circumstance, message: SpeechAct) -> None:
     for content in _contents(message.content):
-        belief_update.untell(agent, from_sender(content, message.sender))
+        agent.untell(from_sender(content, message.sender))  # type: ignore[attr-defined]
 
 
 def _achieve(agent: Circumstance, message: SpeechAct) -> None:

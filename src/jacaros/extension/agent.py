@@ -5,7 +5,6 @@ from random import Random
 from typing import Any
 
 from jacaros.asl.loader import parse_formula
-from jacaros.bdi import belief_update
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.body.values import to_value
@@ -151,7 +150,7 @@ class Agent:
         Raises:
             AslError, ValueError: it is no literal.
         """
-        belief_update.tell(self._mind, literal_term(belief))
+        self._mind.tell(literal_term(belief))
         self._mind.architecture.ready()
 
     def remove_belief(self, belief: object) -> bool:
@@ -160,7 +159,7 @@ class Agent:
         Raises:
             AslError, ValueError: it is no literal.
         """
-        found = belief_update.untell(self._mind, literal_term(belief))
+        found: bool = self._mind.untell(literal_term(belief))
         self._mind.architecture.ready()
         return found
 

@@ -128,6 +128,7 @@ class Message:
     def __init__(self, raw: speech_act.SpeechAct) -> None:
         self.performative, self.sender, self.receiver = raw.performative, raw.sender, raw.receiver
         self.id, self.in_reply_to = raw.id, raw.in_reply_to
+        self.raw = raw
         self._content: Term = raw.content
 
     @property

@@ -1,6 +1,6 @@
 """What stands between one mind and its run: Jason's agent architecture."""
 
-from collections.abc import Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from random import Random
 from typing import Any, Protocol
 
@@ -48,6 +48,9 @@ class Mind(Protocol):
 
     def receive(self, message: SpeechAct) -> None:
         """Take a message in."""
+
+    def accept_kill(self, killer: str) -> bool:
+        """Whether another agent may end this one."""
 
     def perceive(self, percepts: list[Percept]) -> None:
         """Take percepts in."""
@@ -99,14 +102,14 @@ class Run(Protocol):
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
 
-    def create_agent(self, name: str, source: str | None) -> str | None:
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make and start an agent; its final name, or None with the reason logged."""
 
     def clone_agent(self, original: str, name: str) -> str | None:
         """Make an agent with a copy of another one's mind; its final name, or None with the reason logged."""
 
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent after *delay* seconds; False when there is none of that name."""
+    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
+        """End an agent on behalf of another; False when there is none of that name, or it does not accept."""
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file."""
@@ -238,9 +241,9 @@ class AgentHost:
         """End the run after *delay* seconds."""
         self._run.stop_system(delay, exit_code)
 
-    def create_agent(self, name: str, source: str | None) -> str | None:
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make an agent."""
-        return self._run.create_agent(name, source)
+        return self._run.create_agent(name, source, classes)
 
     def clone_agent(self, name: str) -> str | None:
         """Make an agent with a copy of this one's mind."""
@@ -248,7 +251,7 @@ class AgentHost:
 
     def kill_agent(self, name: str, delay: float = 0.0) -> bool:
         """End an agent."""
-        return self._run.kill_agent(name, delay)
+        return self._run.kill_agent(name, delay, self.name)
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file."""

@@ -1,19 +1,21 @@
 """A running multi-agent system: where minds, bodies, environment, ROS and time are put together."""
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
-from jacaros.asl.errors import AslError
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
+from jacaros.errors import JacarosError
 from jacaros.mas.activity import Activity, AgentTimer
+from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.agent_options import mind_options
 from jacaros.mas.console import Console
@@ -75,6 +77,7 @@ class Mas:
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
         self._code = PythonCode(self._modules)
         self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"), self._code)
+        self._classes = AgentClasses(self._modules, deployment.base_path, lambda text: log(text, "warning"))
         self._mailboxes = Mailboxes(self._mailbox_of)
         self.services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
@@ -123,6 +126,7 @@ class Mas:
         for diagnostic in self.deployment.ignored:
             self.console.log(diagnostic.render(), "warning")
         programs = self._programs.load_all(self.deployment.agents)
+        self._classes.check(self.deployment.agents)
         await self.ros.start()
         if self._has_environment and self._is_furnished():
             await self.surroundings().furnish(self.deployment)
@@ -156,11 +160,12 @@ class Mas:
     def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
         name = spec.name
         self._specs[name] = spec
-        host = AgentHost(name, self, Random(f"{self._seed}/{name}"))
-        plans = self._plans_of(program)
+        random = Random(f"{self._seed}/{name}")
         options = mind_options(spec.options)
-        host.mind = Agent(name, _initial(spec, program), host, options, self._code.actions, plans)
-        host.mind.project_functions = self._code.functions
+        plans = self._plans_of(program)
+        host = self._classes.make(
+            spec, _initial(spec, program), self, random, options, self._code, plans
+        )
         self.directory.add(name, host)
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
@@ -253,21 +258,21 @@ class Mas:
         else:
             self.end(exit_code)
 
-    def create_agent(self, name: str, source: str | None) -> str | None:
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make and start an agent; its final name, or None with the reason logged."""
         wanted = source if source is not None else f"{name}.asl"
         try:
             path = self._programs.find(wanted)
-            spec = AgentSpec(self.directory.free_name(name), path, name)
+            spec = _spec(self.directory.free_name(name), name, path, classes)
             program = self._programs.load(spec)
+            host = self._add(spec, program)
         except FileNotFoundError:
             folders = ", ".join(str(folder) for folder in self.deployment.source_paths)
             self.console.log(f"error: agent {name}: there is no program {wanted} in {folders}", "error")
             return None
-        except AslError as wrong:
+        except JacarosError as wrong:
             self.console.log(str(wrong), "error")
             return None
-        host = self._add(spec, program)
         _begin(host, spec, program)
         return host.name
 
@@ -284,10 +289,13 @@ class Mas:
         copy.mind.copy_mind_of(host.mind)
         return copy.name
 
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent after *delay* seconds, of which it is told; False when there is none of that name."""
+    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
+        """End an agent after *delay* seconds, of which it is told, on behalf of another one.
+
+        False when there is none of that name, or it does not accept its end.
+        """
         host = self.directory.find(name)
-        if host is None:
+        if host is None or not host.mind.accept_kill(killer):
             return False
         if delay > 0:
             host.mind.shut_down_in(delay * 1000)
@@ -325,6 +333,19 @@ class Mas:
             FileNotFoundError: there is none.
         """
         return self._programs.include(path, str(self.deployment.base_path / "."))
+
+
+def _spec(name: str, declared: str, path: Path, classes: Mapping[str, str]) -> AgentSpec:
+    """An agent that is made at run time."""
+    architecture = classes.get("agentArchClass")
+    return AgentSpec(
+        name,
+        path,
+        declared,
+        agent_class=classes.get("agentClass"),
+        architecture_classes=(architecture,) if architecture is not None else (),
+        belief_base_class=classes.get("beliefBaseClass"),
+    )
 
 
 def _is_situated(spec: AgentSpec) -> bool:

@@ -18,7 +18,6 @@ _SECTIONS: Final = (
     "world",
 )
 _AGENT_KEYS: Final = frozenset({"agentArchClass", "agentClass", "beliefBaseClass", "at"})
-_KNOWN_ARCHITECTURES: Final = ("jaca.CAgentArch", "c4jason.CAgentArch", "jason.architecture.AgArch")
 
 
 def read_mas2j(cursor: ProjectCursor) -> ProjectPart:
@@ -188,8 +187,6 @@ class _Mas2jReader:
             agent.agent_class = text
         else:
             agent.belief_base_class = text
-        if not text.startswith(_KNOWN_ARCHITECTURES) and not text.startswith("jason."):
-            cursor.warn(f"the Java class {name.text} has no effect", cursor.span_of(name))
 
     def count(self) -> int:
         token = self.value("a number of agents")

@@ -27,17 +27,18 @@ def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = 
     """``.create_agent(Name[, File[, Options]])`` makes an agent that runs a program (default ``Name.asl``).
 
     The name is made unique.  A variable for the name is bound to the final one, a string: its own name in
-    small letters, with a number if need be.  Classes of Java in *options* are not used; a warning says so.
+    small letters, with a number if need be.  *Options* is a list of ``agentClass("my.Careful")``,
+    ``agentArchClass("my.Arch")`` and ``beliefBaseClass("my.LoudBB(3)")``, classes of the project's Python code.
 
     Raises:
         WrongArguments: *source* is no string or *options* no list.
         ActionError: the agent could not be made, because of its program for example.
     """
     path = None if source is None else string(source, "the second argument of .create_agent")
-    for option in [] if options is None else elements(options, "the third argument of .create_agent"):
-        _warn_of_class(ctx, option)
+    listed = [] if options is None else elements(options, "the third argument of .create_agent")
+    classes = dict(map(_class_option, listed))
     wanted = _name_from_variable(name) if isinstance(name, Var) else characters(name)
-    made = ctx.architecture.create_agent(wanted, path)
+    made = ctx.architecture.create_agent(wanted, path, classes)
     if made is None:
         raise ActionError(f".create_agent: the agent {wanted} could not be made")
     return not isinstance(name, Var) or ctx.unify(String(made), name)
@@ -47,11 +48,11 @@ def _name_from_variable(variable: Var) -> str:
     return variable.name[:1].lower() + variable.name[1:]
 
 
-def _warn_of_class(ctx: Context, option: Term) -> None:
+def _class_option(option: Term) -> tuple[str, str]:
     symbol = functor_of(option)
     if symbol is None or symbol.name not in _CLASSES or len(arguments_of(option)) != 1:
         raise WrongArguments(f".create_agent does not know the option {text(option)}")
-    ctx.architecture.log("warning", f".create_agent: {text(option)} names a class of Java and is not used")
+    return symbol.name, characters(arguments_of(option)[0])
 
 
 @internal_action(".clone", arity=1)

@@ -1,0 +1,262 @@
+"""Belief bases of a project: what an agent believes goes through an object of the project's class.
+
+The tables of the mind stay as they are, so that compiled queries read them as fast as ever; only changes are asked
+about, and questions where the class has beliefs of its own (`BeliefBase.candidates`).
+"""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, Protocol
+
+from jacaros.bdi import belief_base
+from jacaros.bdi.belief_base import Row, Table, parts
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.extension.agent import Agent, agent_of
+from jacaros.extension.faults import crash_text
+from jacaros.extension.literal import Literal, literal_from, literal_of, literal_term
+from jacaros.terms.order import annotation_set
+from jacaros.terms.unifier import is_key
+from jacaros.terms.values import Functor, Term
+
+Annotations = tuple[Term, ...]
+
+
+class Keeper(Protocol):
+    """Where beliefs are in the end."""
+
+    def keep(self, belief: Literal) -> bool:
+        """Keep a belief."""
+
+    def give_up(self, belief: Literal) -> bool:
+        """Give a belief up; False when it is not there."""
+
+    def literals(self) -> Iterator[Term]:
+        """All beliefs."""
+
+
+class BeliefBase:
+    """Where an agent keeps its beliefs; to be subclassed.
+
+    A subclass is named in the project file: ``agents: bob beliefBaseClass my.LoudBB(3);`` in a ``.mas2j`` file,
+    ``agent bob { ag-bb-class: my.LoudBB(3) }`` in a ``.jcm`` file.  Rules and beliefs that hold variables are kept by
+    the mind alone.  An exception in an overridden method is told in the log, and the default is done in its place.
+
+    Attributes:
+        agent: whose beliefs they are.
+        folder: of the project, for files.
+    """
+
+    agent: Agent
+    folder: Path
+    _tables: Keeper
+
+    # --- what may be overridden ----------------------------------------------------------------------------
+
+    def init(self, *arguments: Any) -> None:
+        """Called before the agent takes up its initial beliefs, with the arguments of ``my.LoudBB(3)``."""
+
+    def add(self, belief: Literal) -> bool:
+        """Keep a belief that is new, or that has new annotations (then with all of its annotations).
+
+        Returns:
+            Whether it was kept: without that there is no event.
+        """
+        return self._tables.keep(belief)
+
+    def remove(self, belief: Literal) -> bool:
+        """Give a belief up whose last source is taken away.
+
+        Returns:
+            Whether it is gone: without that there is no event.
+        """
+        return self._tables.give_up(belief)
+
+    def candidates(self, pattern: Literal) -> Iterable[Literal]:
+        """Beliefs that are not kept here but looked up when asked for, such as rows of a database.
+
+        They answer behind those that are kept.  What does not fit the pattern is left out by the mind.
+
+        Args:
+            pattern: what is asked for; what is not known are unset `Out` objects.
+        """
+        return ()
+
+    def stop(self) -> None:
+        """Called when the agent ends."""
+
+    # --- what a belief base offers -------------------------------------------------------------------------
+
+    def __iter__(self) -> Iterator[Literal]:
+        """All beliefs that are kept, with their annotations."""
+        for term in list(self._tables.literals()):
+            yield literal_of(term)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self._tables.literals())
+
+    def __bool__(self) -> bool:
+        return True
+
+    def beliefs(self, functor: str, arity: int | None = None) -> list[Literal]:
+        """The beliefs of one name, and perhaps number of arguments, newest first."""
+        return [b for b in self if b.functor == functor and arity in (None, b.arity)]
+
+
+class Tables(belief_base.BeliefBase):
+    """The tables of a mind whose changes go through a `BeliefBase`."""
+
+    def __init__(self, base: BeliefBase, mind: Circumstance) -> None:
+        super().__init__()
+        self.base, self.mind = base, mind
+        # The change that is under way, as the mind has it: the same literal need not be turned back into terms.
+        self._change: tuple[Literal, AskingTable, Row, Annotations, bool] | None = None
+        looked_up = type(base).candidates is not BeliefBase.candidates
+        self._kind = LookingTable if looked_up else AskingTable
+
+    def __missing__(self, functor: Functor) -> Table:
+        table = self[functor] = self._kind(functor, self)
+        return table
+
+    def ask_add(self, table: "AskingTable", row: Row, annotations: Annotations, last: bool) -> bool:
+        """Let the class keep a belief; whether it did."""
+        literal = literal_from(table.functor, row, annotations)
+        self._change = (literal, table, row, annotations, last)
+        try:
+            return bool(self.base.add(literal))
+        except (Exception, SystemExit) as error:
+            self._crashed("add", error)
+            table.put(row, annotations, last)
+            return True
+        finally:
+            self._change = None
+
+    def ask_remove(self, table: "AskingTable", row: Row) -> bool:
+        """Let the class give a belief up; whether it did."""
+        literal = literal_from(table.functor, row, table.get(row) or ())
+        self._change = (literal, table, row, (), False)
+        try:
+            return bool(self.base.remove(literal))
+        except (Exception, SystemExit) as error:
+            self._crashed("remove", error)
+            table.take(row)
+            return True
+        finally:
+            self._change = None
+
+    def ask_candidates(self, functor: Functor, arguments: Row) -> list[tuple[Any, Annotations]]:
+        """What the class looks up for a question."""
+        try:
+            found = [
+                parts(literal_term(each))
+                for each in self.base.candidates(literal_from(functor, arguments, ()))
+            ]
+        except (Exception, SystemExit) as error:
+            self._crashed("candidates", error)
+            return []
+        return [
+            (row, belief_base.with_source(annotations))
+            for symbol, row, annotations in found
+            if symbol is functor and all(map(is_key, row))
+        ]
+
+    def keep(self, belief: Literal) -> bool:
+        """Put a belief into its table, or give it its annotations."""
+        change = self._change
+        if change is not None and belief is change[0]:
+            _, table, row, annotations, last = change
+        else:
+            symbol, row, annotations = parts(literal_term(belief))
+            assert symbol is not None
+            table, last = self._table(symbol), False
+            annotations = annotation_set(belief_base.with_source(annotations))
+        table.put(row, annotations, last)
+        return True
+
+    def give_up(self, belief: Literal) -> bool:
+        """Take a belief out of its table; False when it is not there."""
+        change = self._change
+        if change is not None and belief is change[0]:
+            _, table, row, _, _ = change
+        else:
+            symbol, row, _ = parts(literal_term(belief))
+            assert symbol is not None
+            table = self._table(symbol)
+        if table.get(row) is None:
+            return False
+        table.take(row)
+        return True
+
+    def _table(self, functor: Functor) -> "AskingTable":
+        table = self[functor]
+        assert isinstance(table, AskingTable)
+        return table
+
+    def _crashed(self, method: str, error: BaseException) -> None:
+        function = getattr(self.base, method)
+        text = crash_text(f"{type(self.base).__name__}.{method}", function, error)
+        self.mind.architecture.log("error", text)
+
+
+class AskingTable(Table):
+    """A table whose changes are made by a `BeliefBase`."""
+
+    __slots__ = ("_tables",)
+
+    def __init__(self, functor: Functor, tables: Tables) -> None:
+        super().__init__(functor)
+        self._tables = tables
+
+    def add(self, row: Any, annotations: Annotations, last: bool = False) -> Annotations | None:
+        """Ask for a new row to be kept."""
+        if row.__class__ is not tuple:
+            return super().add(row, annotations, last)
+        return annotations if self._tables.ask_add(self, row, annotations, last) else None
+
+    def set(self, row: Any, annotations: Annotations) -> bool:
+        """Ask for other annotations to be kept."""
+        if row.__class__ is not tuple:
+            return super().set(row, annotations)
+        return self._tables.ask_add(self, row, annotations, False)
+
+    def remove(self, row: Any) -> bool:
+        """Ask for a row to be given up."""
+        if row.__class__ is not tuple:
+            return super().remove(row)
+        return self._tables.ask_remove(self, row)
+
+    def put(self, row: Row, annotations: Annotations, last: bool) -> None:
+        """Keep a row, without asking."""
+        if self.get(row) is None:
+            super().add(row, annotations, last)
+        else:
+            super().set(row, annotations)
+
+    def take(self, row: Row) -> None:
+        """Give a row up, without asking."""
+        super().remove(row)
+
+
+class LookingTable(AskingTable):
+    """A table that has further beliefs, which the class looks up for each question."""
+
+    __slots__ = ()
+
+    @property
+    def plain(self) -> bool:
+        """Compiled queries may not read the rows directly."""
+        return False
+
+    @plain.setter
+    def plain(self, value: bool) -> None:
+        pass
+
+    def candidates(self, arguments: Row) -> Iterable[tuple[Any, Annotations]]:
+        """The entries that are kept, then those that are looked up."""
+        return [*self.entries(), *self._tables.ask_candidates(self.functor, arguments)]
+
+
+def install(mind: Circumstance, base: BeliefBase, folder: Path, arguments: Iterable[object]) -> None:
+    """Let a mind keep its beliefs in a base of the project's class; before it takes up any."""
+    base.agent, base.folder = agent_of(mind), folder
+    mind.beliefs = base._tables = Tables(base, mind)
+    base.init(*arguments)

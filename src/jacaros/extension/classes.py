@@ -1,0 +1,76 @@
+"""From the class names of a project file to objects: agents, belief bases and architectures."""
+
+from typing import Any
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import parse_literal
+from jacaros.body.values import to_value
+from jacaros.compiler.lowering import lower_value
+from jacaros.errors import JacarosError
+from jacaros.extension.agent import Agent
+from jacaros.extension.architecture import AgentArch
+from jacaros.extension.belief_base import BeliefBase
+from jacaros.extension.collecting import UnknownClass, find_class
+from jacaros.extension.standard_bases import STANDARD_BASES, ChainBB
+from jacaros.project_modules import ProjectModules
+from jacaros.terms.values import Term, arguments_of
+
+_JASON_BASES = "jason.bb."
+
+
+class Made:
+    """An object of a class that a project file names, and what it is to begin with."""
+
+    def __init__(self, made: Any, arguments: tuple[object, ...]) -> None:
+        self.made, self.arguments = made, arguments
+
+
+def agent_object(modules: ProjectModules, written: str) -> Made | None:
+    """An object for ``agentClass``; None when the project has no such module."""
+    return _object(modules, written, Agent)
+
+
+def architecture_object(modules: ProjectModules, written: str) -> Made | None:
+    """An object for ``agentArchClass``; None when the project has no such module."""
+    return _object(modules, written, AgentArch)
+
+
+def base_object(modules: ProjectModules, written: str) -> Made | None:
+    """An object for ``beliefBaseClass``; None when the project has no such module."""
+    name, terms = _split(written)
+    if name == f"{_JASON_BASES}ChainBB":
+        links = [base_object(modules, str(to_value(term))) for term in terms]
+        if any(link is None for link in links):
+            raise UnknownClass(f"{written}: one of these belief bases is not known")
+        return Made(ChainBB(*[(link.made, link.arguments) for link in links if link is not None]), ())
+    if name.startswith(_JASON_BASES):
+        known = STANDARD_BASES.get(name.removeprefix(_JASON_BASES))
+        return None if known is None else Made(known(), _values(terms))
+    return _object(modules, written, BeliefBase)
+
+
+def _object(modules: ProjectModules, written: str, kind: type[Any]) -> Made | None:
+    name, terms = _split(written)
+    found = find_class(modules, name, kind)
+    if found is None:
+        return None
+    try:
+        return Made(found(), _values(terms))
+    except Exception as error:
+        raise JacarosError(f"{name} cannot be made: {type(error).__name__}: {error}") from error
+
+
+def _split(written: str) -> tuple[str, tuple[Term, ...]]:
+    """The name of a class and its arguments."""
+    name, bracket, rest = written.strip().partition("(")
+    if not bracket:
+        return name, ()
+    try:
+        return name.strip(), arguments_of(lower_value(parse_literal(f"arguments({rest}")))
+    except AslError as wrong:
+        message = wrong.diagnostics[0].message
+        raise JacarosError(f"the arguments of {written} cannot be read: {message}") from wrong
+
+
+def _values(terms: tuple[Term, ...]) -> tuple[object, ...]:
+    return tuple(to_value(term) for term in terms)

@@ -1,0 +1,265 @@
+"""Agent classes at work: what a subclass of `Agent` overrides is put into its mind, and nothing else.
+
+The mind itself knows nothing of this: its queues and select functions are replaced by ones that ask.
+"""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Generic, TypeVar
+
+from jacaros.bdi import act, event
+from jacaros.bdi import agent as mind
+from jacaros.bdi.belief_base import parts
+from jacaros.bdi.failure import error_terms
+from jacaros.bdi.intention import Frame
+from jacaros.bdi.internal_action import ActionError
+from jacaros.bdi.plan_library import PlanLibrary, Selects
+from jacaros.compiler.runtime import Failure
+from jacaros.compiler.triggers import Trigger
+from jacaros.compiler.unit import Select, compile_select
+from jacaros.extension.agent import Agent, agent_of, give_face, overridden
+from jacaros.extension.faults import crash_text
+from jacaros.extension.literal import Literal, literal_from
+from jacaros.extension.views import Event, Intention, Message, Option, Percept
+from jacaros.terms.text import text
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import BY_SELF, Functor, Term, Var
+
+Item = TypeVar("Item")
+Seen = TypeVar("Seen")
+Result = TypeVar("Result")
+
+
+class CustomMind(mind.Agent):
+    """The mind of an agent whose class is the project's: asks it about changes of beliefs, if it wants to be asked."""
+
+    _revises: Callable[..., Any] | None = None
+    _notices: Callable[..., Any] | None = None
+
+    def begin_as(self, face: Agent) -> None:
+        """Let an object of the project's class have its say; before the mind takes up anything."""
+        give_face(self, face)
+        if (choose_event := overridden(face, "select_event")) is not None:
+            self.events = ChoiceQueue(self, choose_event, Event, _is_open)
+        if (choose_intention := overridden(face, "select_intention")) is not None:
+            self.intentions = ChoiceQueue(self, choose_intention, Intention, _can_run)
+        if (choose_message := overridden(face, "select_message")) is not None:
+            self.inbox = ChoiceQueue(self, choose_message, Message, lambda message: True)
+        if (choose_option := overridden(face, "select_option")) is not None:
+            self.library.selects = self.selects = ChoosingSelects(self.library, self, choose_option)
+        if (accepts := overridden(face, "soc_acc")) is not None:
+            self.accepts = lambda message: ask(self, accepts, bool, True, Message(message))
+        self._revises = overridden(face, "brf")
+        self._notices = overridden(face, "buf")
+
+    def perceive(self, percepts: list[act.Percept]) -> None:
+        """Take note of the changes in the environment that the class lets through."""
+        if self._notices is not None and percepts:
+            seen = [Percept(percept) for percept in percepts]
+            kept = ask(self, self._notices, _of(seen), seen, seen)
+            percepts = [percept.raw for percept in kept]
+        super().perceive(percepts)
+
+    def look(self) -> Agent:
+        """What Python code sees of this mind."""
+        return agent_of(self)
+
+    def accept_kill(self, killer: str) -> bool:
+        """Whether another agent may end this one."""
+        if self.face is None:
+            return True
+        accepts = overridden(self.face, "kill_acc")
+        return accepts is None or ask(self, accepts, bool, True, killer)
+
+    # changes of beliefs, see `jacaros.bdi.belief_update`
+
+    def add_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+        """``+b``."""
+        self._revise(literal_from(symbol, row, annotations), None)
+        return super().add_belief(symbol, row, annotations)
+
+    def add_belief_last(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+        """``+>b``."""
+        self._revise(literal_from(symbol, row, annotations), None)
+        return super().add_belief_last(symbol, row, annotations)
+
+    def add_belief_apart(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+        """``++b``."""
+        self._revise(literal_from(symbol, row, annotations), None)
+        return super().add_belief_apart(symbol, row, annotations)
+
+    def delete_belief(
+        self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], apart: bool
+    ) -> Any:
+        """``-b`` and ``--b``."""
+        self._revise(None, literal_from(symbol, arguments, annotations))
+        return super().delete_belief(symbol, arguments, annotations, apart)
+
+    def delete_any(self, symbol: Functor, annotations: tuple[Term, ...] = BY_SELF) -> None:
+        """The first half of ``-+b``."""
+        anything = tuple(Var() for _ in range(symbol.arity))
+        self._revise(None, literal_from(symbol, anything, annotations))
+        super().delete_any(symbol, annotations)
+
+    def tell(self, term: Term, cause: Any = None) -> bool:
+        """A belief from a message."""
+        return self._is_refused(term, told=True) or super().tell(term, cause)
+
+    def untell(self, term: Term) -> bool:
+        """A belief that a message takes back."""
+        return self._is_refused(term, told=False) or super().untell(term)
+
+    def _is_refused(self, term: Term, told: bool) -> bool:
+        if self._revises is None:
+            return False
+        symbol, row, annotations = parts(term)
+        if symbol is None:
+            return False
+        literal = literal_from(symbol, row, annotations)
+        try:
+            self._revise(literal if told else None, None if told else literal)
+        except Failure:
+            self.architecture.log("info", f"the belief {text(term)} is refused by the agent's class")
+            return True
+        return False
+
+    def _revise(self, added: Literal | None, removed: Literal | None) -> None:
+        """Ask the class.
+
+        Raises:
+            Failure: with ``belief_revision_failed``.
+        """
+        if self._revises is None:
+            return
+        intention = Intention(self.current) if self.current is not None else None
+        try:
+            answer = self._revises(added, removed, intention)
+            message = f"the agent's class refuses to {'add' if added else 'remove'} {added or removed}"
+        except ActionError as refused:
+            answer, message = False, str(refused)
+        except (Exception, SystemExit) as error:
+            answer, message = False, crash_text(_name(self._revises), self._revises, error)
+            self.architecture.log("error", message)
+        if answer is False:
+            raise Failure(*error_terms("belief_revision_failed", message))
+
+
+class ChoiceQueue(deque[Item], Generic[Item, Seen]):
+    """A queue of a mind that asks the agent's class which of several goes first.
+
+    Args:
+        owner: the mind.
+        choose: the method of the class.
+        view: makes what the method sees of an item.
+        counts: whether an item may be chosen; the mind itself removes the others.
+    """
+
+    def __init__(
+        self,
+        owner: CustomMind,
+        choose: Callable[..., Any],
+        view: Callable[[Item], Seen],
+        counts: Callable[[Item], bool],
+    ) -> None:
+        super().__init__()
+        self._owner, self._choose, self._view, self._counts = owner, choose, view, counts
+
+    def popleft(self) -> Item:
+        """The item that was chosen."""
+        places = [place for place, item in enumerate(self) if self._counts(item)]
+        if len(places) < 2 or (len(places) < len(self) and places[0] != 0):
+            return super().popleft()
+        views = [self._view(self[place]) for place in places]
+        chosen = ask(self._owner, self._choose, _one_of(views), views[0], tuple(views))
+        place = places[next(index for index, view in enumerate(views) if view is chosen)]
+        item = self[place]
+        del self[place]
+        return item
+
+
+def _is_open(raised: event.Event) -> bool:
+    return raised.intention is None or not raised.intention.dropped
+
+
+def _can_run(intention: Any) -> bool:
+    return not intention.dropped and intention.suspended is None
+
+
+class ChoosingSelects(Selects):
+    """Select functions that look for all applicable plans and ask the agent's class for one."""
+
+    def __init__(self, library: PlanLibrary, owner: CustomMind, choose: Callable[..., Any]) -> None:
+        super().__init__(library)
+        self._owner, self._choose = owner, choose
+
+    def __missing__(self, trigger: Trigger) -> Select | None:
+        plans = self.library.relevant(trigger)
+        if not plans:
+            self[trigger] = None
+            return None
+        singles = [(plan, compile_select(trigger, [plan], self.library.actions)[0]) for plan in plans]
+
+        def select(agent: CustomMind, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+            applicable: list[Select] = []
+            options: list[Option] = []
+            for plan, single in singles:
+                frame = single(agent, goal, annotations)
+                if frame is not None:
+                    applicable.append(single)
+                    options.append(Option(plan, frame))
+                undo(agent.trail, 0)
+            if not options:
+                return None
+            candidates: list[Option | None] = [*options, None]
+            first: Option | None = options[0]
+            chosen = ask(agent, self._choose, _one_of(candidates), first, tuple(options))
+            for single, option in zip(applicable, options, strict=True):
+                if option is chosen:
+                    return single(agent, goal, annotations)
+            return None
+
+        self[trigger] = select
+        return select
+
+
+# --- asking ------------------------------------------------------------------------------------------------
+
+
+def ask(
+    owner: mind.Agent,
+    method: Callable[..., Any],
+    check: Callable[[Any], Result],
+    default: Result,
+    *arguments: object,
+) -> Result:
+    """What a method of the project's class says; the default when it raises or says what it cannot."""
+    try:
+        return check(method(*arguments))
+    except (Exception, SystemExit) as error:
+        owner.architecture.log("error", crash_text(_name(method), method, error))
+        return default
+
+
+def _name(method: Callable[..., Any]) -> str:
+    return getattr(method, "__qualname__", repr(method))
+
+
+def _one_of(items: Sequence[Result]) -> Callable[[Any], Result]:
+    def check(chosen: Any) -> Result:
+        for item in items:
+            if item is chosen:
+                return item
+        raise ValueError(f"it gives {chosen!r}, which is none of those to choose from")
+
+    return check
+
+
+def _of(seen: list[Percept]) -> Callable[[Iterable[Percept]], list[Percept]]:
+    def check(kept: Iterable[Percept]) -> list[Percept]:
+        found = list(kept)
+        for percept in found:
+            if not any(percept is other for other in seen):
+                raise ValueError(f"it gives {percept!r}, which is none of the changes that it was given")
+        return found
+
+    return check

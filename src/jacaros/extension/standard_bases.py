@@ -1,0 +1,199 @@
+"""The belief bases that Jason has names for."""
+
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import load_program, parse_literal
+from jacaros.asl.nodes import Rule
+from jacaros.compiler.lowering import lower_value
+from jacaros.env.values import Atom, Out, Structure
+from jacaros.errors import JacarosError
+from jacaros.extension.belief_base import BeliefBase, Keeper
+from jacaros.extension.literal import Literal, literal_of
+from jacaros.terms.values import Term
+
+
+class TextPersistentBB(BeliefBase):
+    """Keeps beliefs in a text file between two runs (``jason.bb.TextPersistentBB``).
+
+    Its arguments name the predicates that are kept: ``count``, ``count(_)`` or ``"count/1"``; all of them without
+    arguments.  An argument that ends with ``.bb`` is the file, in the folder of the project; without one it is the
+    agent's name with ``.bb`` behind.  What was kept is believed from the beginning, without events; percepts are not
+    kept.  The file is replaced as a whole when the agent ends, so that it is never half written.
+    """
+
+    def init(self, *arguments: Any) -> None:
+        """Read what was kept."""
+        names = [argument for argument in arguments if not _is_file(argument)]
+        files = [str(argument) for argument in arguments if _is_file(argument)]
+        self._kept = [_signature(name) for name in names]
+        self._file = self.folder / (files[0] if files else f"{self.agent.name}.bb")
+        if not self._file.is_file():
+            return
+        try:
+            program, _ = load_program(str(self._file), self._file.read_text(encoding="utf-8"))
+        except (OSError, UnicodeError, AslError) as wrong:
+            raise JacarosError(f"{self._file} cannot be read: {wrong}") from wrong
+        for node in reversed(program.beliefs):
+            if not isinstance(node, Rule):
+                self._tables.keep(literal_of(lower_value(node)))
+
+    def stop(self) -> None:
+        """Write what is to be kept."""
+        kept = [kept for belief in self if (kept := self._to_keep(belief)) is not None]
+        text = "".join(f"{belief}.\n" for belief in kept)
+        self._file.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=self._file.parent, prefix=f".{self._file.name}.")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            Path(name).replace(self._file)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+
+    def _to_keep(self, belief: Literal) -> Literal | None:
+        wanted = not self._kept or any(
+            belief.functor == name and arity in (None, belief.arity) for name, arity in self._kept
+        )
+        sources = [source for source in belief.sources if source != "percept"]
+        return belief if wanted and sources else None
+
+
+class IndexedBB(BeliefBase):
+    """Holds one belief for each key (``jason.bb.IndexedBB``): a new one takes the place of the old.
+
+    Its arguments say which arguments of a predicate are the key: ``"student(key,_)"``.
+    """
+
+    def init(self, *arguments: Any) -> None:
+        """Take note of the keys."""
+        self._keys: dict[tuple[str, int], list[int]] = {}
+        for argument in arguments:
+            pattern = _pattern(argument)
+            places = [place for place, part in enumerate(pattern.arguments) if part == "key"]
+            if not places:
+                raise JacarosError(f"IndexedBB: {argument} names no key, as in student(key,_)")
+            self._keys[pattern.functor, pattern.arity] = places
+        self._held: dict[tuple[object, ...], Literal] = {}
+
+    def add(self, belief: Literal) -> bool:
+        """Keep a belief in place of that with the same key."""
+        key = self._key(belief)
+        if key is not None:
+            held = self._held.get(key)
+            if held is not None and held.arguments != belief.arguments:
+                super().remove(held)
+            self._held[key] = belief
+        return super().add(belief)
+
+    def remove(self, belief: Literal) -> bool:
+        """Give a belief up."""
+        key = self._key(belief)
+        if key is not None:
+            self._held.pop(key, None)
+        return super().remove(belief)
+
+    def _key(self, belief: Literal) -> tuple[object, ...] | None:
+        places = self._keys.get((belief.functor, belief.arity))
+        if places is None:
+            return None
+        values = (repr(belief.arguments[place]) for place in places)
+        return (belief.functor, belief.negated, belief.namespace, *values)
+
+
+class ChainBB(BeliefBase):
+    """Several bases in a row (``jason.bb.ChainBB``): each hands on what it keeps to the next one.
+
+    Args:
+        links: the bases with their arguments, the one that is asked first in front.
+    """
+
+    def __init__(self, *links: tuple[BeliefBase, tuple[object, ...]]) -> None:
+        self._beginnings = links
+
+    def init(self, *arguments: Any) -> None:
+        """Join the links and begin them, the last one first."""
+        keeper: Keeper = self._tables
+        for link, given in reversed(self._beginnings):
+            link.agent, link.folder, link._tables = self.agent, self.folder, keeper
+            link.init(*given)
+            keeper = _Following(link, self._tables)
+        self._first = keeper
+
+    def add(self, belief: Literal) -> bool:
+        """Let the first link keep a belief."""
+        return self._first.keep(belief)
+
+    def remove(self, belief: Literal) -> bool:
+        """Let the first link give a belief up."""
+        return self._first.give_up(belief)
+
+    def candidates(self, pattern: Literal) -> list[Literal]:
+        """What the links look up."""
+        return [belief for link, _ in self._beginnings for belief in link.candidates(pattern)]
+
+    def stop(self) -> None:
+        """End all links."""
+        for link, _ in self._beginnings:
+            link.stop()
+
+
+class _Following:
+    """What a link of a chain takes for the place where beliefs are kept: the next link."""
+
+    def __init__(self, link: BeliefBase, tables: Keeper) -> None:
+        self._link, self._tables = link, tables
+
+    def keep(self, belief: Literal) -> bool:
+        """Keep a belief."""
+        return self._link.add(belief)
+
+    def give_up(self, belief: Literal) -> bool:
+        """Give a belief up."""
+        return self._link.remove(belief)
+
+    def literals(self) -> Iterator[Term]:
+        """All beliefs."""
+        return self._tables.literals()
+
+
+STANDARD_BASES: dict[str, type[BeliefBase]] = {
+    "DefaultBeliefBase": BeliefBase,
+    "TextPersistentBB": TextPersistentBB,
+    "IndexedBB": IndexedBB,
+}
+"""By the names behind ``jason.bb.``; ``ChainBB`` is made from its links."""
+
+
+def _is_file(argument: object) -> bool:
+    return isinstance(argument, str) and not isinstance(argument, Atom) and argument.endswith(".bb")
+
+
+def _signature(name: object) -> tuple[str, int | None]:
+    """Name and number of arguments of a predicate, None for any number."""
+    if isinstance(name, Structure):
+        return name.functor, len(name.arguments)
+    text = str(name)
+    functor, slash, arity = text.partition("/")
+    if slash and arity.isdigit():
+        return functor, int(arity)
+    if "(" in text:
+        pattern = _pattern(text)
+        return pattern.functor, pattern.arity
+    return text, None
+
+
+def _pattern(argument: object) -> Literal:
+    """A pattern of a predicate, such as ``student(key,_)``, in whatever way it is written."""
+    if isinstance(argument, Structure):
+        parts = tuple(None if isinstance(part, Out) else str(part) for part in argument.arguments)
+        return Literal(argument.functor, parts)
+    parsed = literal_of(lower_value(parse_literal(str(argument))))
+    return Literal(parsed.functor, tuple(None if isinstance(p, Out) else str(p) for p in parsed.arguments))

@@ -1,0 +1,172 @@
+"""Agents whose class, belief base or architecture a project file names."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.nodes import Program
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.options import Options
+from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.errors import JacarosError
+from jacaros.mas.agent_host import AgentHost, Run
+from jacaros.mas.deployment import AgentSpec, ProjectError
+from jacaros.mas.python_code import PythonCode
+from jacaros.project_modules import ProjectModules
+
+if TYPE_CHECKING:
+    from jacaros.extension.classes import Made
+
+_KNOWN_ARCHITECTURES = ("jaca.", "c4jason.")
+"""Packages of architectures of other systems whose work is built in here."""
+
+_DEFAULTS = frozenset(
+    {"jason.asSemantics.Agent", "jason.architecture.AgArch", "jason.bb.DefaultBeliefBase", ""}
+)
+
+
+class AgentClasses:
+    """Makes the hosts and minds of a run's agents, those of the project's own classes among them.
+
+    Args:
+        modules: the project's Python code.
+        folder: of the project.
+        warn: takes the text of a warning.
+    """
+
+    def __init__(self, modules: ProjectModules, folder: Path, warn: Callable[[str], None]) -> None:
+        self._modules, self._folder, self._warn = modules, folder, warn
+        self._warned: set[str] = set()
+
+    def check(self, agents: Iterable[AgentSpec]) -> None:
+        """Look for all classes, so that mistakes are told before anything runs.
+
+        Raises:
+            ProjectError: with all that is wrong.
+        """
+        wrong: list[Diagnostic] = []
+        for spec in agents:
+            try:
+                self._objects(spec)
+            except JacarosError as error:
+                found = error.diagnostics if isinstance(error, ProjectError) else ()
+                wrong += [d for d in found if d not in wrong]
+        if wrong:
+            raise ProjectError(wrong)
+
+    def make(
+        self,
+        spec: AgentSpec,
+        program: Program,
+        run: Run,
+        random: Random,
+        options: Options,
+        code: PythonCode,
+        plans: ProgramPlans,
+    ) -> AgentHost:
+        """The host and the mind of an agent.
+
+        Raises:
+            ProjectError: a class cannot be found or begun.
+        """
+        objects = self._objects(spec)
+        if any(objects):
+            return self._custom(spec, program, run, random, options, code, plans, objects)
+        host = AgentHost(spec.name, run, random)
+        mind = Agent(spec.name, program, host, options, code.actions, plans)
+        mind.project_functions = code.functions
+        host.mind = mind
+        return host
+
+    def _custom(
+        self,
+        spec: AgentSpec,
+        program: Program,
+        run: Run,
+        random: Random,
+        options: Options,
+        code: PythonCode,
+        plans: ProgramPlans,
+        objects: "tuple[Made | None, Made | None, list[Made]]",
+    ) -> AgentHost:
+        # Imported here: most projects have no classes of their own.
+        from jacaros.extension.belief_base import install
+        from jacaros.extension.customising import CustomMind
+        from jacaros.mas.custom_host import CustomHost
+
+        face, base, architectures = objects
+        host = CustomHost(spec.name, run, random)
+        mind = CustomMind(spec.name, program, host, options, code.actions, plans)
+        mind.project_functions = code.functions
+        host.mind = mind
+        try:
+            if face is not None:
+                mind.begin_as(face.made)
+            if base is not None:
+                install(mind, base.made, self._folder, base.arguments)
+                host.at_end(base.made.stop)
+            if face is not None:
+                face.made.init(*face.arguments)
+            host.take([each.made for each in architectures])
+            for each in architectures:
+                each.made.agent = mind.look()
+                each.made.init(*each.arguments)
+                host.at_end(each.made.stop)
+        except JacarosError as error:
+            raise self._project_error(spec, str(error)) from error
+        except Exception as error:
+            from jacaros.extension.faults import crash_text
+
+            told = crash_text(f"agent {spec.name}", type(self)._custom, error)
+            raise self._project_error(spec, told) from error
+        return host
+
+    def _objects(self, spec: AgentSpec) -> "tuple[Made | None, Made | None, list[Made]]":
+        """Objects for the agent class, the belief base and the architectures; the last declared comes first."""
+        if not _names_classes(spec):
+            return None, None, []
+        from jacaros.extension.classes import agent_object, architecture_object, base_object
+
+        try:
+            face = self._object(spec, spec.agent_class, agent_object, "Agent")
+            base = self._object(spec, spec.belief_base_class, base_object, "BeliefBase")
+            found = [
+                self._object(spec, written, architecture_object, "AgentArch")
+                for written in reversed(spec.architecture_classes)
+                if not written.startswith(_KNOWN_ARCHITECTURES)
+            ]
+        except ProjectError:
+            raise
+        except JacarosError as error:
+            raise self._project_error(spec, str(error)) from error
+        return face, base, [made for made in found if made is not None]
+
+    def _object(
+        self,
+        spec: AgentSpec,
+        written: str | None,
+        make: "Callable[[ProjectModules, str], Made | None]",
+        kind: str,
+    ) -> "Made | None":
+        name = (written or "").partition("(")[0].strip()
+        if written is None or name in _DEFAULTS:
+            return None
+        made = make(self._modules, written)
+        if made is None and name not in self._warned:
+            self._warned.add(name)
+            module, _, last = name.rpartition(".")
+            file = f"{module.replace('.', '/')}.py"
+            own = bool(module) and not name.startswith("jason.")
+            hint = f"write it in Python: a class {last}(jacaros.{kind}) in {file}" if own else None
+            warning = Diagnostic("warning", f"the Java class {name} has no effect", spec.span, hint)
+            self._warn(warning.render())
+        return made
+
+    def _project_error(self, spec: AgentSpec, message: str) -> ProjectError:
+        return ProjectError([Diagnostic("error", message, spec.span)])
+
+
+def _names_classes(spec: AgentSpec) -> bool:
+    return bool(spec.agent_class or spec.belief_base_class or spec.architecture_classes)

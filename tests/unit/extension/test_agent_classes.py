@@ -1,0 +1,275 @@
+"""Agents whose class is the project's: selection functions, revision of beliefs, messages, death."""
+
+from pathlib import Path
+
+import pytest
+from extension_lab import write
+
+from jacaros.testing import RunResult, run_project
+
+HEAD = "from jacaros import *\n\n"
+
+
+def run(
+    folder: Path, program: str, python: str, agent: str = "agentClass my.Mine", **files: str
+) -> RunResult:
+    """Run an agent ``bob`` of a class of ``my.py``; others are declared by the files ``NAME_asl``."""
+    others = "".join(f" {name.removesuffix('_asl')};" for name in files if name.endswith("_asl"))
+    write(folder, sys_mas2j=f"MAS sys {{ agents: bob {agent};{others} }}", bob_asl=program, **files)
+    write(folder, my=HEAD + python)
+    return run_project(folder / "sys.mas2j", until_idle=True)
+
+
+def said(
+    folder: Path, program: str, python: str, agent: str = "agentClass my.Mine", **files: str
+) -> list[str]:
+    """What ``bob`` prints; nothing may be told to people."""
+    result = run(folder, program, python, agent, **files)
+    assert result.errors == []
+    return result.of("bob")
+
+
+def test_an_option_is_selected_by_the_class(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_option(self, options):
+        return max(options, key=lambda option: option.plan.annotation("priority", 0))
+"""
+    program = """
+    p(1). p(2).
+    !go(7). !go(8). !none.
+    @a +!go(X) : p(Y) <- .print(low).
+    @b[priority(2)] +!go(X) : p(Y) & Y > 1 & X == 7 <- .print(high, X, Y).
+    @c[priority(1)] +!go(Y) <- .print(middle, Y).
+    -!none[error(E)] <- .print(E).
+    """
+    assert said(tmp_path, program, python) == ["high72", "middle8", "no_relevant"]
+
+
+def test_the_bindings_of_options_are_seen_and_none_may_be_taken(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_option(self, options):
+        return next((option for option in options if option.bindings.get("Y", 0) > 3), None)
+"""
+    program = """
+    !go(X). !go(9).
+    +!go(Y) : Y = 2 <- .print(Y).
+    +!go(Y) : Y = 4 | Y = 9 <- .print(Y).
+    -!go(Y)[error(E)] <- .print(E).
+    """
+    assert said(tmp_path, program, python) == ["4", "9"]
+    result = run(tmp_path, "!go. +!go : Y = 2 <- .print(no).", python)
+    assert result.lines == []
+    assert "no applicable plan for !go" in result.errors[0]
+
+
+def test_events_are_selected_by_the_class(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_event(self, events):
+        return min(events, key=lambda event: (event.trigger != "+", str(event.literal)))
+"""
+    program = "!c. !b. !a. z. y. +!X <- .print(X). +z <- .print(z). +y <- .print(y)."
+    assert said(tmp_path, program, python) == [
+        "y",
+        "z",
+        "a[source(self)]",
+        "b[source(self)]",
+        "c[source(self)]",
+    ]
+
+
+def test_intentions_are_selected_by_the_class(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_intention(self, intentions):
+        return max(intentions, key=lambda intention: intention.goals[0].arguments[0])
+"""
+    program = "!go(1). !go(3). !go(2). +!go(X) <- .print(X); .print(X)."
+    assert said(tmp_path, program, python) == ["1", "3", "3", "2", "2", "1"]
+
+
+def test_an_atomic_intention_comes_before_the_class(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_intention(self, intentions):
+        return intentions[-1]
+"""
+    program = "!a. !b. @a[atomic] +!a <- .print(a1); .print(a2). +!b <- .print(b1); .print(b2)."
+    assert said(tmp_path, program, python) == ["a1", "a2", "b1", "b2"]
+
+
+def test_messages_are_selected_and_refused_by_the_class(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_message(self, messages):
+        return max(messages, key=lambda message: message.content.arguments[0])
+
+    def soc_acc(self, message):
+        return message.content.arguments[0] < 5
+"""
+    ann = "!go. +!go <- for (.range(I, 1, 6)) { .send(bob, tell, n(I)) }."
+    result = run(tmp_path, "+n(X)[source(S)] <- .print(S, X).", python, ann_asl=ann)
+    assert (result.of("bob"), result.errors) == (["ann4", "ann3", "ann2", "ann1"], [])
+
+
+def test_a_revision_can_be_refused(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def init(self, limit):
+        self.limit = limit
+
+    def brf(self, added, removed, intention):
+        if removed is not None and removed.functor == "fixed":
+            raise ActionError("fixed things stay")
+        if added is not None and added.functor == "level":
+            return added.arguments[0] <= self.limit
+"""
+    program = """
+    fixed(1).
+    !go(3). !go(9). !away.
+    +!go(N) <- +level(N); -+level(N); .print(ok, N).
+    -!go(N)[error(E), error_msg(M)] <- .print(E, " ", M).
+    +!away <- -fixed(1).
+    -!away[error(E), error_msg(M)] : fixed(1) <- .print(E, " ", M).
+    """
+    ann = "!go. +!go <- .send(bob, tell, level(20)); .send(bob, tell, level(2))."
+    result = run(
+        tmp_path,
+        program + "+level(N)[source(ann)] <- .print(N).",
+        python,
+        "agentClass my.Mine(5)",
+        ann_asl=ann,
+    )
+    assert set(result.of("bob")) == {
+        "ok3",
+        "belief_revision_failed the agent's class refuses to add level(9)[source(self)]",
+        "belief_revision_failed fixed things stay",
+        "2",
+    }
+    assert result.errors == ["[bob] info: the belief level(20)[source(ann)] is refused by the agent's class"]
+
+
+def test_percepts_can_be_kept_out(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def buf(self, percepts):
+        return [percept for percept in percepts if percept.literal.functor != "secret"]
+"""
+    artifacts = """
+    from jacaros.env import Artifact
+
+    class Box(Artifact):
+        def init(self):
+            self.define_property("secret", 1)
+            self.define_property("open", 2)
+    """
+    program = """
+    !go. +!go <- makeArtifact(b, "Box", [], Id); focus(Id); .wait(10); .findall(X, secret(X) | open(X), L); .print(L).
+    """
+    files = {"artifacts": artifacts}
+    write(
+        tmp_path,
+        sys_jcm="mas sys { agent bob { ag-class: my.Mine } }",
+        bob_asl=program,
+        my=HEAD + python,
+        **files,
+    )
+    result = run_project(tmp_path / "sys.jcm", until_idle=True)
+    assert (result.errors, result.lines) == ([], ["[bob] [2]"])
+
+
+def test_an_agent_need_not_accept_its_end(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def kill_acc(self, killer):
+        return killer == "boss"
+"""
+    boss = "!go. +!go <- .wait(100); .kill_agent(bob); .print(killed). -!go <- .print(refused)."
+    ann = "!go. +!go <- .kill_agent(bob); .print(killed). -!go <- .print(refused)."
+    result = run(tmp_path, "", python, boss_asl=boss, ann_asl=ann)
+    assert result.lines == ["[ann] refused", "[boss] killed"]
+
+
+def test_a_mistake_in_the_class_is_told_and_the_default_is_done(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_option(self, options):
+        return 1 / 0
+
+    def select_intention(self, intentions):
+        return "this one"
+"""
+    result = run(tmp_path, "!a. !b. +!a : true <- .print(a). +!b <- .print(b).", python)
+    assert result.of("bob") == ["a", "b"]
+    assert f"Mine.select_option: ZeroDivisionError: division by zero ({tmp_path}/my.py:6)" in result.errors[0]
+
+
+@pytest.mark.parametrize(
+    ("declared", "message"),
+    [
+        ("agentClass my.Mien", "there is no class Mien in"),
+        ("agentClass my.Mien", "did you mean my.Mine?"),
+        ("beliefBaseClass my.Mine", "it has no class derived from jacaros.BeliefBase"),
+        ("agentClass my.Mine(1 2)", "the arguments of my.Mine(1 2) cannot be read"),
+        ("agentClass broken.Mine", "broken.py:1: NameError"),
+        ("agentClass my.Mine(1)", "takes 1 positional argument but 2 were given"),
+    ],
+)
+def test_a_class_that_cannot_be_had_is_told_before_anything_runs(
+    tmp_path: Path, declared: str, message: str
+) -> None:
+    python = "class Mine(Agent):\n    def init(self):\n        pass\n"
+    result = run(tmp_path, "!go. +!go <- .print(hello).", python, declared, broken="undefined_name\n")
+    assert (result.exit_code, result.lines) == (1, [])
+    assert message in "\n".join(result.errors)
+    assert "sys.mas2j:1:" in "\n".join(result.errors)
+
+
+def test_a_class_of_java_is_told_and_has_no_effect(tmp_path: Path) -> None:
+    result = run(tmp_path, "!go. +!go <- .print(hello).", "", "agentClass your.Careful")
+    assert result.of("bob") == ["hello"]
+    assert "the Java class your.Careful has no effect" in result.errors[0]
+    assert "a class Careful(jacaros.Agent) in your.py" in result.errors[0]
+
+
+def test_an_agent_made_at_run_time_can_be_of_a_class(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def init(self, word):
+        self.add_belief(Literal("word", (word,)))
+
+class Loud(BeliefBase):
+    def add(self, belief):
+        self.agent.print("add ", str(belief.functor))
+        return super().add(belief)
+"""
+    program = """
+    !go.
+    +!go <- .create_agent(sue, "sue_of_bob.asl", [agentClass("my.Mine(hi)"), beliefBaseClass(my.Loud)]);
+            .create_agent(joe, "sue_of_bob.asl", [agentClass("my.Nobody")]).
+    -!go[error(E)] <- .print(E).
+    """
+    write(tmp_path)
+    (tmp_path / "sue_of_bob.asl").write_text("!go. +!go : word(W) <- .print(W).")
+    result = run(tmp_path, program, python, "")
+    assert result.lines == ["[sue] add word", "[bob] internal_action", "[sue] hi"]
+    assert "there is no class Nobody" in result.errors[0]
+
+
+def test_python_code_can_look_at_beliefs_and_talk(tmp_path: Path) -> None:
+    python = """
+@internal_action
+def look(agent: Agent) -> list[str]:
+    agent.send("ann", "tell", "hello(3)[x]")
+    agent.log("looking")
+    assert agent.believes("p(X) & X > 1") and not agent.believes("p(9)")
+    assert repr(agent) == "Agent('bob')"
+    assert [b.arguments for b in agent.beliefs("p", 1)] == [(1,), (2,)]
+    return sorted(str(answer["X"]) for answer in agent.ask("p(X)"))
+"""
+    ann = "+hello(X)[source(S)] <- .print(X, S)."
+    result = run(tmp_path, "p(1). p(2). !go. +!go <- my.look(L); .print(L).", python, "", ann_asl=ann)
+    assert sorted(result.lines) == ["[ann] 3bob", '[bob] ["1","2"]']
+    assert result.errors == ["[bob] info: looking"]
