@@ -3,7 +3,7 @@
 import heapq
 import itertools
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from random import Random
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the registry of internal actions
@@ -94,7 +94,7 @@ class RecordingHost:
         self.stopped, self.exit_code = True, exit_code
         self.agent.stopped = True
 
-    def create_agent(self, name: str, source: str | None) -> str | None:
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         del name, source
         return None
 

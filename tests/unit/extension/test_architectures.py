@@ -154,5 +154,5 @@ class Guard(AgentArch):
     ann = "+hello <- .send(bob, tell, spam); .send(bob, tell, hi)."
     declared = "agentArchClass my.Arch agentArchClass my.Guard"
     result = run(tmp_path, program, python, declared, ann_asl=ann)
-    assert sorted(result.of("bob")) == ["hi", "ia_failed", "in ann", "out hello", "out nothing"]
+    assert sorted(result.of("bob")) == ["hi", "in ann", "out hello", "out nothing", "receiver_not_found"]
     assert result.errors == ["[bob] info: over"]

@@ -1,6 +1,6 @@
 """What stands between a mind and its run."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from random import Random
 
 from jacaros.bdi.act import Act, Completion, Percept
@@ -95,10 +95,10 @@ class FakeRun:
     def stop_system(self, delay: float, exit_code: int) -> None:
         self.lines.append(f"stop {delay} {exit_code}")
 
-    def create_agent(self, name: str, source: str | None) -> str | None:
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         return name
 
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
         del delay
         return name == "ann"
 
@@ -178,7 +178,7 @@ def test_what_the_mind_asks_goes_to_the_run() -> None:
     assert run_.lines == ["[ann] hello", "warning: [ann] warning: beware", "stop 1.0 2"]
     assert host.send(SpeechAct("tell", "ann", "ann", atom("x"), "mid1"))
     assert host.agent_names() == ["ann"]
-    assert host.create_agent("bob", None) == "bob"
+    assert host.create_agent("bob", None, {}) == "bob"
     assert host.kill_agent("ann")
     assert host.read_program("x.asl") == ("x.asl", "")
     host.receive(SpeechAct("tell", "bob", "ann", atom("x"), "mid1"))

@@ -146,7 +146,6 @@ def test_java_parts_are_read_over_with_a_warning(folder: Path):
     assert [warning.message for warning in deployment.ignored] == [
         "the Java environment mars.MarsEnv has no effect",
         "'executionControl' is about Java code and has no effect",
-        "the Java class my.Agent has no effect",
         "'directives' is about Java code and has no effect",
         "'classpath' is about Java code and has no effect",
     ]

@@ -1,6 +1,6 @@
 """A mind for internal actions under test: unification on a trail, and a host that remembers it all."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from random import Random
 from types import SimpleNamespace
@@ -59,8 +59,8 @@ class FakeArchitecture:
     def agent_names(self) -> list[str]:
         return self.agents
 
-    def create_agent(self, name: str, source: str | None) -> str | None:
-        self.created.append((name, source))
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
+        self.created.append((name, source, dict(classes)))
         return None if self.broken else f"{name}_1" if name in self.agents else name
 
     def kill_agent(self, name: str, delay: float = 0.0) -> bool:

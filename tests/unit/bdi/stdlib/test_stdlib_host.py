@@ -104,7 +104,7 @@ def test_create_agent_asks_the_host(mind: FakeContext) -> None:
     assert mind.succeeds(".create_agent", "dora")
     assert mind.succeeds(".create_agent", String("emil"), String("x.asl"))
     assert mind.succeeds(".create_agent", "bob", String("x.asl"))
-    assert mind.architecture.created == [("dora", None), ("emil", "x.asl"), ("bob", "x.asl")]
+    assert mind.architecture.created == [("dora", None, {}), ("emil", "x.asl", {}), ("bob", "x.asl", {})]
 
 
 def test_create_agent_binds_a_variable_to_the_final_name(mind: FakeContext) -> None:
@@ -114,10 +114,11 @@ def test_create_agent_binds_a_variable_to_the_final_name(mind: FakeContext) -> N
     assert (text(first), text(second)) == ('"dora"', '"bob_1"')
 
 
-def test_create_agent_warns_of_classes_of_java(mind: FakeContext) -> None:
-    options = [("agentClass", String("a.B")), ("beliefBaseClass", "c")]
+def test_create_agent_names_the_classes(mind: FakeContext) -> None:
+    options = [("agentClass", String("a.B(1)")), ("beliefBaseClass", "c")]
     assert mind.succeeds(".create_agent", "dora", String("x.asl"), options)
-    assert [level for level, _ in mind.architecture.logged] == ["warning", "warning"]
+    classes = {"agentClass": "a.B(1)", "beliefBaseClass": "c"}
+    assert mind.architecture.created == [("dora", "x.asl", classes)]
 
 
 def test_create_agent_fails_when_the_host_cannot(mind: FakeContext) -> None:
