@@ -1,0 +1,66 @@
+"""What the agents of this game cannot say well in AgentSpeak, in Python.
+
+The agents find it by its name: `mastermind.score(...)` in a program is the function `score` of this file.
+"""
+
+import asyncio
+from collections.abc import Iterator
+from itertools import product
+
+from jacaros import Agent, Atom, Literal, Message, Out, Structure, arithmetic_function, internal_action
+
+COLOURS = [Atom(name) for name in ("black", "blue", "green", "red", "white", "yellow")]
+LENGTH = 4
+
+
+@internal_action
+def score(code: list[str], guess: list[str], right: Out, misplaced: Out) -> None:
+    """How many pegs of a guess are right, and how many have only the right colour."""
+    hits = sum(peg == wanted for peg, wanted in zip(guess, code, strict=True))
+    common = sum(min(code.count(colour), guess.count(colour)) for colour in COLOURS)
+    right.set(hits)
+    misplaced.set(common - hits)
+
+
+@internal_action
+def codes(tried: list[Structure]) -> Iterator[list[Atom]]:
+    """Every code that may be the secret one, given what was tried: a condition takes one after the other."""
+    yield from _possible(tried)
+
+
+@arithmetic_function
+def left(tried: list[Structure]) -> int:
+    """How many codes may still be the secret one."""
+    return sum(1 for _ in _possible(tried))
+
+
+@internal_action
+async def ponder(agent: Agent, seconds: float) -> None:
+    """Think for a while, on the clock of the run: only the intention that calls it waits."""
+    agent.print("hmm ...")
+    await asyncio.sleep(seconds)
+
+
+def _possible(tried: list[Structure]) -> Iterator[list[Atom]]:
+    for code in map(list, product(COLOURS, repeat=LENGTH)):
+        if all(_answer(code, guess) == answer for guess, *answer in (each.arguments for each in tried)):
+            yield code
+
+
+def _answer(code: list[Atom], guess: list[Atom]) -> list[object]:
+    right, misplaced = Out(), Out()
+    score(code, guess, right, misplaced)  # decorated functions can be called from Python, too
+    return [right.value, misplaced.value]
+
+
+class Keeper(Agent):
+    """Thinks up a secret code, and listens to one player only."""
+
+    def init(self, player: str) -> None:
+        """Begin with a code that follows from the seed of the run."""
+        self.player = player
+        self.add_belief(Literal("secret", ([self.random.choice(COLOURS) for _ in range(LENGTH)],)))
+
+    def soc_acc(self, message: Message) -> bool:
+        """Refuse everybody else's messages."""
+        return message.sender == self.player

@@ -1,0 +1,7 @@
+// Asks for the code itself.  The keeper does not listen.
+
+!peep.
+
++!peep
+  <- .send(keeper, askOne, secret(_), Answer, 3000);
+     .print("the keeper says: ", Answer).
