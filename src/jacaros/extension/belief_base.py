@@ -11,6 +11,7 @@ from typing import Any, Protocol
 from jacaros.bdi import belief_base
 from jacaros.bdi.belief_base import Row, Table, parts
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.option_selection import SELECT_OPTION
 from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.faults import crash_text
 from jacaros.extension.literal import Literal, literal_from, literal_of, literal_term
@@ -259,4 +260,5 @@ def install(mind: Circumstance, base: BeliefBase, folder: Path, arguments: Itera
     """Let a mind keep its beliefs in a base of the project's class; before it takes up any."""
     base.agent, base.folder = agent_of(mind), folder
     mind.beliefs = base._tables = Tables(base, mind)
+    mind.option_filter = mind.beliefs[SELECT_OPTION]
     base.init(*arguments)

@@ -11,12 +11,13 @@ from jacaros.bdi import act, event
 from jacaros.bdi import agent as mind
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.failure import error_terms
-from jacaros.bdi.intention import Frame
+from jacaros.bdi.intention import PLAN, Frame
 from jacaros.bdi.internal_action import ActionError
+from jacaros.bdi.option_selection import options
 from jacaros.bdi.plan_library import PlanLibrary, Selects
 from jacaros.compiler.runtime import Failure
 from jacaros.compiler.triggers import Trigger
-from jacaros.compiler.unit import Select, compile_select
+from jacaros.compiler.unit import Select
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
 from jacaros.extension.faults import crash_text
 from jacaros.extension.literal import Literal, literal_from
@@ -46,7 +47,7 @@ class CustomMind(mind.Agent):
         if (choose_message := overridden(face, "select_message")) is not None:
             self.inbox = ChoiceQueue(self, choose_message, Message, lambda message: True)
         if (choose_option := overridden(face, "select_option")) is not None:
-            self.library.selects = self.selects = ChoosingSelects(self.library, self, choose_option)
+            self.library.selects = self.selects = ChoosingSelects(self.library, choose_option)
         if (accepts := overridden(face, "soc_acc")) is not None:
             self.accepts = lambda message: ask(self, accepts, bool, True, Message(message))
         self._revises = overridden(face, "brf")
@@ -188,38 +189,29 @@ def _can_run(intention: Any) -> bool:
 class ChoosingSelects(Selects):
     """Select functions that look for all applicable plans and ask the agent's class for one."""
 
-    def __init__(self, library: PlanLibrary, owner: CustomMind, choose: Callable[..., Any]) -> None:
+    def __init__(self, library: PlanLibrary, choose: Callable[..., Any]) -> None:
         super().__init__(library)
-        self._owner, self._choose = owner, choose
+        self._choose = choose
 
     def __missing__(self, trigger: Trigger) -> Select | None:
-        plans = self.library.relevant(trigger)
-        if not plans:
-            self[trigger] = None
-            return None
-        singles = [(plan, compile_select(trigger, [plan], self.library.actions)[0]) for plan in plans]
-
-        def select(agent: CustomMind, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
-            applicable: list[Select] = []
-            options: list[Option] = []
-            for plan, single in singles:
-                frame = single(agent, goal, annotations)
-                if frame is not None:
-                    applicable.append(single)
-                    options.append(Option(plan, frame))
-                undo(agent.trail, 0)
-            if not options:
-                return None
-            candidates: list[Option | None] = [*options, None]
-            first: Option | None = options[0]
-            chosen = ask(agent, self._choose, _one_of(candidates), first, tuple(options))
-            for single, option in zip(applicable, options, strict=True):
-                if option is chosen:
-                    return single(agent, goal, annotations)
-            return None
-
+        select = self._selected if self.library.relevant(trigger) else None
         self[trigger] = select
         return select
+
+    def _selected(self, agent: CustomMind, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+        found = [Option(frame[PLAN], frame) for frame in options(agent, goal, annotations)]
+        undo(agent.trail, 0)
+        if not found:
+            return None
+        candidates: list[Option | None] = [*found, None]
+        first: Option | None = found[0]
+        chosen = ask(agent, self._choose, _one_of(candidates), first, tuple(found))
+        # The bindings of an option are gone when the next one is looked for: the chosen one is looked for again.
+        for option, frame in zip(found, options(agent, goal, annotations), strict=True):
+            if option is chosen:
+                return frame
+        undo(agent.trail, 0)
+        return None
 
 
 # --- asking ------------------------------------------------------------------------------------------------

@@ -80,6 +80,7 @@ class Option:
     """
 
     def __init__(self, plan: compiled.Plan, frame: Frame) -> None:
+        # The values are taken now: they are undone when the next option is looked for.
         self.plan = Plan(plan)
         self.bindings: dict[str, object] = {
             name: to_value(resolve(frame[slot]))

@@ -163,9 +163,7 @@ class Mas:
         random = Random(f"{self._seed}/{name}")
         options = mind_options(spec.options)
         plans = self._plans_of(program)
-        host = self._classes.make(
-            spec, _initial(spec, program), self, random, options, self._code, plans
-        )
+        host = self._classes.make(spec, _initial(spec, program), self, random, options, self._code, plans)
         self.directory.add(name, host)
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
