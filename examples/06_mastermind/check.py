@@ -36,7 +36,9 @@ def check(output: Iterable[str]) -> Verdict:
         fair = all(answer(guess, before) == wanted[place] for place, before in enumerate(guesses[:number]))
         verdict.expect(fair, f"guess {number + 1} does not fit the answers before it")
     verdict.expect(left[:1] == [1296], "at the beginning any of 1296 codes may be the one")
-    verdict.expect(sorted(set(left), reverse=True) == left, f"the codes that are left do not get fewer: {left}")
+    verdict.expect(
+        sorted(set(left), reverse=True) == left, f"the codes that are left do not get fewer: {left}"
+    )
     return verdict
 
 

@@ -216,3 +216,35 @@ def test_the_wall_clock_gets_an_ordinary_loop():
     loop = new_event_loop(WallClock())
     loop.close()
     assert not hasattr(loop, "virtual_selector")
+
+
+def test_asyncio_itself_waits_on_the_virtual_clock() -> None:
+    clock = VirtualClock()
+
+    async def main() -> list[tuple[str, float]]:
+        seen: list[tuple[str, float]] = []
+
+        async def tick() -> None:
+            for _ in range(3):
+                await clock.sleep(10)
+                seen.append(("clock", clock.now() - clock.start))
+
+        ticking = asyncio.create_task(tick())
+        await asyncio.sleep(15)
+        seen.append(("asyncio", clock.now() - clock.start))
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(3600):
+                await asyncio.Event().wait()
+        await ticking
+        seen.append(("end", clock.now() - clock.start))
+        return seen
+
+    began = time.monotonic()
+    assert run(main, clock) == [
+        ("clock", 10),
+        ("asyncio", 15),
+        ("clock", 20),
+        ("clock", 30),
+        ("end", 3615),
+    ]
+    assert time.monotonic() - began < 60

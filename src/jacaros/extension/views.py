@@ -76,7 +76,8 @@ class Option:
 
     Attributes:
         plan: the plan.
-        bindings: the values that its variables have by now, by name; those without value are missing.
+        bindings: the values that its variables have by now, by name; those without value are missing, and those
+            that the plan does not use any more.
     """
 
     def __init__(self, plan: compiled.Plan, frame: Frame) -> None:

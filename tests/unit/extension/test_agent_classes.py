@@ -273,3 +273,48 @@ def look(agent: Agent) -> list[str]:
     result = run(tmp_path, "p(1). p(2). !go. +!go <- my.look(L); .print(L).", python, "", ann_asl=ann)
     assert sorted(result.lines) == ["[ann] 3bob", '[bob] ["1","2"]']
     assert result.errors == ["[bob] info: looking"]
+
+
+def test_every_answer_of_a_plan_for_all_unifiers_is_an_option(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_option(self, options):
+        return max(options, key=lambda option: option.bindings.get("Y", 0))
+"""
+    program = """
+    p(3). p(8). p(5).
+    !go(W).
+    @a[all_unifs] +!go(X) : p(Y) <- X = Y; .print(Y).
+    @b +!go(X) : p(Y) <- .print(no).
+    """
+    assert said(tmp_path, program, python) == ["8"]
+
+
+def test_what_is_read_at_run_time_can_name_python_code(tmp_path: Path) -> None:
+    python = """
+@internal_action
+def double(x: float) -> float:
+    return 2 * x
+
+@arithmetic_function
+def sq(x: float) -> float:
+    return x * x
+"""
+    program = """
+    !go.
+    +!go <- .add_plan("+!late(X) : my.double(X, Y) <- .print(Y + my.sq(X))."); !late(3);
+            .term2string(T, "my.sq(5)"); .print(T + 1).
+    """
+    assert said(tmp_path, program, python, "") == ["15", "26"]
+
+
+def test_a_clone_is_of_the_same_class(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def brf(self, added, removed, intention):
+        if added and added.functor == "bad":
+            return False
+"""
+    program = "!go. +!go <- !!try; .clone(twin). +!try <- .wait(1); +bad(1). -!try[error(E)] <- .my_name(N); .print(E, N)."
+    result = run(tmp_path, program + " +!go(_).", python)
+    assert result.of("bob") == ["belief_revision_failedbob"]

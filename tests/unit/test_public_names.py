@@ -1,0 +1,31 @@
+"""What `jacaros` offers to the Python code of projects."""
+
+import subprocess
+import sys
+
+import pytest
+
+import jacaros
+
+
+def test_every_public_name_can_be_imported() -> None:
+    for name in jacaros.__all__:
+        assert getattr(jacaros, name).__module__.startswith("jacaros."), name
+    assert set(jacaros.__all__) <= set(dir(jacaros))
+
+
+def test_a_name_that_is_not_there_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="has no attribute 'internal_actoin'"):
+        _ = jacaros.internal_actoin  # type: ignore[attr-defined]
+
+
+def test_importing_the_package_imports_nothing_else_of_it() -> None:
+    code = "import sys, jacaros; print(sorted(m for m in sys.modules if m.startswith('jacaros')))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "['jacaros', 'jacaros.version']"
+
+
+def test_a_program_without_python_code_does_not_import_the_extension() -> None:
+    code = "import sys, jacaros.mas.mas; print([m for m in sys.modules if m.startswith('jacaros.extension')])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
