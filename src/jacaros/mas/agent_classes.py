@@ -33,10 +33,10 @@ class AgentClasses:
     Args:
         modules: the project's Python code.
         folder: of the project.
-        warn: takes the text of a warning.
+        warn: takes a warning.
     """
 
-    def __init__(self, modules: ProjectModules, folder: Path, warn: Callable[[str], None]) -> None:
+    def __init__(self, modules: ProjectModules, folder: Path, warn: Callable[[Diagnostic], None]) -> None:
         self._modules, self._folder, self._warn = modules, folder, warn
         self._warned: set[str] = set()
 
@@ -160,8 +160,7 @@ class AgentClasses:
             file = f"{module.replace('.', '/')}.py"
             own = bool(module) and not name.startswith("jason.")
             hint = f"write it in Python: a class {last}(jacaros.{kind}) in {file}" if own else None
-            warning = Diagnostic("warning", f"the Java class {name} has no effect", spec.span, hint)
-            self._warn(warning.render())
+            self._warn(Diagnostic("warning", f"the Java class {name} has no effect", spec.span, hint))
         return made
 
     def _project_error(self, spec: AgentSpec, message: str) -> ProjectError:

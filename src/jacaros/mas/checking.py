@@ -14,7 +14,8 @@ from jacaros.asl.errors import AslError
 from jacaros.asl.loader import parse_literals, read_program
 from jacaros.asl.source import SourceFile
 from jacaros.asl.suppression import Suppressions, wanted
-from jacaros.mas.deployment import AgentSpec, ProjectError
+from jacaros.mas.agent_classes import AgentClasses
+from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.programs import Programs, text_of
 from jacaros.mas.project import read_project
 from jacaros.mas.python_code import PythonCode
@@ -91,10 +92,21 @@ def _check_project(path: Path, findings: Findings) -> None:
         return
     findings.diagnostics += [_of_project(each) for each in diagnostics]
     folders = (deployment.base_path, *deployment.source_paths)
+    findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, folders)]
     different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}
     for agent in different.values():
         if agent.source_path.is_file():
             _check_program(agent.source_path, folders, findings, agent)
+
+
+def _of_classes(deployment: Deployment, folders: tuple[Path, ...]) -> list[Diagnostic]:
+    """What is wrong with the classes that agents are declared to be of."""
+    found: list[Diagnostic] = []
+    try:
+        AgentClasses(ProjectModules(*folders), deployment.base_path, found.append).check(deployment.agents)
+    except ProjectError as error:
+        found += error.diagnostics
+    return found
 
 
 def _of_project(diagnostic: Diagnostic) -> Diagnostic:

@@ -77,7 +77,9 @@ class Mas:
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
         self._code = PythonCode(self._modules)
         self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"), self._code)
-        self._classes = AgentClasses(self._modules, deployment.base_path, lambda text: log(text, "warning"))
+        self._classes = AgentClasses(
+            self._modules, deployment.base_path, lambda warning: log(warning.render(), "warning")
+        )
         self._mailboxes = Mailboxes(self._mailbox_of)
         self.services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from extension_lab import write
 
+from jacaros.mas.checking import check_files
 from jacaros.testing import RunResult, run_project
 
 HEAD = "from jacaros import *\n\n"
@@ -318,3 +319,21 @@ class Mine(Agent):
     program = "!go. +!go <- !!try; .clone(twin). +!try <- .wait(1); +bad(1). -!try[error(E)] <- .my_name(N); .print(E, N)."
     result = run(tmp_path, program + " +!go(_).", python)
     assert result.of("bob") == ["belief_revision_failedbob"]
+
+
+def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> None:
+    write(
+        tmp_path,
+        sys_mas2j="MAS sys { agents: bob agentClass my.Mien; sue agentClass your.Mine; }",
+        bob_asl="!go. +!go <- my.one(X, Y); .print(X, Y).",
+        sue_asl="!go. +!go <- X = my.sq(2) + 1; .print(X); my.oen(Y); .print(Y).",
+        my=HEAD + "class Mine(Agent):\n    pass\n\n@internal_action\ndef one(x: Out):\n    pass\n\n"
+        "@arithmetic_function\ndef sq(x):\n    return x * x\n",
+    )
+    found = check_files([tmp_path / "sys.mas2j"]).diagnostics
+    assert sorted((each.severity, each.message.partition(" in /")[0]) for each in found) == [
+        ("error", "there is no class Mien"),
+        ("warning", "the Java class your.Mine has no effect"),
+        ("warning", "the internal action my.one cannot have 2 arguments"),
+        ("warning", "there is no internal action my.oen"),
+    ]
