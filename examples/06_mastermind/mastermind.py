@@ -6,6 +6,7 @@ The agents find it by its name: `mastermind.score(...)` in a program is the func
 import asyncio
 from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
 from jacaros import Agent, Atom, Literal, Message, Out, Structure, arithmetic_function, internal_action
 
@@ -14,7 +15,7 @@ LENGTH = 4
 
 
 @internal_action
-def score(code: list[str], guess: list[str], right: Out, misplaced: Out) -> None:
+def score(code: list[Atom], guess: list[Atom], right: Out, misplaced: Out) -> None:
     """How many pegs of a guess are right, and how many have only the right colour."""
     hits = sum(peg == wanted for peg, wanted in zip(guess, code, strict=True))
     common = sum(min(code.count(colour), guess.count(colour)) for colour in COLOURS)
@@ -43,14 +44,14 @@ async def ponder(agent: Agent, seconds: float) -> None:
 
 def _possible(tried: list[Structure]) -> Iterator[list[Atom]]:
     for code in map(list, product(COLOURS, repeat=LENGTH)):
-        if all(_answer(code, guess) == answer for guess, *answer in (each.arguments for each in tried)):
+        if all(_fits(code, *each.arguments) for each in tried):
             yield code
 
 
-def _answer(code: list[Atom], guess: list[Atom]) -> list[object]:
+def _fits(code: list[Atom], guess: Any, *answer: object) -> bool:
     right, misplaced = Out(), Out()
     score(code, guess, right, misplaced)  # decorated functions can be called from Python, too
-    return [right.value, misplaced.value]
+    return answer == (right.value, misplaced.value)
 
 
 class Keeper(Agent):
