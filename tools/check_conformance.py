@@ -1,10 +1,12 @@
 """Run the conformance cases; all of them must pass.
 
 check_conformance.py language       all areas of the language, on the virtual clock
+check_conformance.py formatted      the same programs as `jacaros fmt` lays them out
 check_conformance.py real-time      the areas about the reasoning cycle, on the wall clock
 check_conformance.py environment    artifacts, on the virtual clock
 """
 
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -12,26 +14,48 @@ import xml.etree.ElementTree as ElementTree
 from collections import Counter
 from pathlib import Path
 
+from jacaros.asl.formatting import format_program
+
 ROOT = Path(__file__).resolve().parent.parent
+CASES = ROOT / "tests" / "conformance"
 JACAROS = Path(sys.executable).parent / "jacaros"
+PRINT_LINE_NUMBERS = ("failure/error_code_annotation.asl",)
 CYCLE = ("beliefs", "body_statements", "failure", "intentions", "plan_selection")
 
 
 def main(arguments: list[str]) -> int:
-    """Run one of the three suites."""
+    """Run one of the suites."""
     suite = arguments[0] if arguments else "language"
     if suite == "language":
-        return judge(*run("conformance", "fast", 2))
+        return judge(*run(CASES, "fast", 2))
+    if suite == "formatted":
+        with tempfile.TemporaryDirectory() as scratch:
+            return judge(*run(formatted(Path(scratch)), "fast", 2))
     if suite == "real-time":
         # One at a time: these cases measure moments 40 ms apart.
-        return judge(*run("conformance", "real", 1, *(part for area in CYCLE for part in ("--area", area))))
+        return judge(*run(CASES, "real", 1, *(part for area in CYCLE for part in ("--area", area))))
     if suite == "environment":
-        return judge(*run("conformance_environment", "fast", 2))
+        return judge(*run(ROOT / "tests" / "conformance_environment", "fast", 2))
     print(f"no suite {suite}", file=sys.stderr)
     return 2
 
 
-def run(folder: str, clock: str, jobs: int, *options: str) -> tuple[Counter[str], Counter[str]]:
+def formatted(scratch: Path) -> Path:
+    """A copy of the cases in which all programs without errors are laid out by `jacaros fmt`."""
+    copy = scratch / "conformance"
+    shutil.copytree(CASES, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.rmtree(copy / "syntax_errors")
+    changed = 0
+    for path in sorted(set(copy.rglob("*.asl")) - {copy / name for name in PRINT_LINE_NUMBERS}):
+        before = path.read_text(encoding="utf-8")
+        after = format_program(str(path), before)
+        path.write_text(after, encoding="utf-8")
+        changed += before != after
+    print(f"{changed} programs are laid out in another way")
+    return copy
+
+
+def run(folder: Path, clock: str, jobs: int, *options: str) -> tuple[Counter[str], Counter[str]]:
     """How many cases of each area pass, and how many there are; shows the report of the checker."""
     with tempfile.TemporaryDirectory() as scratch:
         results = Path(scratch) / "results.xml"
@@ -48,7 +72,7 @@ def run(folder: str, clock: str, jobs: int, *options: str) -> tuple[Counter[str]
             results,
             *options,
         )
-        subprocess.run((*call, ROOT / "tests" / folder), check=False)
+        subprocess.run((*call, folder), check=False)
         passed: Counter[str] = Counter()
         total: Counter[str] = Counter()
         for case in ElementTree.parse(results).iter("testcase"):

@@ -65,6 +65,7 @@ def parts() -> list[Part]:
         Part("unit", (*PYTEST, "tests/unit", "-m", "not browser")),
         Part("wheel", ("tools/test_wheel.sh",)),
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language")),
+        Part("formatted", (PYTHON, "tools/check_conformance.py", "formatted")),
         Part("environment", (PYTHON, "tools/check_conformance.py", "environment")),
         Part("contracts", (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2")),
         Part(

@@ -10,11 +10,12 @@
 +!start
   <- // An artifact is a thing that the agent uses; this one drives the robot.
      !use_artifact("wheels", "ArtCmdVel");
-     for ( .member(Leg, [out, back]) ) {
+     for (.member(Leg, [out, back])) {
         .print("driving ", Leg);
-        move(25);               // drive ahead for 2.6 seconds: 26 commands, ten a second
-        rotate(180);            // degrees, to the left; ends when odometry says so
+        move(25);     // drive ahead for 2.6 seconds: 26 commands, ten a second
+        rotate(180);  // degrees, to the left; ends when odometry says so
      };
-     getCurrentPose(X, Y, _Heading);   // names with a capital are variables: they get their values here
-     .print("I believe to be ", math.round(1000 * math.sqrt(X * X + Y * Y)), " mm from where I started");
-     .stopMAS.                  // end the whole system
+     getCurrentPose(X, Y, _Heading);  // names with a capital are variables: they get their values here
+     .print("I believe to be ", math.round(1000 * math.sqrt(X * X + Y * Y)),
+            " mm from where I started");
+     .stopMAS.  // end the whole system

@@ -7,10 +7,11 @@
 +!start
   <- // Drives by odometry: an operation ends when the robot has come as far as it was told to.
      !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
-     for ( .range(Side, 1, 4) ) {
-        moveForward(1);         // metres
-        rotate(90);             // degrees
+     for (.range(Side, 1, 4)) {
+        moveForward(1);  // metres
+        rotate(90);      // degrees
         getCurrentPose(X, Y, _);
-        .print("side ", Side, " done, at ", math.round(X * 100), " cm, ", math.round(Y * 100), " cm")
+        .print("side ", Side, " done, at ", math.round(X * 100), " cm, ", math.round(Y * 100),
+               " cm")
      };
      .stopMAS.

@@ -5,14 +5,14 @@
 
 /* What the agent knows */
 
-room(0, hallway, 0, 0).         // number, name, and where to go, in metres
+room(0, hallway, 0, 0).  // number, name, and where to go, in metres
 room(1, living_room, 2, 0).
 room(2, kitchen, 2, 2).
 room(3, bathroom, 0, 2).
 dock(1, 1).
-rounds(4).                      // so often the house is cleaned
+rounds(4).  // so often the house is cleaned
 
-done(0).                        // rounds done
+done(0).  // rounds done
 recharges(0).
 
 !start.
@@ -31,7 +31,7 @@ recharges(0).
      .stopMAS.
 
 +!clean_house
-  <- updateWhereAmI;            // the next room is the present one now
+  <- updateWhereAmI;  // the next room is the present one now
      ?atRoom(Number);
      ?room(Number, Room, X, Y);
      driveTo(X, Y);
@@ -44,20 +44,22 @@ recharges(0).
      .print("hallway: round ", N + 1, " is done").
 
 +!clean_room(Number, Room)
-  <- +cleaning(Room);           // so that it comes back here after a recharge
+  <- +cleaning(Room);  // so that it comes back here after a recharge
      clean(Number);
-     rotate(-5); rotate(10); rotate(-5);     // a little swing, as one does
+     rotate(-5);
+     rotate(10);
+     rotate(-5);  // a little swing, as one does
      -cleaning(Room).
 
 // What `clean` does shows in these properties of the household; they are empty at the beginning.
 +vacuum(Thing, Room) : Thing \== "" <- .print(Room, ": vacuum the ", Thing).
-+mop(Thing, Room)    : Thing \== "" <- .print(Room, ": mop the ", Thing).
-+scrub(Thing, Room)  : Thing \== "" <- .print(Room, ": scrub the ", Thing).
++mop(Thing, Room) : Thing \== "" <- .print(Room, ": mop the ", Thing).
++scrub(Thing, Room) : Thing \== "" <- .print(Room, ": scrub the ", Thing).
 
 /* The battery */
 
 +diagnostics("Low Battery")
-  <- .suspend(clean_house);     // whatever it does for this goal: driving or cleaning
+  <- .suspend(clean_house);  // whatever it does for this goal: driving or cleaning
      .print("battery low");
      !recharge;
      .print("battery full");
@@ -78,7 +80,7 @@ recharges(0).
 
 +!give_up(Text)
   <- .print("I need help: ", Text);
-     .stopMAS(0, 1).            // the exit code tells that it went wrong
+     .stopMAS(0, 1).  // the exit code tells that it went wrong
 
 // It was cleaning: back into that room.
 +!return : cleaning(Room) & room(_, Room, X, Y)

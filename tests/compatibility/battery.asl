@@ -3,24 +3,24 @@
 
 !start.
 
-+!create_battery <-
-  makeArtifact("Battery", "jason.architecture.ArtSimBattery", [], BatteryId).
++!create_battery
+  <- makeArtifact("Battery", "jason.architecture.ArtSimBattery", [], BatteryId).
 
--!create_battery <-
-  .print("no battery").
+-!create_battery
+  <- .print("no battery").
 
-+?toolBattery(BatteryId) <-
-  lookupArtifact("Battery", BatteryId).
++?toolBattery(BatteryId)
+  <- lookupArtifact("Battery", BatteryId).
 
--?toolBattery(BatteryId) <-
-  .wait(10);
-  ?toolBattery(BatteryId).
+-?toolBattery(BatteryId)
+  <- .wait(10);
+     ?toolBattery(BatteryId).
 
-+diagnostics(Diag) <-
-  .print(Diag);
-  -diagnostics(Diag).
++diagnostics(Diag)
+  <- .print(Diag);
+     -diagnostics(Diag).
 
-+!start <-
-  !create_battery;
-  ?toolBattery(BatteryId);
-  focus(BatteryId).
++!start
+  <- !create_battery;
+     ?toolBattery(BatteryId);
+     focus(BatteryId).

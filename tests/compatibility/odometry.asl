@@ -28,7 +28,9 @@
 
 +odom(A, B, C)
   <- .print("odometry came");
-     println("X: ", A); println("Y: ", B); println("Z: ", C);
+     println("X: ", A);
+     println("Y: ", B);
+     println("Z: ", C);
      -+currentPose(A, B, C).
 
 +!make_late
@@ -36,12 +38,12 @@
      !create_odom.
 
 +!watch
-  <- !!make_late;               // so that the first look-up fails
+  <- !!make_late;  // so that the first look-up fails
      ?toolOdom(OdomId);
      focus(OdomId);
      .wait(currentPose(_, _, _));
      stopFocus(OdomId);
      ?currentPose(X, Y, Z);
      .print("the pose: ", X, " ", Y, " ", Z);
-     !create_odom("robot_0");   // there is an artifact of that name
+     !create_odom("robot_0");  // there is an artifact of that name
      .stopMAS.

@@ -12,9 +12,8 @@
   <- .print("making Odom");
      makeArtifact("Odom", "jason.architecture.ArtOdometry", [], OdomId).
 
-+?toolOdom(AgentName, OdomId) :
-   true <-
-     .concat("Odom", AgentName, Result);
++?toolOdom(AgentName, OdomId) : true
+  <- .concat("Odom", AgentName, Result);
      .print("looking up ", Result);
      lookupArtifact(Result, OdomId).
 

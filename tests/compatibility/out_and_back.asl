@@ -20,7 +20,7 @@
   <- !create_cmd_vel;
      ?toolCmd_vel(CmdVelId);
      focus(CmdVelId);
-     for ( .range(I, 1, 2) ) { // out, and back
+     for (.range(I, 1, 2)) {  // out, and back
         move(25);
         rotate(180);
      }.

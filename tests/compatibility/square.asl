@@ -4,7 +4,8 @@
 !start.
 
 +!create_cmd_vel_mux_odom
-  <- makeArtifact("Cmd_vel_mux_odom", "jason.architecture.ArtCmdVelMuxAndOdometry", [], CmdVelMuxId).
+  <- makeArtifact("Cmd_vel_mux_odom", "jason.architecture.ArtCmdVelMuxAndOdometry", [],
+                  CmdVelMuxId).
 
 -!create_cmd_vel_mux_odom
   <- .print("no artifact for driving").
@@ -20,7 +21,7 @@
   <- !create_cmd_vel_mux_odom;
      ?toolCmd_vel_mux_odom(CmdVelMuxId);
      focus(CmdVelMuxId);
-     for ( .range(I, 1, 4) ) { // the sides
+     for (.range(I, 1, 4)) {  // the sides
         moveForward(1);
         rotate(90);
      }.

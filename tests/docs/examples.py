@@ -46,7 +46,8 @@ class Example:
 
 def is_file(block: Block) -> bool:
     """Whether a block is a file that commands or examples may use."""
-    return bool(block.purpose) and block.purpose.partition(" ")[0] not in ("excerpt", "wrong", "right")
+    others = ("excerpt", "wrong", "right", "formatted")
+    return bool(block.purpose) and block.purpose.partition(" ")[0] not in others
 
 
 def examples(page: Path) -> Iterator[Example]:

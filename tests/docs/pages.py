@@ -9,6 +9,7 @@ What stands behind the language of a block says what becomes of it::
     ```sh                          commands that are only read: set-up, real robots
     ```agentspeak wrong CODE       a program for which `jacaros check` tells this code, and nothing else
     ```agentspeak right CODE       one for which it tells nothing
+    ```agentspeak formatted        a program as `jacaros fmt` lays it out
     ```python excerpt src/a.py     lines that stand in that file, in this order ("..." leaves some out)
 """
 

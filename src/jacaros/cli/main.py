@@ -19,6 +19,7 @@ OUTPUT_GONE = 141
 COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
     "check": ("jacaros.cli.check", "Tell what is wrong in programs and projects."),
+    "fmt": ("jacaros.cli.fmt", "Lay programs out in one style."),
     "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
     "describe": ("jacaros.cli.describe", "Tell what an artifact type or a project offers."),
     "version": ("jacaros.cli.version", "Tell the versions of jacaros and of what it uses."),

@@ -23,7 +23,7 @@
 
 // It is there already, another agent was faster: just as well.
 -!create_artifact(_, _, _)[env_failure_reason(Reason)]
-   : Reason = makeArtifactFailure("artifact_already_present", _).
+    : Reason = makeArtifactFailure("artifact_already_present", _).
 
 // Any other reason concerns who wanted the artifact.
 -!create_artifact(_, _, _)[error_msg(Text), env_failure_reason(Reason)]
@@ -46,27 +46,29 @@
 /* The artifacts of the thesis, by the names of its plans: make with create_..., find with tool... */
 
 // Where the robot is: odom(X, Y, Z).
-+!create_odom            <- !create_artifact("Odom", "ArtOdometry", []).
-+!create_odom(Robot)     <- .concat("Odom", Robot, Name); !create_artifact(Name, "ArtOdometry", [Robot]).
-+?toolOdom(Id)           <- ?artifact("Odom", Id).
-+?toolOdom(Robot, Id)    <- .concat("Odom", Robot, Name); ?artifact(Name, Id).
++!create_odom <- !create_artifact("Odom", "ArtOdometry", []).
++!create_odom(Robot)
+  <- .concat("Odom", Robot, Name);
+     !create_artifact(Name, "ArtOdometry", [Robot]).
++?toolOdom(Id) <- ?artifact("Odom", Id).
++?toolOdom(Robot, Id) <- .concat("Odom", Robot, Name); ?artifact(Name, Id).
 
 // Driving, by time: move(N), rotate(Degrees).
-+!create_cmd_vel         <- !create_artifact("Cmd_vel", "ArtCmdVel", []).
-+?toolCmd_vel(Id)        <- ?artifact("Cmd_vel", Id).
++!create_cmd_vel <- !create_artifact("Cmd_vel", "ArtCmdVel", []).
++?toolCmd_vel(Id) <- ?artifact("Cmd_vel", Id).
 
 // Driving by odometry: moveForward(Metres), rotate(Degrees), driveTo(X, Y).
-+!create_cmd_vel_odom    <- !create_artifact("Cmd_vel_odom", "ArtCmdVelAndOdometry", []).
-+?toolCmd_vel_odom(Id)   <- ?artifact("Cmd_vel_odom", Id).
++!create_cmd_vel_odom <- !create_artifact("Cmd_vel_odom", "ArtCmdVelAndOdometry", []).
++?toolCmd_vel_odom(Id) <- ?artifact("Cmd_vel_odom", Id).
 
 // The same by the topic of a Kobuki base.
-+!create_cmd_vel_mux_odom   <- !create_artifact("Cmd_vel_mux_odom", "ArtCmdVelMuxAndOdometry", []).
-+?toolCmd_vel_mux_odom(Id)  <- ?artifact("Cmd_vel_mux_odom", Id).
++!create_cmd_vel_mux_odom <- !create_artifact("Cmd_vel_mux_odom", "ArtCmdVelMuxAndOdometry", []).
++?toolCmd_vel_mux_odom(Id) <- ?artifact("Cmd_vel_mux_odom", Id).
 
 // A battery that a timer drains: battery(Percent), diagnostics(Text).
-+!create_battery         <- !create_artifact("Battery", "ArtSimBattery", []).
-+?toolBattery(Id)        <- ?artifact("Battery", Id).
++!create_battery <- !create_artifact("Battery", "ArtSimBattery", []).
++?toolBattery(Id) <- ?artifact("Battery", Id).
 
 // The household: clean(Room), vacuum, mop, scrub.
-+!create_cleaner         <- !create_artifact("Cleaner", "ArtCleaning", []).
-+?toolCleaner(Id)        <- ?artifact("Cleaner", Id).
++!create_cleaner <- !create_artifact("Cleaner", "ArtCleaning", []).
++?toolCleaner(Id) <- ?artifact("Cleaner", Id).

@@ -1,0 +1,57 @@
+"""The text of a program in the one style of the project."""
+
+from typing import Final
+
+from jacaros.asl import nodes
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.errors import AslError
+from jacaros.asl.layout.clauses import ProgramLayout
+from jacaros.asl.layout.document import render
+from jacaros.asl.layout.pieces import pieces_of
+from jacaros.asl.lexer import Comment, tokenize
+from jacaros.asl.loader import load_program
+from jacaros.asl.source import SourceFile
+from jacaros.errors import InternalError
+
+_MOST_ROUNDS: Final = 4
+
+
+def format_program(name: str, text: str) -> str:
+    """The program *text* in the one style; its tokens and comments stay what they are.
+
+    *name* is what diagnostics call the file.  Included files are not read.
+
+    Raises:
+        AslError: the program has errors.
+        InternalError: the style would change the program.
+    """
+    meaning = _meaning(name, text)
+    try:
+        result = _laid_out(text)
+        for _ in range(_MOST_ROUNDS):
+            # A comment that has moved to the end of another line may have to move once more.
+            again = _laid_out(result)
+            if again == result:
+                break
+            result = again
+    except RecursionError:
+        raise AslError([Diagnostic("error", f"{name} is nested too deeply to be formatted")]) from None
+    if _substance(result) != _substance(text) or _meaning(name, result) != meaning:
+        raise InternalError(f"formatting would change the meaning of {name}")
+    return result
+
+
+def _laid_out(text: str) -> str:
+    return render(ProgramLayout(pieces_of(SourceFile("", text))).program())
+
+
+def _meaning(name: str, text: str) -> nodes.Program:
+    return load_program(name, text, lambda path, _: (f"{path} in {name}", ""))[0]
+
+
+def _substance(text: str) -> tuple[list[tuple[str, str]], list[str]]:
+    """The tokens of a text, and the words of its comments, sorted: two comments may have become one line."""
+    comments: list[Comment] = []
+    tokens = tokenize(SourceFile("", text), lambda _: None, comments)
+    words = sorted(word for comment in comments for word in comment.text.split())
+    return [(token.kind, token.text) for token in tokens], words

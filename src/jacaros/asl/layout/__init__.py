@@ -1,0 +1,1 @@
+"""Programs in one style: tokens and comments to documents, documents to lines."""

@@ -1,0 +1,163 @@
+"""Whole programs: clauses, plans and directives."""
+
+from jacaros.asl.layout.document import HARD, NOTHING, Break, Document, Group, Nest, OwnLine, Row, row
+from jacaros.asl.layout.steps import StepLayout
+
+_TRIGGERS = frozenset({"+", "-", "^"})
+_BODY_INDENT = 2
+_CONDITION_INDENT = 4
+
+
+class ProgramLayout(StepLayout):
+    """Lays out a program."""
+
+    def program(self) -> Document:
+        """All clauses, and the comments at the end."""
+        end = len(self.pieces) - 1
+        last = self.pieces[end]
+        content = self.clauses(0, end)
+        if not last.before:
+            return row(content, HARD)
+        between = Break(None, last.before[0].blank) if end else NOTHING
+        return row(content, between, self.remarks(end))
+
+    def clauses(self, begin: int, end: int) -> Document:
+        """Clauses, each beginning a line; at most one blank line between two."""
+        parts: list[Document] = []
+        at = begin
+        while at < end:
+            if at > begin:
+                parts.append(Break(None, self.pieces[at].blank))
+            remarks = self.hoisted(at)
+            clause, at = self._clause(at, end)
+            parts += [remarks, clause]
+        return Row(tuple(parts))
+
+    def _clause(self, begin: int, end: int) -> tuple[Document, int]:
+        kind = self.pieces[begin].kind
+        if kind == "{":
+            return self._directive(begin), self.closer[begin] + 1
+        dots = self.split(begin, end, ".")
+        stop = dots[0] if dots else end
+        if kind in _TRIGGERS or kind == "@":
+            return self._plan_clause(begin, stop, end)
+        arrows = self.split(begin, stop, ":-")
+        content = self._rule(begin, arrows[0], stop) if arrows else self.plain(begin, stop)
+        return row(content, self.piece(stop)), stop + 1
+
+    def _directive(self, opener: int) -> Document:
+        closer = self.closer[opener]
+        name = opener + 1
+        inner: Document = self.plain(name, closer)
+        if self.pieces[name].text == "begin" and closer > name + 1:
+            inner = row(self.piece(name), " ", self.plain(name + 1, closer))
+        return row(self.piece(opener), " ", inner, " ", self.piece(closer))
+
+    def _rule(self, begin: int, arrow: int, end: int) -> Document:
+        body = row(Break(), self.formula(arrow + 1, end))
+        return Group(row(self.plain(begin, arrow), " ", self.piece(arrow), Nest(_CONDITION_INDENT, body)))
+
+    # plans
+
+    def _plan_clause(self, begin: int, stop: int, end: int) -> tuple[Document, int]:
+        """A plan with its final dot and its sub-plans, which may stand in the place of the dot."""
+        inner = next((at for at in self.split(begin, stop, "{") if self._holds_plans(at)), None)
+        if inner is not None and self._is_last_of_plan(begin, inner):
+            behind = self.closer[inner] + 1
+            dot = self.piece(behind) if behind < end and self.pieces[behind].kind == "." else NOTHING
+            plan = row(self.plan(begin, inner), " ", self._subplans(inner), dot)
+            return plan, behind + (dot is not NOTHING)
+        plan = row(self.plan(begin, stop), self.piece(stop))
+        if stop + 1 < end and self.pieces[stop + 1].kind == "{" and self._holds_plans(stop + 1):
+            return row(plan, " ", self._subplans(stop + 1)), self.closer[stop + 1] + 1
+        return plan, stop + 1
+
+    def _holds_plans(self, opener: int) -> bool:
+        following = self.pieces[opener + 1].kind
+        return following in _TRIGGERS or following in ("@", "}")
+
+    def _is_last_of_plan(self, begin: int, opener: int) -> bool:
+        """Whether the braces at *opener* stand where the plan may end, and not where a term is expected."""
+        before = self.pieces[opener - 1].kind
+        if before == ")":
+            condition = next(at for at, closer in self.closer.items() if closer == opener - 1)
+            return self.pieces[condition - 1].kind not in ("if", "while", "for", "elif")
+        return opener > begin and before in ("atom", "variable", "number", "string", "]", "}", "true")
+
+    def _subplans(self, opener: int) -> Document:
+        closer = self.closer[opener]
+        closing = self.pieces[closer]
+        last = Row(tuple(row(HARD, OwnLine(remark.text)) for remark in closing.before))
+        if closer == opener + 1 and not closing.before:
+            return row(self.piece(opener), " ", self.piece(closer))
+        first = HARD if closer > opener + 1 else NOTHING
+        content = Nest(_BODY_INDENT, row(first, self.clauses(opener + 1, closer), last))
+        return row(self.piece(opener), content, HARD, "}", self.line_end(closer))
+
+    def plan(self, begin: int, end: int) -> Document:
+        """A plan without its final dot: on one line if it is written so and fits."""
+        hard = not self.on_one_line(begin, end)
+        trigger = self._behind_label(begin)
+        arrows = self.split(begin, end, "<-")
+        arrow = arrows[0] if arrows else end
+        head = self._head(trigger, arrow)
+        parts: list[Document | str] = []
+        if trigger > begin:
+            parts += [self.plain(begin, trigger), HARD if hard else Break()]
+        parts.append(head)
+        if arrow < end:
+            before = self.remarks(arrow)
+            introduction = self._introduction(arrow)
+            steps = Nest(None, row(introduction, self.steps(arrow + 1, end, hard)))
+            parts.append(Nest(_BODY_INDENT, row(HARD if hard else Break(), before, "<- ", steps)))
+        return Group(row(*parts))
+
+    def _introduction(self, arrow: int) -> Document:
+        """The comments between ``<-`` and the first step, each on a line."""
+        first = self.pieces[arrow + 1]
+        comments = [*self.pieces[arrow].behind, *(remark.text for remark in first.before if remark.own_line)]
+        first.before = [remark for remark in first.before if not remark.own_line]
+        return Row(tuple(row(comment, HARD) for comment in comments))
+
+    def _behind_label(self, begin: int) -> int:
+        """The index of the trigger of the plan that begins at *begin*."""
+        if self.pieces[begin].kind != "@":
+            return begin
+        at = begin + 1
+        while self.pieces[at].kind in ("atom", "variable", "::", "(", "["):
+            at = self.closer.get(at, at) + 1
+        return at
+
+    def _head(self, begin: int, end: int) -> Document:
+        """Trigger, context and goal condition."""
+        signs = self.split(begin, end, ":", "<:")
+        parts: list[Document | str] = [self.plain(begin, signs[0] if signs else end)]
+        for sign, stop in zip(signs, [*signs[1:], end], strict=False):
+            condition = row(Break(), self.piece(sign), " ", self.formula(sign + 1, stop))
+            parts.append(Nest(_CONDITION_INDENT, condition))
+        return Group(row(*parts))
+
+    # terms in braces
+
+    def braces(self, opener: int) -> Document:
+        """A plan, trigger, rule or body as a term."""
+        closer = self.closer[opener]
+        begin = opener + 1
+        if begin == closer:
+            return row(self.piece(opener), " ", self.piece(closer))
+        arrows = self.split(begin, closer, ":-")
+        plan = self.split(begin, closer, "<-", ":", "<:") or self.pieces[begin].kind == "@"
+        content: Document
+        if arrows:
+            content = self._rule(begin, arrows[0], closer)
+        elif plan:
+            content = self._inline_plan(begin, closer)
+        else:
+            content = self.steps(begin, closer, hard=False)
+        return Group(row(self.piece(opener), " ", Nest(None, content), " ", self.piece(closer)))
+
+    def _inline_plan(self, begin: int, end: int) -> Document:
+        dots = self.split(begin, end, ".")
+        stop = dots[0] if dots else end
+        plan = self.plan(begin, stop)
+        return plan if stop == end else row(plan, self.piece(stop))

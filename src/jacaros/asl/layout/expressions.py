@@ -1,0 +1,177 @@
+"""Terms and conditions: blanks between tokens, and breaks in what is too long."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Final
+
+from jacaros.asl.cursor import CLOSERS
+from jacaros.asl.layout.document import (
+    NOTHING,
+    Break,
+    Document,
+    Group,
+    LineEnd,
+    Nest,
+    OwnLine,
+    Row,
+    Text,
+    row,
+)
+from jacaros.asl.layout.pieces import Piece
+
+_BINARY: Final = frozenset(
+    {"&", "|", "<", "<=", ">", ">=", "==", "\\==", "=", "=..", "+", "-", "*", "/", "**", "div", "mod"}
+    | {":-", ":", "<-", "<:", "|&|", "|||"}
+)
+_OPERANDS: Final = frozenset({"atom", "variable", "number", "string", "true", "false"})
+_CLOSING: Final = frozenset(CLOSERS.values())
+
+
+class ExpressionLayout(ABC):
+    """Lays out stretches of pieces that are terms or conditions."""
+
+    def __init__(self, pieces: Sequence[Piece]) -> None:
+        self.pieces = pieces
+        self.closer = _matching(pieces)
+
+    @abstractmethod
+    def braces(self, opener: int) -> Document:
+        """What stands in the braces that open at *opener*."""
+
+    @abstractmethod
+    def group(self, begin: int, end: int) -> Document:
+        """Steps in round brackets."""
+
+    # pieces
+
+    def piece(self, index: int) -> Document:
+        """One token with its comments."""
+        piece = self.pieces[index]
+        if not piece.before and not piece.behind:
+            return Text(piece.text)
+        return row(self.remarks(index), piece.text, self.line_end(index))
+
+    def remarks(self, index: int) -> Document:
+        """The comments before a token."""
+        piece = self.pieces[index]
+        parts: list[Document | str] = []
+        for at, remark in enumerate(piece.before):
+            if remark.own_line:
+                following = piece.before[at + 1 : at + 2]
+                blank = following[0].blank if following else piece.blank_behind_remarks
+                parts.append(OwnLine(remark.text, blank))
+            else:
+                parts.append(f"{remark.text} ")
+        return row(*parts) if parts else NOTHING
+
+    def hoisted(self, index: int) -> Document:
+        """The comments before a token, to be put before the group that begins with it."""
+        remarks = self.remarks(index)
+        self.pieces[index].before.clear()
+        return remarks
+
+    def line_end(self, index: int) -> Document:
+        """The comments behind a token at the end of its line."""
+        behind = self.pieces[index].behind
+        return Row(tuple(LineEnd(comment) for comment in behind)) if behind else NOTHING
+
+    def split(self, begin: int, end: int, *kinds: str) -> list[int]:
+        """The places of tokens of these kinds outside of brackets."""
+        found = []
+        at = begin
+        while at < end:
+            if self.pieces[at].kind in kinds:
+                found.append(at)
+            at = self.closer.get(at, at) + 1
+        return found
+
+    def on_one_line(self, begin: int, end: int) -> bool:
+        """Whether the pieces stand on one line of the source."""
+        return begin >= end or self.pieces[begin].token.line == self.pieces[end - 1].token.line
+
+    # expressions
+
+    def formula(self, begin: int, end: int) -> Document:
+        """A condition; one that is too long is broken behind its ``|`` and ``&``."""
+        return self._chain(begin, end, ("|", "&"))
+
+    def _chain(self, begin: int, end: int, operators: tuple[str, ...]) -> Document:
+        if not operators:
+            return self.plain(begin, end)
+        places = self.split(begin, end, operators[0])
+        if not places:
+            return self._chain(begin, end, operators[1:])
+        parts: list[Document | str] = []
+        for place in places:
+            parts += [self._chain(begin, place, operators[1:]), " ", self.piece(place), Break()]
+            begin = place + 1
+        parts.append(self._chain(begin, end, operators[1:]))
+        return Group(Nest(None, row(*parts)))
+
+    def plain(self, begin: int, end: int) -> Document:
+        """Tokens and brackets with the usual blanks between them."""
+        parts: list[Document | str] = []
+        operand_next = True
+        at = begin
+        while at < end:
+            kind = self.pieces[at].kind
+            if kind in CLOSERS:
+                if not operand_next and kind == "{":
+                    parts.append(" ")
+                parts.append(self._bracket(at, call=not operand_next))
+                operand_next = False
+                at = self.closer[at] + 1
+                continue
+            if kind in _OPERANDS:
+                parts += [self.piece(at)] if operand_next else [" ", self.piece(at)]
+                operand_next = False
+            elif kind == "not":
+                parts += [self.piece(at), " "]
+                operand_next = True
+            elif kind in _BINARY and not operand_next:
+                parts += [" ", self.piece(at), Break() if kind in ("|&|", "|||") else " "]
+                operand_next = True
+            else:
+                # Prefixes, '::' and dots.
+                parts.append(self.piece(at))
+                operand_next = kind not in (".", ";", ",")
+            at += 1
+        return row(*parts)
+
+    def _bracket(self, opener: int, call: bool) -> Document:
+        kind = self.pieces[opener].kind
+        closer = self.closer[opener]
+        if kind == "{":
+            return self.braces(opener)
+        if kind == "(" and not call and self.split(opener + 1, closer, ";"):
+            return row(self.piece(opener), self.group(opener + 1, closer), self.piece(closer))
+        return row(self.piece(opener), self._items(opener + 1, closer, kind), self.piece(closer))
+
+    def _items(self, begin: int, end: int, kind: str) -> Document:
+        """What stands in brackets, with ``,`` (and the ``|`` of a tail) between; as many on a line as fit."""
+        places = self.split(begin, end, ",", "|") if kind == "[" else self.split(begin, end, ",")
+        if not places:
+            return Nest(None, self.formula(begin, end))
+        parts: list[Document] = []
+        between: Document = NOTHING
+        for place in [*places, end]:
+            item: Document = self.formula(begin, place)
+            if place < end:
+                tail = self.pieces[place].kind == "|"
+                item = row(item, self.piece(place))
+                following: Document = Break("") if tail else Break()
+            parts.append(Group(row(between, item)))
+            between, begin = following, place + 1
+        return Nest(None, Row(tuple(parts)))
+
+
+def _matching(pieces: Sequence[Piece]) -> dict[int, int]:
+    """The closing bracket of each opening one."""
+    open_brackets: list[int] = []
+    found: dict[int, int] = {}
+    for index, piece in enumerate(pieces):
+        if piece.kind in CLOSERS:
+            open_brackets.append(index)
+        elif piece.kind in _CLOSING:
+            found[open_brackets.pop()] = index
+    return found

@@ -1,0 +1,78 @@
+"""``jacaros fmt FILE|FOLDER...``."""
+
+import difflib
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import click
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.formatting import format_program
+from jacaros.cli.files import existing
+from jacaros.errors import UsageError
+from jacaros.mas.checking import files_below
+from jacaros.mas.programs import text_of
+
+_STANDARD_INPUT = Path("-")
+
+
+@click.command("fmt", short_help="Lay programs out in one style.")
+@click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option(
+    "--check", "only_check", is_flag=True, help="Change nothing; show what would change, with exit code 1."
+)
+@click.option("--diff", "only_show", is_flag=True, help="Change nothing; show what would change.")
+def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
+    """Lay each FILE out in one style: an agent program (.asl), or a folder with all programs in it. A `-` stands for
+    the standard input, whose layout goes to the standard output.
+
+    Programs mean the same afterwards, and comments stay. The exit code is 1 if a program has errors; it is left as
+    it is. The page "The layout of programs" shows the style.
+    """  # fmt: skip
+    if _STANDARD_INPUT in files and len(files) > 1:
+        raise UsageError("'-' cannot stand beside files")
+    code = 0
+    changed = 0
+    programs = list(_programs(files))
+    for path in programs:
+        try:
+            before = sys.stdin.read() if path == _STANDARD_INPUT else text_of(path)
+            after = format_program("<stdin>" if path == _STANDARD_INPUT else str(path), before)
+        except AslError as wrong:
+            click.echo(wrong, err=True)
+            code = 1
+            continue
+        changed += before != after
+        if only_check or only_show:
+            click.echo("".join(_difference(path, before, after)), nl=False)
+        elif path == _STANDARD_INPUT:
+            click.echo(after, nl=False)
+        elif before != after:
+            path.write_text(after, encoding="utf-8", newline="\n")
+    if _STANDARD_INPUT not in files:
+        click.echo(_summary(changed, len(programs), only_check or only_show), err=True)
+    return 1 if only_check and changed else code
+
+
+def _programs(files: Sequence[Path]) -> Iterator[Path]:
+    for file in files:
+        if file == _STANDARD_INPUT:
+            yield file
+        elif existing(file, (".asl",)).is_dir():
+            yield from files_below(file, (".asl",))
+        else:
+            yield file
+
+
+def _difference(path: Path, before: str, after: str) -> Iterator[str]:
+    lines = difflib.unified_diff(
+        before.splitlines(keepends=True), after.splitlines(keepends=True), str(path), str(path)
+    )
+    for line in lines:
+        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+
+
+def _summary(changed: int, files: int, only_look: bool) -> str:
+    what = "would change" if only_look else "changed"
+    return f"{changed} of {files} file{'' if files == 1 else 's'} {what}"

@@ -1,0 +1,17 @@
+"""The page about the layout of programs shows what `jacaros fmt` makes."""
+
+from pages import ROOT, blocks
+
+from jacaros.asl.formatting import format_program
+from jacaros.asl.layout.document import WIDTH
+
+PAGE = ROOT / "docs" / "reference" / "layout.md"
+
+
+def test_the_example_is_laid_out_as_the_page_says() -> None:
+    (example,) = [block for block in blocks(PAGE) if block.purpose == "formatted"]
+    assert format_program("example", example.text) == example.text
+
+
+def test_the_page_tells_the_right_width() -> None:
+    assert f"at most {WIDTH} characters" in PAGE.read_text(encoding="utf-8")

@@ -1,0 +1,91 @@
+"""``jacaros fmt``: what it reads and writes, its exit codes."""
+
+import io
+from pathlib import Path
+
+import pytest
+
+from jacaros.cli.main import call
+
+ROOT = Path(__file__).parents[3]
+UGLY = "+!g<-a;b.   // c\n"
+NICE = "+!g <- a; b.  // c\n"
+DIFFERENCE = f"--- a.asl\n+++ a.asl\n@@ -1 +1 @@\n-{UGLY}+{NICE}"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.asl").write_text(UGLY, encoding="utf-8")
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "inner" / "b.asl").write_text(NICE, encoding="utf-8")
+    return tmp_path
+
+
+def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = call(["fmt", *arguments])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_programs_are_laid_out_in_place(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, ".") == (0, "", "1 of 2 files changed\n")
+    assert (folder / "a.asl").read_text(encoding="utf-8") == NICE
+    assert outcome(capsys, ".") == (0, "", "0 of 2 files changed\n")
+
+
+def test_check_and_diff_show_the_difference_and_change_nothing(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert outcome(capsys, "--check", "a.asl") == (1, DIFFERENCE, "1 of 1 file would change\n")
+    assert outcome(capsys, "--diff", "a.asl") == (0, DIFFERENCE, "1 of 1 file would change\n")
+    assert outcome(capsys, "--check", "inner") == (0, "", "0 of 1 file would change\n")
+    assert (folder / "a.asl").read_text(encoding="utf-8") == UGLY
+
+
+def test_the_standard_input_goes_to_the_standard_output(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO(UGLY))
+    assert outcome(capsys, "-") == (0, NICE, "")
+    monkeypatch.setattr("sys.stdin", io.StringIO("p("))
+    code, output, errors = outcome(capsys, "-")
+    assert (code, output) == (1, "")
+    assert errors.startswith("<stdin>:1:")
+
+
+def test_a_wrong_program_is_left_as_it_is_and_the_others_are_laid_out(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "0.asl").write_text("p( ", encoding="utf-8")
+    (folder / "1.asl").write_bytes(b"\xff")
+    code, output, errors = outcome(capsys, ".")
+    assert (code, output) == (1, "")
+    assert "0.asl:1:" in errors
+    assert "1.asl cannot be read" in errors
+    assert (folder / "a.asl").read_text(encoding="utf-8") == NICE
+    assert (folder / "0.asl").read_text(encoding="utf-8") == "p( "
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["b.asl"], "did you mean a.asl?"),
+        (["-", "a.asl"], "'-' cannot stand beside files"),
+        (["p.jcm"], "p.jcm is no .asl file"),
+        ([], "FILE"),
+    ],
+)
+def test_wrong_usage(
+    folder: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
+) -> None:
+    (folder / "p.jcm").write_text("mas p {}", encoding="utf-8")
+    code, _, errors = outcome(capsys, *arguments)
+    assert code == 2
+    assert told in errors
+
+
+def test_the_programs_of_the_project_are_laid_out(capsys: pytest.CaptureFixture[str]) -> None:
+    folders = ("examples", "tests/compatibility", "tests/integration", "benchmarks/latency", "src")
+    code, output, _ = outcome(capsys, "--check", *(str(ROOT / folder) for folder in folders))
+    assert (code, output) == (0, "")
