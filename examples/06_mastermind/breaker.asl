@@ -16,5 +16,5 @@ tried([]).
   <- .print("the code is ", Guess);
      .stopMAS.
 +!look(Guess, Right, Misplaced) : tried(T)
-  <- -+tried([try(Guess, Right, Misplaced) | T]);
+  <- -+tried([try(Guess, Right, Misplaced)|T]);
      !crack.
