@@ -17,6 +17,7 @@ import jacaros.bdi.stdlib
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.artifacts.ros.wheels import WheeledArtifact
+from jacaros.asl.acting import NOT_IN_CONDITIONS
 from jacaros.asl.functions import ARITIES
 from jacaros.bdi.internal_action import STANDARD
 from jacaros.cli.main import COMMANDS, jacaros
@@ -123,13 +124,14 @@ def internal_actions() -> Iterator[str]:
 
 
 def _action_rows(group: str, names: list[str]) -> Iterator[str]:
-    yield "| internal action | arguments | answers | in contexts |\n|---|---|---|---|"
+    yield "| internal action | arguments | answers | acts | in contexts |\n|---|---|---|---|---|"
     for name in names:
         action = STANDARD[name]
         answers = "several" if action.backtracks else "one"
-        contexts = "no" if action.suspends else "yes"
+        acts = "yes" if action.suspends else "no"
+        contexts = "no" if name in NOT_IN_CONDITIONS else "yes"
         arguments = _arguments(action.minimum, math.inf if action.maximum is None else action.maximum)
-        yield f"| {_entry(group, name)} | {arguments} | {answers} | {contexts} |"
+        yield f"| {_entry(group, name)} | {arguments} | {answers} | {acts} | {contexts} |"
 
 
 def _function_rows(group: str, names: list[str]) -> Iterator[str]:

@@ -9,12 +9,13 @@ import pytest
 from pages import ROOT
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+from jacaros.asl.acting import NOT_IN_CONDITIONS
 from jacaros.asl.functions import ARITIES
 from jacaros.bdi.internal_action import STANDARD
 
 FOLDER = ROOT / "docs" / "reference" / "internal_actions"
 FUNCTIONS = FOLDER / "functions.md"
-SEVERAL_ANSWERS, NOT_IN_CONTEXTS = "*several answers*", "*not in contexts*"
+SEVERAL_ANSWERS, ACTS, NOT_IN_CONTEXTS = "*several answers*", "*acts", "not in contexts*"
 
 
 class Entry(NamedTuple):
@@ -72,7 +73,8 @@ def test_an_entry_says_what_the_registry_says(entry: Entry) -> None:
     most = math.inf if action.maximum is None else action.maximum
     assert limits(entry) == (action.minimum, most)
     assert (SEVERAL_ANSWERS in entry.head) == action.backtracks
-    assert (NOT_IN_CONTEXTS in entry.head) == action.suspends
+    assert (ACTS in entry.head) == action.suspends
+    assert (NOT_IN_CONTEXTS in entry.head) == (entry.name in NOT_IN_CONDITIONS)
 
 
 @pytest.mark.parametrize("entry", OF_FUNCTIONS, ids=lambda entry: entry.name)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
+from jacaros.asl.acting import NOT_IN_CONDITIONS
 from jacaros.asl.cursor import CLOSERS, Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
@@ -16,21 +17,6 @@ from jacaros.asl.source import SourceFile
 _DIRECTIVE_WORDS: Final = frozenset({"begin", "end", "include", "namespace", "register_function"})
 _STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^"})
 """What a clause may begin with."""
-
-_NOT_IN_CONDITIONS: Final = frozenset(
-    {
-        ".send",
-        ".broadcast",
-        ".wait",
-        ".stopMAS",
-        ".suspend",
-        ".fork",
-        ".join",
-        ".foreach",
-        ".loop",
-        ".if_then_else",
-    }
-)
 
 
 class Directives(Protocol):
@@ -294,7 +280,7 @@ def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
             stack += [term.left, term.right]
         elif isinstance(term, nodes.Not):
             stack.append(term.operand)
-        elif isinstance(term, nodes.InternalAction) and term.name in _NOT_IN_CONDITIONS:
+        elif isinstance(term, nodes.InternalAction) and term.name in NOT_IN_CONDITIONS:
             parser.report(
                 "action-in-context",
                 f"'{term.name}' acts and cannot stand in a context",

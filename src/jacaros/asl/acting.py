@@ -1,0 +1,24 @@
+"""Internal actions that act or wait, so that nothing can be asked of them."""
+
+from typing import Final
+
+NOT_IN_CONDITIONS: Final = frozenset(
+    {
+        ".send",
+        ".broadcast",
+        ".wait",
+        ".stopMAS",
+        ".suspend",
+        ".fork",
+        ".join",
+        ".foreach",
+        ".loop",
+        ".if_then_else",
+    }
+)
+"""Those of the language that contexts refuse; in a rule they never hold."""
+
+
+def never_holds(name: str, suspends: bool) -> bool:
+    """Whether an internal action cannot be a condition: those above, and all of a project that take time."""
+    return name in NOT_IN_CONDITIONS or (suspends and not name.startswith("."))
