@@ -17,8 +17,3 @@ NOT_IN_CONDITIONS: Final = frozenset(
     }
 )
 """Those of the language that contexts refuse; in a rule they never hold."""
-
-
-def never_holds(name: str, suspends: bool) -> bool:
-    """Whether an internal action cannot be a condition: those above, and all of a project that take time."""
-    return name in NOT_IN_CONDITIONS or (suspends and not name.startswith("."))

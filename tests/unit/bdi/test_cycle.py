@@ -555,18 +555,3 @@ def test_a_tail_call_out_of_an_atomic_plan_ends_its_privilege() -> None:
         +!b <- .print(b1); .print(b2); .print(b3).
         """
     ) == ["2", "1", "z1", "z2", "b1", "z3", "b2", "z4", "b3"]
-
-
-def test_a_rule_or_a_condition_that_waits_does_not_hold() -> None:
-    host = mind(
-        """
-        r :- .wait(10).
-        !a. !b. !c.
-        +!a <- if (r) { .print(bad) } else { .print(rule) }.
-        +!b <- F = .wait(5); if (F) { .print(bad) } else { .print(formula) }.
-        +!c <- ?(.fail | true); .print(failing).
-        """
-    )
-    host.run()
-    assert sorted(host.printed) == ["failing", "formula", "rule"]
-    assert sum(".wait" in text for _, text in host.logged) == 2
