@@ -11,7 +11,7 @@ from jacaros.compiler.runtime import run
 from jacaros.terms import arithmetic
 from jacaros.terms.arithmetic import ArithmeticFault, settle
 from jacaros.terms.text import text
-from jacaros.terms.unifier import resolve, undo
+from jacaros.terms.unifier import free_variables, resolve, undo
 from jacaros.terms.values import ACTION, Functor, Term, Var, functor
 
 
@@ -62,7 +62,9 @@ def _random(agent: Circumstance, term: Term) -> Term:
 
 
 def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Term) -> Term:
-    """The first answer of the rule or internal action, which must be a number."""
+    """The first answer of the rule or internal action, which must be a number; None while arguments are unknown."""
+    if free_variables(term):
+        return None
     value = Var("Result")
     trail = agent.trail
     mark = len(trail)

@@ -183,6 +183,8 @@ class _Mas2jReader:
         text = name.text + self.parameters()
         if key.text == "agentArchClass":
             agent.architecture_classes.append(text)
+            while cursor.accept(","):
+                agent.architecture_classes.append(cursor.name("a class name").text + self.parameters())
         elif key.text == "agentClass":
             agent.agent_class = text
         else:

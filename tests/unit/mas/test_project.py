@@ -86,7 +86,8 @@ def test_all_of_an_agent_in_mas2j(folder: Path):
             environment: jaca.CartagoEnvironment
             agents:
                 bob carl.asl [verbose=2, beliefs="p(1), q(\\"x\\")", goals="go", events=requeue]
-                    agentArchClass jaca.CAgentArch beliefBaseClass jason.bb.TextPersistentBB("f.txt") at "host1";
+                    agentArchClass jaca.CAgentArch, jason.x.Arch(1)
+                    beliefBaseClass jason.bb.TextPersistentBB("f.txt") at "host1";
                 alice #2;
                 carl [ mindinspector="gui(cycle,html,history)" ];  // a comment
             aslSourcePath: "src"; "more";
@@ -97,7 +98,7 @@ def test_all_of_an_agent_in_mas2j(folder: Path):
     assert bob.source_path == folder / "carl.asl"
     assert bob.options == {"verbose": "2", "events": "requeue"}
     assert (bob.beliefs, bob.goals) == ('p(1), q("x")', "go")
-    assert bob.architecture_classes == ("jaca.CAgentArch",)
+    assert bob.architecture_classes == ("jaca.CAgentArch", "jason.x.Arch(1)")
     assert bob.belief_base_class == 'jason.bb.TextPersistentBB("f.txt")'
     assert bob.host == "host1"
     assert names(deployment) == ["bob", "alice1", "alice2", "carl"]

@@ -1,0 +1,87 @@
+"""Arithmetic functions that need the agent: registered rules, counts, the clock, chance."""
+
+import pytest
+from recording_host import mind
+
+SUM = '{ register_function("my.sum", 2, "sum") } sum(X, Y, Z) :- Z = X + Y. '
+
+
+def printed(program: str) -> list[str]:
+    host = mind(program)
+    host.run()
+    return host.printed
+
+
+def test_a_registered_rule_is_a_function() -> None:
+    assert printed(SUM + "!g. +!g <- X = my.sum(1, my.sum(2, 3)); .print(X); .print(my.sum(X, X) * 2).") == [
+        "6",
+        "24",
+    ]
+
+
+def test_a_registered_internal_action_is_a_function() -> None:
+    program = (
+        '{ register_function("my.size", 1, ".length") } !g. +!g <- .print(my.size([a, b]) + my.size("abc")).'
+    )
+    assert printed(program) == ["5"]
+
+
+def test_it_is_evaluated_in_conditions_rules_goals_and_beliefs() -> None:
+    program = """
+        big(X) :- my.sum(X, 1) > 10.
+        !g(9). !g(10).
+        +!g(N) : big(N) & my.sum(N, N) == 20 <- +held(my.sum(N, 0)); ?held(V); !show(my.sum(V, 1)).
+        +!g(N) <- .print(small).
+        +!show(V) <- .print(V).
+    """
+    assert printed(SUM + program) == ["small", "11"]
+
+
+def test_texts_and_plans_that_are_read_at_run_time_may_call_it() -> None:
+    program = """
+        !g. +!g <- .term2string(T, "f(my.sum(4, 5))"); .print(T);
+            .add_plan("+!h(X) : my.sum(X, 1) > 3 <- .print(my.sum(X, 10))."); !h(3);
+            .send(self, tellHow, "+!k <- .print(my.sum(1, 1))."); .wait(1); !k.
+    """
+    assert printed(SUM + program) == ["f(9)", "13", "2"]
+
+
+def test_it_waits_for_its_arguments() -> None:
+    assert printed(SUM + "!g. +!g <- X = my.sum(Q, 1); .print(X); Q = 4; .print(X).") == ["my.sum(Q,1)", "5"]
+
+
+@pytest.mark.parametrize(("rule", "why"), [("none", "does not hold"), ("word", "is no number")])
+def test_one_without_a_number_fails_the_step(rule: str, why: str) -> None:
+    program = f"""{{ register_function("my.f", 1, "{rule}") }}
+        word(_, a).
+        !g. +!g <- X = my.f(1); .print(never). -!g[error(E), error_msg(M)] <- .print(E, " ", M).
+    """
+    (line,) = printed(program)
+    assert line.startswith("arithmetic_error")
+    assert why in line
+
+
+def test_an_initial_belief_without_a_value_is_left_out_and_told() -> None:
+    host = mind(
+        '{ register_function("my.f", 1, "none") } p(my.f(1)). p(2). !g(my.f(1)). !g(3). +!g(X) : p(Y) <- .print(X, Y).'
+    )
+    host.run()
+    assert host.printed == ["32"]
+    assert [level for level, _ in host.logged] == ["error", "error"]
+
+
+def test_counts_are_evaluated_inside_terms() -> None:
+    program = """
+        p(1). p(2).
+        !g. +!g <- +q(.count(p(X) & X > 1)); ?q(A); .term2string(B, "f(.count(p(_)))"); .print(A, B).
+    """
+    assert printed(program) == ["1f(2)"]
+
+
+def test_a_plan_as_a_term_may_hold_a_function_that_has_no_value_yet() -> None:
+    program = """
+        !g.
+        +!g <- .relevant_plans({ +!h(_) }, [P]); .print(found); .intention(_, _, _, current); .print(seen); !h(1).
+        +!h(X) <- .print(my.sum(X, 1)).
+    """
+    assert printed(SUM + program) == ["found", "seen", "2"]
