@@ -16,7 +16,7 @@ from jacaros.asl.source import SourceFile
 from jacaros.asl.suppression import Suppressions, wanted
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
-from jacaros.mas.programs import Programs, text_of
+from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ProjectModules
@@ -142,6 +142,8 @@ def _check_program(
     code.close()
     for source in sources:
         own += Suppressions(source).unknown
+    if agent is not None and agent.agent_class is not None:
+        own = [each for each in own if each.code != NEVER_SELECTED]
     findings.diagnostics += [each for each in own if not _is_shipped(each)]
 
 

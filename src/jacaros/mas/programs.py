@@ -16,6 +16,9 @@ from jacaros.asl.suppression import wanted
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_code import PythonCode
 
+NEVER_SELECTED = "plan-never-selected"
+"""What is told of plans behind those that are always taken first: agents of a class of their own may take them."""
+
 _LIBRARY = "$jacaros/"
 
 
@@ -57,7 +60,7 @@ class Programs:
         Raises:
             AslError: the program, or what the project adds, is wrong.
         """
-        program = self.read(agent.source_path)
+        program = self.read(agent.source_path, chooses=agent.agent_class is not None)
         place = f"the declaration of {agent.name}"
         # As in Jason: the project's beliefs are believed first, and its goals come first.
         beliefs = parse_literals(agent.beliefs, place) if agent.beliefs.strip() else ()
@@ -66,8 +69,12 @@ class Programs:
             return program
         return replace(program, beliefs=(*program.beliefs, *beliefs), goals=(*goals, *program.goals))
 
-    def read(self, path: Path) -> nodes.Program:
+    def read(self, path: Path, chooses: bool = False) -> nodes.Program:
         """The program in a file.
+
+        Args:
+            path: of the file.
+            chooses: its agent is of a class that may choose among plans in its own way.
 
         Raises:
             AslError: it is wrong, or not there.
@@ -77,7 +84,8 @@ class Programs:
             program, warnings = self._parse(path)
             found = check_for_run(program, KnownActions(self._code.actions, self._code.hint))
             for warning in wanted([*warnings, *found]):
-                self._warn(warning.render())
+                if not (chooses and warning.code == NEVER_SELECTED):
+                    self._warn(warning.render())
             self._read[path] = program
         return program
 

@@ -291,6 +291,16 @@ class Mine(Agent):
     assert said(tmp_path, program, python) == ["8"]
 
 
+def test_a_plan_behind_a_general_one_is_no_mistake_where_the_class_chooses(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_option(self, options):
+        return options[-1]
+"""
+    assert said(tmp_path, "!go(1). +!go(_) <- .print(any). +!go(1) <- .print(one).", python) == ["one"]
+    assert check_files([tmp_path / "sys.mas2j"]).diagnostics == []
+
+
 def test_what_is_read_at_run_time_can_name_python_code(tmp_path: Path) -> None:
     python = """
 @internal_action
