@@ -189,6 +189,21 @@ async def long():
     assert (tmp_path / "tidy").exists()
 
 
+def test_a_coroutine_can_wait_for_a_thread(tmp_path: Path) -> None:
+    python = (
+        HEAD
+        + """
+import asyncio
+
+@internal_action
+async def work(n: int) -> int:
+    return await asyncio.to_thread(lambda: sum(range(n)))
+"""
+    )
+    program = "!a. !b. +!a <- my.work(1000, X); .print(X). +!b <- .wait(60000); .print(later)."
+    assert said(tmp_path, program, python) == ["499500", "later"]
+
+
 def test_a_coroutine_that_fails_fails_its_step(tmp_path: Path) -> None:
     python = (
         HEAD
