@@ -13,7 +13,7 @@ from jacaros.bdi.belief_base import Row, Table, parts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.option_selection import SELECT_OPTION
 from jacaros.extension.agent import Agent, agent_of
-from jacaros.extension.faults import crash_text
+from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from, literal_of, literal_term
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import is_key
@@ -124,7 +124,7 @@ class Tables(belief_base.BeliefBase):
         self._change = (literal, table, row, annotations, last)
         try:
             return bool(self.base.add(literal))
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             self._crashed("add", error)
             table.put(row, annotations, last)
             return True
@@ -137,7 +137,7 @@ class Tables(belief_base.BeliefBase):
         self._change = (literal, table, row, (), False)
         try:
             return bool(self.base.remove(literal))
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             self._crashed("remove", error)
             table.take(row)
             return True
@@ -151,7 +151,7 @@ class Tables(belief_base.BeliefBase):
                 parts(literal_term(each))
                 for each in self.base.candidates(literal_from(functor, arguments, ()))
             ]
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             self._crashed("candidates", error)
             return []
         return [

@@ -14,7 +14,7 @@ from jacaros.env.kernel import signature as operations
 from jacaros.env.values import Out
 from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.declaring import Declared
-from jacaros.extension.faults import ActionCrashed, FunctionCrashed, action_fault, crash_text
+from jacaros.extension.faults import FAULTS, ActionCrashed, FunctionCrashed, action_fault, crash_text
 from jacaros.extension.literal import Literal, literal_of, term_of
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.text import text
@@ -71,7 +71,7 @@ class _Callee:
         call = _Call(self, ctx, terms)
         try:
             value = self.function(*call.arguments)
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             raise action_fault(self.name, self.function, error) from error
         return call.accept(value)
 
@@ -82,7 +82,7 @@ class _Callee:
         while True:
             try:
                 value = next(search, search)
-            except (Exception, SystemExit) as error:
+            except FAULTS as error:
                 raise action_fault(self.name, self.function, error) from error
             if value is search:
                 return
@@ -239,7 +239,7 @@ def _evaluator(
             raise ArithmeticFault(f"{name}: {wrong}") from None
         try:
             value = function(*values)
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             raise FunctionCrashed(crash_text(name, function, error)) from error
         number = term_of(value)
         if number.__class__ is not float:

@@ -19,7 +19,7 @@ from jacaros.compiler.runtime import Failure
 from jacaros.compiler.triggers import Trigger
 from jacaros.compiler.unit import Select
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
-from jacaros.extension.faults import crash_text
+from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from
 from jacaros.extension.views import Event, Intention, Message, Option, Percept
 from jacaros.terms.text import text
@@ -138,7 +138,7 @@ class CustomMind(mind.Agent):
             message = f"the agent's class refuses to {'add' if added else 'remove'} {added or removed}"
         except ActionError as refused:
             answer, message = False, str(refused)
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             answer, message = False, crash_text(_name(self._revises), self._revises, error)
             self.architecture.log("error", message)
         if answer is False:
@@ -227,7 +227,7 @@ def ask(
     """What a method of the project's class says; the default when it raises or says what it cannot."""
     try:
         return check(method(*arguments))
-    except (Exception, SystemExit) as error:
+    except FAULTS as error:
         owner.architecture.log("error", crash_text(_name(method), method, error))
         return default
 

@@ -1,5 +1,6 @@
 """Exceptions of a project's Python code, as the mind takes them."""
 
+from asyncio import CancelledError
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,9 @@ from jacaros.errors import InternalError
 from jacaros.extension.literal import Literal, term_of
 from jacaros.project_modules import place_of
 from jacaros.terms.arithmetic import ArithmeticFault
+
+FAULTS = (Exception, SystemExit, CancelledError)
+"""What Python code of a project may raise without ending more than the step that called it."""
 
 
 class ActionCrashed(ActionError, Crashed):

@@ -10,7 +10,7 @@ from jacaros.bdi.act import Act
 from jacaros.bdi.architecture import Timer
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.extension.architecture import Action, AgentArch, Perception
-from jacaros.extension.faults import crash_text
+from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.views import Message
 from jacaros.mas.agent_host import AgentHost, Run
 
@@ -68,7 +68,7 @@ class CustomHost(AgentHost):
         action = Action(act)
         try:
             done = self._chain[0].act(action)
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             self._failed(action, self._chain[0].act, error)
             return
         if isawaitable(done):
@@ -120,7 +120,7 @@ class CustomHost(AgentHost):
         """What the project's code says; the default when it raises."""
         try:
             return method()
-        except (Exception, SystemExit) as error:
+        except FAULTS as error:
             self.log("error", crash_text(getattr(method, "__qualname__", "?"), method, error))
             return default
 

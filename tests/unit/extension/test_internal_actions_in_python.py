@@ -267,10 +267,14 @@ def test_an_exception_fails_the_step_alone_and_is_told_with_its_line(tmp_path: P
     assert result.errors == [f"[t] error: {message}"]
 
 
-def test_not_even_the_end_of_python_ends_the_run(tmp_path: Path) -> None:
-    python = HEAD + "import sys\n\n@internal_action\ndef quit():\n    sys.exit(3)\n"
+@pytest.mark.parametrize("word", ["def", "async def"])
+@pytest.mark.parametrize("what", ["sys.exit(3)", "raise asyncio.CancelledError", "raise RecursionError"])
+def test_not_even_the_end_of_python_ends_the_run(tmp_path: Path, word: str, what: str) -> None:
+    python = HEAD + f"import asyncio, sys\n\n@internal_action\n{word} quit():\n    {what}\n"
     result = run(tmp_path, "!go. +!go <- my.quit. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["internal_action"]
+    assert len(result.errors) == 1
+    assert f"({tmp_path}/my.py:" in result.errors[0]
     assert result.exit_code == 0
 
 
