@@ -52,7 +52,8 @@ class Workload:
             f"    {name} {file}.asl{f' #{many}' if many > 1 else ''};" for name, file, many in self.agents
         ]
         project = folder / "bench.mas2j"
-        project.write_text("MAS bench {\n  agents:\n" + "\n".join(lines) + "\n}\n", encoding="utf-8")
+        world = "  environment: jacaros.Environment\n" if self.name == "percepts" else ""
+        project.write_text(f"MAS bench {{\n{world}  agents:\n" + "\n".join(lines) + "\n}\n", encoding="utf-8")
         return project
 
 
@@ -75,8 +76,9 @@ WORKLOADS = (
     single("while", "while", 100_000, agentspeak=20_000),
     single("for", "for", 200_000, lacks=".range with three arguments"),
     single("facts", "facts", 50_000, agentspeak=10_000),
-    single("look-ups in 200 facts", "lookups", 200, agentspeak=200, ratio=None),
-    single("look-ups in 20k facts", "lookups", 20_000, agentspeak=1_000),
+    single("look-ups in 200 facts", "lookups_again", 20_000, k=200, agentspeak=2_000, ratio=None),
+    single("look-ups in 20k facts", "lookups_again", 20_000, k=20_000),
+    single("facts and look-ups", "lookups", 20_000, agentspeak=1_000),
     single("join", "join", 5_000, unit="answer", count=5_000, agentspeak=500, ratio=12),
     single("fib(20) by goals", "fib_goals", 20, agentspeak=16, ratio=15, goal=25),
     single("fib(18) by rules", "fib_rules", 18, unit="call", count=8_361, goal=None, agentspeak=14),
