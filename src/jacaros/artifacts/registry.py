@@ -17,8 +17,8 @@ from jacaros.artifacts.ros.velocity import (
     ArtCmdVelMux,
     ArtCmdVelMuxAndOdometry,
 )
-from jacaros.env import Artifact, UnknownArtifactType
-from jacaros.project_modules import ProjectModules
+from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
+from jacaros.project_modules import ModuleUnreadable, ProjectModules
 
 BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
     {
@@ -51,15 +51,19 @@ ALIASES = ("jason.architecture.", "jacaros.")
 def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], type[Artifact]]:
     """Make the look-up for a project (its modules, or its folder), with its own artifacts loaded once.
 
-    The artifacts of a project are in ``artifacts.py``, or in a package ``artifacts/``; None stands for no project.
+    The artifacts of a project are in ``artifacts.py``, or in a package ``artifacts/``, or in another module beside it that
+    the name leads to (``gripper.Gripper``); None stands for no project.
 
     Raises:
         ModuleUnreadable: the project's artifact file has a mistake.
     """
     if isinstance(project, Path | str):
         project = ProjectModules(project)
-    modules = project.load(ARTIFACTS) if project is not None else ()
-    return lambda name: find_type(name, modules)
+    if project is None:
+        return find_type
+    own = project
+    modules = own.load(ARTIFACTS)
+    return lambda name: _of_project(name, own) or find_type(name, modules)
 
 
 def find_type(
@@ -85,6 +89,18 @@ def find_type(
     if found is None:
         raise UnknownArtifactType(name, _candidates(name, search_modules, built_in))
     return found
+
+
+def _of_project(name: str, project: ProjectModules) -> type[Artifact] | None:
+    """A class by its place beside the project: ``gripper.Gripper`` is in ``gripper.py``."""
+    path, _, last = name.rpartition(".")
+    if not path or project.place(path) is None:
+        return None
+    try:
+        modules = project.load(path)
+    except ModuleUnreadable as error:
+        raise InvalidArtifact(str(error)) from error
+    return _of_modules(last, modules)
 
 
 def _by_path(name: str) -> type[Artifact] | None:

@@ -1,5 +1,6 @@
 """What messages do (KQML as Jason defines it): tell, achieve, ask, and the rest."""
 
+from functools import lru_cache
 from typing import Any
 
 from jacaros.asl.errors import AslError
@@ -17,20 +18,23 @@ from jacaros.compiler.triggers import trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN, TRIGGER, body_steps, step_parts
 from jacaros.terms.text import text
-from jacaros.terms.unifier import rename, resolve, undo
+from jacaros.terms.unifier import is_flat, rename, resolve, undo
 from jacaros.terms.values import (
     BY_SELF,
     SOURCE,
     SOURCE_SELF,
     Annotated,
+    Functor,
     String,
     Term,
     Var,
     annotations_of,
+    arguments_of,
     atom,
     bare,
     deref,
     functor,
+    functor_of,
     is_list,
     list_items,
     make_list,
@@ -104,6 +108,20 @@ def from_sender(content: Term, sender: str) -> Term:
     return Annotated(inner, annotation_set((*others, source)))
 
 
+def literal_from(
+    content: Term, sender: str
+) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
+    """Functor, arguments and annotations of the content with ``source(sender)``; no functor when it is no literal."""
+    if is_flat(content):
+        return functor_of(content), arguments_of(content), _only_from(sender)
+    return parts(from_sender(content, sender))
+
+
+@lru_cache(maxsize=4096)
+def _only_from(sender: str) -> tuple[Term, ...]:
+    return ((SOURCE, atom(sender)),)
+
+
 def _is_source(term: Term) -> bool:
     inner = bare(term)
     return inner.__class__ is tuple and inner[0] is SOURCE
@@ -128,7 +146,7 @@ def _untell(agent: Circumstance, message: SpeechAct) -> None:
 
 def _achieve(agent: Circumstance, message: SpeechAct) -> None:
     for content in _contents(message.content):
-        symbol, arguments, annotations = parts(from_sender(content, message.sender))
+        symbol, arguments, annotations = literal_from(content, message.sender)
         if symbol is None:
             _refuse(agent, message)
         else:
@@ -141,7 +159,7 @@ def _unachieve(agent: Circumstance, message: SpeechAct) -> None:
 
 def _signal(agent: Circumstance, message: SpeechAct) -> None:
     for content in _contents(message.content):
-        symbol, row, annotations = parts(from_sender(content, message.sender))
+        symbol, row, annotations = literal_from(content, message.sender)
         if symbol is None:
             _refuse(agent, message)
         else:

@@ -11,19 +11,19 @@ class Directory(Generic[H]):
 
     def __init__(self) -> None:
         self._hosts: dict[str, H] = {}
-        self._names: tuple[str, ...] = ()
+        self._names: tuple[str, ...] | None = ()
 
     def add(self, name: str, host: H) -> None:
         """Enter an agent; the name must be free."""
         if name in self._hosts:
             raise ValueError(f"there is an agent {name} already")
         self._hosts[name] = host
-        self._names = tuple(self._hosts)
+        self._names = None
 
     def remove(self, name: str) -> H | None:
         """Take an agent out; None when there is none of that name."""
         host = self._hosts.pop(name, None)
-        self._names = tuple(self._hosts)
+        self._names = None
         return host
 
     def find(self, name: str) -> H | None:
@@ -32,6 +32,8 @@ class Directory(Generic[H]):
 
     def names(self) -> Sequence[str]:
         """All names."""
+        if self._names is None:
+            self._names = tuple(self._hosts)
         return self._names
 
     def free_name(self, wanted: str) -> str:

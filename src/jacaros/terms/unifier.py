@@ -380,9 +380,21 @@ def _annotate(inner: Term, annotations: tuple[Term, ...], tail: Term) -> Term:
     return Annotated(inner, annotations, tail)
 
 
+def is_flat(term: Term) -> bool:
+    """Whether the term is an atom, or a structure of atoms, numbers and strings: nothing in it can be bound or evaluated.
+
+    A quick test for the most frequent terms; False does not say that there are variables.
+    """
+    if term.__class__ is not tuple:
+        return term.__class__ is Functor and not term.kind
+    if term[0].kind:
+        return False
+    return all(argument.__class__ in ATOMIC for argument in term)
+
+
 def is_ground(term: Term) -> bool:
     """Whether the term holds no unbound variable."""
-    return not free_variables(term)
+    return is_flat(term) or not free_variables(term)
 
 
 def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
@@ -414,6 +426,8 @@ def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
 
 def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
     """A copy with fresh variables in place of the unbound ones; ground terms are returned as they are."""
+    if is_flat(term):
+        return term
     term = resolve(term)
     if term.__class__ in ATOMIC or not free_variables(term):
         return term

@@ -8,7 +8,7 @@ import pytest
 from jacaros.artifacts.registry import BUILT_IN, find_type, type_finder
 from jacaros.artifacts.ros.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.clock import VirtualClock, run
-from jacaros.env import Artifact, Environment, UnknownArtifactType
+from jacaros.env import Artifact, Environment, InvalidArtifact, UnknownArtifactType
 from jacaros.project_modules import ModuleUnreadable
 from jacaros.ros.open import open_backend
 
@@ -97,6 +97,17 @@ def test_a_package_of_artifacts_is_searched_file_by_file(tmp_path: Path, entry: 
     found = type_finder(tmp_path)("Counter")
     assert issubclass(found, Artifact)
     assert found.SIZE == 7  # type: ignore[attr-defined]
+
+
+def test_a_dotted_name_leads_to_a_module_beside_the_project(tmp_path: Path) -> None:
+    (tmp_path / "board.py").write_text("from jacaros.env import Artifact\nclass Board(Artifact): ...\n")
+    (tmp_path / "broken.py").write_text("from jacaros.env import Artifact\nclass Broken(Artifact:\n")
+    find = type_finder(tmp_path)
+    assert find("board.Board").__name__ == "Board"
+    with pytest.raises(UnknownArtifactType):
+        find("board.Table")
+    with pytest.raises(InvalidArtifact, match="broken.py"):
+        find("broken.Broken")
 
 
 def test_a_folder_without_artifacts_brings_none(tmp_path: Path) -> None:
