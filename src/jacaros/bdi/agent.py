@@ -1,6 +1,7 @@
 """The agent: a mind with a program.  It is given things, makes cycles, and reaches out through its architecture."""
 
 from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import Any
 
 from jacaros.asl import nodes
@@ -36,6 +37,7 @@ from jacaros.bdi.waiting import ACTION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
+from jacaros.terms import arithmetic
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.plans import is_body
@@ -86,6 +88,7 @@ class Agent(Circumstance):
         self._acts = 0
         self._messages = 0
         self._namespaces = 0
+        self._call_own = partial(functions.call_own, self)
         self.register_functions(program.functions)
         plan_changes.look_at_plans(self)
 
@@ -177,8 +180,12 @@ class Agent(Circumstance):
 
     def run(self, fuel: int) -> bool:
         """Make at most *fuel* reasoning cycles; True when there is more to do."""
-        with functions.evaluating(self):
+        # Calls inside terms are evaluated for this agent meanwhile.
+        before, arithmetic.agent_call = arithmetic.agent_call, self._call_own
+        try:
             return cycle.run(self, fuel)
+        finally:
+            arithmetic.agent_call = before
 
     # --- from outside --------------------------------------------------------------------------------------
 

@@ -108,9 +108,7 @@ def from_sender(content: Term, sender: str) -> Term:
     return Annotated(inner, annotation_set((*others, source)))
 
 
-def literal_from(
-    content: Term, sender: str
-) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
+def literal_from(content: Term, sender: str) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
     """Functor, arguments and annotations of the content with ``source(sender)``; no functor when it is no literal."""
     if is_flat(content):
         return functor_of(content), arguments_of(content), _only_from(sender)
