@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.bdi.act import Percept
-from jacaros.bdi.architecture import Architecture
+from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.belief_base import BeliefBase
 from jacaros.bdi.event import Event
 from jacaros.bdi.intention import Intention
@@ -41,6 +41,7 @@ class Circumstance:
         inbox, percepts: what was received and noticed, and not yet looked at.
         tasks: housekeeping for the beginning of the next cycle.
         suspended_events: goal events whose goal was suspended before it became an intention.
+        delayed_events: timers of the events that ``.at`` is to post.
         event_waits: waits for an event, with the pattern.
         condition_waits: waits for a condition.
         pending_acts: external actions under way, by number.
@@ -98,6 +99,7 @@ class Circumstance:
         self.percepts: deque[list[Percept]] = deque()
         self.tasks: deque[Callable[[], None]] = deque()
         self.suspended_events: list[Event] = []
+        self.delayed_events: dict[Timer, None] = {}
         self.event_waits: list[tuple[Trigger | None, Term, Waiting]] = []
         self.condition_waits: list[tuple[Any, Waiting]] = []
         self.pending_acts: dict[int, Waiting] = {}

@@ -157,7 +157,10 @@ def drop_desire(agent: Circumstance, goal: Term) -> None:
 
 
 def drop_all_intentions(agent: Circumstance) -> None:
-    """All but the running one."""
+    """All but the running one; what ``.at`` is to post does not come either."""
+    for timer in agent.delayed_events:
+        timer.cancel()
+    agent.delayed_events.clear()
     for intention in list(agent.alive.values()):
         if intention is not agent.current:
             drop_intention(agent, intention)

@@ -95,3 +95,15 @@ def test_rules_and_plans_are_removed_whatever_their_variables_are_called() -> No
     """)
     host.run()
     assert host.printed == ["[]", "1"]
+
+
+@pytest.mark.parametrize(
+    ("action", "lines"), [("drop_all_intentions", ["b"]), ("drop_all_events", ["a", "b"])]
+)
+def test_dropping_all_intentions_takes_back_what_is_to_come(action: str, lines: list[str]) -> None:
+    host = mind(
+        f"""!begin. +!begin <- .at("now +20", {{ +!x(a) }}); .{action}; .at("now +30", {{ +!x(b) }}).
+        +!x(N) <- .print(N)."""
+    )
+    host.run()
+    assert host.printed == lines

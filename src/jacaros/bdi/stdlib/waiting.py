@@ -148,14 +148,24 @@ def _unit(word: str) -> str | None:
 
 @internal_action(".at", arity=2)
 def at(ctx: Context, moment: Term, event: Term) -> None:
-    """``.at("now +5 s", {+!g})``: post an event later; units ms (when none is given), s, m, h and d."""
+    """``.at("now +5 s", {+!g})``: post an event later; units ms (when none is given), s, m, h and d.
+
+    ``.drop_all_intentions`` takes it back.
+    """
     found = trigger_of(event)
     match = _MOMENT.match(str(moment)) if moment.__class__ is String else None
     unit = _unit(match.group(2) or "") if match else None
     if found is None or found[0] is None or match is None or unit is None:
         raise WrongArguments('.at takes a moment such as "now +5 s" and an event such as {+!g}')
     delay = float(match.group(1) or 0) * _UNITS[unit]
-    ctx.architecture.set_timer(delay, lambda: post_event(ctx, found[0], found[1]))  # type: ignore[arg-type]
+    kind, literal, delayed = found[0], rename(found[1]), ctx.agent.delayed_events
+
+    def due() -> None:
+        delayed.pop(timer, None)
+        post_event(ctx, kind, literal)
+
+    timer = ctx.architecture.set_timer(delay, due)
+    delayed[timer] = None
 
 
 def post_event(ctx: Context, kind: Trigger, literal: Term) -> None:
