@@ -131,7 +131,7 @@ class ProgramParser(PlanParser):
                 "missing-trigger",
                 "a plan begins with its trigger",
                 self.span_from(start),
-                "put +! before it: +!goal : condition <- steps.",
+                "put +! before it: +!goal : condition <- steps; a rule has ':-' in place of '<-'",
             )
         if not isinstance(head, nodes.Literal):
             self._no_belief(head)
@@ -196,6 +196,8 @@ class ProgramParser(PlanParser):
             self.fail("wrong-separator", f"a {what} ends with '.', not with ','", hint="write p(1). p(2).")
         elif token.kind == ",":
             self.fail("wrong-separator", "conditions are not joined by ','", hint="write & for 'and'")
+        elif token.kind == ";" and what == "rule":
+            self.fail("wrong-separator", "conditions are not joined by ';'", hint="'or' is written |")
         elif token.kind in CLOSERS.values():
             self.fail("unopened-bracket", f"nothing is open that this '{token.kind}' closes")
         else:

@@ -58,6 +58,8 @@ def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
         _misspelt(tokens, index)
         or _foreign_word(tokens, index)
         or _reserved(tokens[index])
+        or _cut(tokens, index)
+        or _counting(tokens, index)
         or _fused(tokens, index)
         or _missing_blank(tokens, index)
     )
@@ -88,6 +90,29 @@ def _fused(tokens: Sequence[Token], index: int) -> Slip | None:
         text = tokens[index].text
         return Slip("wrong-operator", f"there is no '{text}'", _FUSED[text])
     return None
+
+
+def _cut(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``p :- q & !``."""
+    if tokens[index].kind != "!" or index == 0 or tokens[index - 1].kind not in ("&", ":-"):
+        return None
+    return Slip(
+        "wrong-operator",
+        "there is no cut",
+        "a plan takes the first solution of its condition; rules need conditions that exclude each other",
+    )
+
+
+def _counting(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``X++``."""
+    run = tokens[max(index - 3, 0) : index]
+    if len(run) < 3 or run[0].kind != "variable" or run[1].kind not in ("+", "-"):
+        return None
+    if run[2].kind != run[1].kind or run[1].end != run[2].column:
+        return None
+    sign = run[1].kind
+    hint = f"a variable keeps its value: write Y = X {sign} 1; a belief is changed by -+b(Y)"
+    return Slip("wrong-operator", f"there is no '{sign}{sign}' behind a variable", hint, run[1])
 
 
 def _missing_blank(tokens: Sequence[Token], index: int) -> Slip | None:

@@ -10,7 +10,7 @@ import click
 from jacaros.asl.errors import AslError
 from jacaros.asl.formatting import format_program
 from jacaros.cli.files import existing
-from jacaros.errors import UsageError
+from jacaros.errors import InternalError, UsageError
 from jacaros.mas.checking import files_below
 from jacaros.mas.programs import text_of
 
@@ -41,6 +41,10 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
             after = format_program("<stdin>" if path == _STANDARD_INPUT else str(path), before)
         except AslError as wrong:
             click.echo(wrong, err=True)
+            code = 1
+            continue
+        except InternalError as defect:
+            click.echo(f"jacaros: this is a defect of jacaros, please report it: {defect}", err=True)
             code = 1
             continue
         changed += before != after

@@ -67,6 +67,16 @@ def test_a_wrong_program_is_left_as_it_is_and_the_others_are_laid_out(
     assert (folder / "0.asl").read_text(encoding="utf-8") == "p( "
 
 
+def test_a_program_that_would_change_is_left_as_it_is(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("jacaros.asl.formatting._laid_out", lambda text: "p.")
+    code, output, errors = outcome(capsys, ".")
+    assert (code, output) == (1, "")
+    assert errors.count("would change the meaning of") == 2
+    assert (folder / "a.asl").read_text(encoding="utf-8") == UGLY
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
