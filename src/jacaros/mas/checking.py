@@ -144,12 +144,19 @@ def _check_program(
         own += Suppressions(source).unknown
     if agent is not None and agent.agent_class is not None:
         own = [each for each in own if each.code != NEVER_SELECTED]
-    findings.diagnostics += [each for each in own if not _is_shipped(each)]
+    findings.diagnostics += [each for each in own if _concerns_author(each, path)]
 
 
-def _is_shipped(diagnostic: Diagnostic) -> bool:
-    """Whether the place is in a library that comes with the package: of no use to whom only includes it."""
-    return diagnostic.span is not None and diagnostic.span.file.name.startswith("$")
+def _concerns_author(diagnostic: Diagnostic, path: Path) -> bool:
+    """Whether it is for whoever wrote the program at *path*.
+
+    A library that comes with the package is of no concern; and a plan that stands before an include is often meant to
+    take the place of one in it.
+    """
+    if diagnostic.span is None:
+        return True
+    file = diagnostic.span.file.name
+    return not file.startswith("$") and (diagnostic.code != NEVER_SELECTED or file == str(path))
 
 
 def _with_additions(program: nodes.Program, agent: AgentSpec | None) -> nodes.Program:

@@ -79,6 +79,16 @@ def test_a_folder_is_checked_with_its_projects(folder: Path, capsys: pytest.Capt
     assert found(capsys, "part.asl") == [("part.asl", 1, "unknown-goal")]
 
 
+def test_a_plan_before_an_include_may_take_the_place_of_one_in_it(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "part.asl").write_text("+!go <- .print(part).", encoding="utf-8")
+    (folder / "before.asl").write_text('+!go. { include("part.asl") } !go.', encoding="utf-8")
+    (folder / "behind.asl").write_text('{ include("part.asl") } +!go. !go.', encoding="utf-8")
+    assert found(capsys, "before.asl") == []
+    assert found(capsys, "behind.asl") == [("behind.asl", 1, "plan-never-selected")]
+
+
 def test_projects_are_checked_themselves(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "p.jcm").write_text(
         "mas p {\n  agent bob : warned.asl\n  agent eve : nowhere.asl\n  agent joe : good.asl { focus: thing }\n}\n",
