@@ -73,6 +73,7 @@ def parts() -> list[Part]:
             (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2"),
         ),
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2")),
+        Part("examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml")),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2")),
         Part(
             "browser", (*PYTEST, "tests/unit/inspector", "-m", "browser"), needs="chromium", skips_fail=True

@@ -10,7 +10,7 @@ import heapq
 import itertools
 import selectors
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
@@ -146,6 +146,10 @@ class VirtualClock:
         moments = [timer.when for timer in self._timers[:1]]
         self._move_to(min(moments if limit is None else [*moments, limit]))
         return True
+
+    def pending(self) -> Sequence[Timer]:
+        """The timers that are still to ring, in no order."""
+        return [timer for timer in self._timers if not timer.cancelled]
 
     def _move_to(self, moment: float) -> None:
         while self._timers and self._timers[0].when <= moment:

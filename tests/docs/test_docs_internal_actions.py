@@ -60,7 +60,9 @@ def limits(entry: Entry) -> tuple[float, float]:
 
 
 def test_every_internal_action_has_one_entry() -> None:
-    assert sorted(entry.name for entry in ACTIONS) == sorted(STANDARD)
+    # Those without a dot in front are behind the assertion goals, see docs/reference/testing.md.
+    named = [name for name in STANDARD if not name.startswith("jacaros.")]
+    assert sorted(entry.name for entry in ACTIONS) == sorted(named)
 
 
 def test_every_function_has_one_entry() -> None:

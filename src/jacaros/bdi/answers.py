@@ -38,7 +38,7 @@ class AnswerByPlan:
         answer(agent, self.message, resolve(term))
         frame[0] = None
 
-    def failed(self) -> None:
+    def failed(self, _reason: object) -> None:
         """No plan, or it failed."""
         answer(self.agent, self.message, None)
 

@@ -12,6 +12,7 @@ from jacaros.bdi.intention import Intention
 from jacaros.bdi.internal_action import InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.plan_library import PlanLibrary, Selects
+from jacaros.bdi.probe import Probe
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
@@ -48,6 +49,7 @@ class Circumstance:
         pending_asks: questions whose answer is awaited, by message id.
         meta: whether plans or an observer want to hear of changes of goal states.
         goal_observer: told of the state, text and number of each goal that changes, or None.
+        probe: the test that looks on, or None.
         plans_made: number of plans so far, for the labels of those that have none.
         bodies: compiled forms of plan bodies held by variables.
         goal_conditions: whether plans have goal conditions, which are tested in every cycle.
@@ -106,6 +108,7 @@ class Circumstance:
         self.pending_asks: dict[str, Any] = {}
         self.meta = False
         self.goal_observer: Callable[[str, str, int], None] | None = None
+        self.probe: Probe | None = None
         self.goal_conditions = False
         self.subplans = False
         self.outer_frame: Any = None

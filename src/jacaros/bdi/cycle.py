@@ -419,7 +419,7 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
             meta_events.goal_state(agent, failed[GOAL], failed[2], "executing", _HAS_FAILURE_PLAN)
         return posted
     if intention.on_failed is not None:
-        intention.on_failed()
+        intention.on_failed(reason)
     else:
         _warn_lost(agent, intention, reason)
     if agent.meta:
@@ -441,26 +441,27 @@ def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason)
     what = "an intention" if bottom is None else f"the goal !{text(literal_of(bottom, ()))}"
     where = reason.where()
     place = f" ({where})" if where else ""
-    agent.architecture.log(
-        "warning",
-        f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}",
-    )
+    told = f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
+    agent.architecture.log("warning", told)
+    if agent.probe is not None:
+        agent.probe.lost(told, reason.span())
 
 
 def _lost_in_handler(
     agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
 ) -> None:
     if intention.on_failed is not None:
-        intention.on_failed()
+        intention.on_failed(annotations if isinstance(annotations, FailureReason) else None)
         agent.finish(intention)
         return
     shown = f"-{goal[0].kind}{text(literal_of(goal, ()))}"
     told = (
         f": {annotations.error()}, {annotations.message()}" if isinstance(annotations, FailureReason) else ""
     )
-    agent.architecture.log(
-        "warning", f"no applicable plan for the failure event {shown}; the intention is dropped{told}"
-    )
+    lost = f"no applicable plan for the failure event {shown}; the intention is dropped{told}"
+    agent.architecture.log("warning", lost)
+    if agent.probe is not None:
+        agent.probe.lost(lost, annotations.span() if isinstance(annotations, FailureReason) else None)
     agent.finish(intention)
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
+from jacaros.asl.source import Span
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
@@ -19,7 +20,7 @@ from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import String, Term, Var, atom, bare, functor, functor_of
+from jacaros.terms.values import Functor, String, Term, Var, atom, bare, functor, functor_of
 
 ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
@@ -82,10 +83,18 @@ class FailureReason:
         """``file:line``, or an empty text."""
         return str(self._place.where())
 
+    def span(self) -> Span | None:
+        """The place of the formula that failed, or of the call of the goal without plan; None when there is none."""
+        found: Span | None = self._place.span()
+        return found
+
 
 class _Nowhere:
     def annotations(self) -> tuple[Term, ...]:
         return ()
+
+    def span(self) -> Span | None:
+        return None
 
     def where(self) -> str:
         return ""
@@ -115,6 +124,9 @@ class _StepPlace:
             # The formula holds the very expression that has no value: it is shown as it is written.
             term = String(format_term(self.node)) if isinstance(self.node, nodes.Term) else String("")
         return _code(term, self.node.span, self.plan.file)
+
+    def span(self) -> Span | None:
+        return self.node.span
 
     def where(self) -> str:
         span = self.node.span
@@ -152,22 +164,42 @@ class _GoalPlace:
         span, file = self._call()
         return _code(term, span, file)
 
-    def _call(self) -> tuple[Any, str]:
+    def span(self) -> Span | None:
+        return self._call()[0]
+
+    def _call(self) -> tuple[Span | None, str]:
         if self.caller is None:
             return None, ""
-        plan = self.caller[PLAN]
-        step = self.caller[STEP]
-        following = step.__name__ if step is not None else "None"
-        steps: dict[str, StepInfo] = getattr(step, "steps", plan.steps)
-        for info in steps.values():
-            node = info.node
-            if isinstance(node, (nodes.Achieve, nodes.Test)) and info.next == following:
-                return node.span, plan.file
-        return plan.node.span, plan.file
+        return place_of_call(self.caller, self.goal[0].functor), self.caller[PLAN].file
 
     def where(self) -> str:
         span, file = self._call()
         return f"{file}:{span.line}" if span is not None else file
+
+
+def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
+    """Where the plan of a frame called the goal that it now waits for; *symbol* is the functor of the goal.
+
+    Steps do not know the ones before them.  Several may come before the present one, as at the ends of two branches:
+    those that call a goal of that functor are taken first.
+    """
+    plan = caller[PLAN]
+    following = caller[STEP].__name__ if caller[STEP] is not None else "None"
+    steps: dict[str, StepInfo] = getattr(caller[STEP], "steps", plan.steps)
+    calls = [
+        info.node
+        for info in steps.values()
+        if isinstance(info.node, (nodes.Achieve, nodes.Test)) and info.next == following
+    ]
+    for node in calls:
+        goal = node.goal if isinstance(node, nodes.Achieve) else node.formula
+        if (
+            symbol is not None
+            and isinstance(goal, nodes.Literal)
+            and (goal.functor, len(goal.arguments)) == (symbol.name, symbol.arity)
+        ):
+            return node.span
+    return calls[0].span if calls else plan.node.span
 
 
 def _code(term: Term, span: Any, file: str) -> tuple[Term, ...]:

@@ -33,7 +33,8 @@ class Intention:
         cause: why it was adopted.
         forks: the forks it is a branch of, outermost first, with the number of the branch.
         outer: intention and frame whose sub-plan reacts here to something outside, or None.
-        on_failed: called when it ends in failure, in place of the usual warning.
+        on_failed: called with the reason (`FailureReason`, or None) when it ends in failure, in place of the usual
+            warning.
     """
 
     __slots__ = (
@@ -61,7 +62,7 @@ class Intention:
         self.cause = cause
         self.outer: tuple[Intention, Frame] | None = None
         self.forks: tuple[tuple[Any, int], ...] = ()
-        self.on_failed: Callable[[], None] | None = None
+        self.on_failed: Callable[[Any], None] | None = None
 
     def is_atomic(self) -> bool:
         """Whether a plan on the stack is atomic."""

@@ -135,6 +135,8 @@ class AgentHost:
         body: what carries its actions out, None while there is none.
         make_body: makes the body for the first action; None in a project without environment.
         coroutines: of the project's Python code that run for the agent.
+        intercept: asked first about each action; True when it answers the action itself.  For tests.
+        intercept_stop: the same for the end of the run.
     """
 
     mind: Mind
@@ -146,6 +148,8 @@ class AgentHost:
         self.body: Body | None = None
         self.make_body: Callable[[], Body] | None = None
         self.coroutines = Coroutines(run.activity)
+        self.intercept: Callable[[Act], bool] | None = None
+        self.intercept_stop: Callable[[float, int], bool] | None = None
         self._run = run
         self._ended = False
 
@@ -189,6 +193,8 @@ class AgentHost:
 
     def act(self, act: Act) -> None:
         """Begin an external action; without an environment it fails at once."""
+        if self.intercept is not None and self.intercept(act):
+            return
         if self.body is None and self.make_body is not None:
             self.body = self.make_body()
         if self.body is not None:
@@ -239,7 +245,8 @@ class AgentHost:
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
-        self._run.stop_system(delay, exit_code)
+        if self.intercept_stop is None or not self.intercept_stop(delay, exit_code):
+            self._run.stop_system(delay, exit_code)
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make an agent."""

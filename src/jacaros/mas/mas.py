@@ -51,6 +51,9 @@ class Mas:
         clock: its time; `run` is called on the loop that goes with it.
         console: its outputs.
         options: how to run it.
+        prepare: what is run of a program that was read; all of it unless given.
+        when_made: called with every agent before it begins.
+        when_idle: called whenever no agent has anything to do or to wait for.
 
     Attributes:
         directory: the agents by name.
@@ -61,7 +64,14 @@ class Mas:
     """
 
     def __init__(
-        self, deployment: Deployment, clock: Clock, console: Console, options: RunOptions | None = None
+        self,
+        deployment: Deployment,
+        clock: Clock,
+        console: Console,
+        options: RunOptions | None = None,
+        prepare: Callable[[Program], Program] | None = None,
+        when_made: Callable[[AgentHost], None] | None = None,
+        when_idle: Callable[[], None] | None = None,
     ) -> None:
         self.deployment = deployment
         self.clock = clock
@@ -76,10 +86,15 @@ class Mas:
         self.ros = RosGraph(self.options, clock, deployment.name, deployment.world, log)
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
         self._code = PythonCode(self._modules)
-        self._programs = Programs(deployment.source_paths, lambda text: log(text, "warning"), self._code)
+        self._programs = Programs(
+            deployment.source_paths, lambda text: log(text, "warning"), self._code, prepare
+        )
         self._classes = AgentClasses(
             self._modules, deployment.base_path, lambda warning: log(warning.render(), "warning")
         )
+        self._when_made = when_made
+        self._tell_idle = when_idle or (lambda: self.end(0))
+        self._watches_idle = self.options.until_idle or when_idle is not None
         self._mailboxes = Mailboxes(self._mailbox_of)
         self.services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
@@ -171,6 +186,8 @@ class Mas:
             host.make_body = lambda: self.surroundings().make_body(host)
         if self._surroundings is not None:
             host.body = self._surroundings.situated_body(host, spec)
+        if self._when_made is not None:
+            self._when_made(host)
         return host
 
     def _plans_of(self, program: Program) -> ProgramPlans:
@@ -223,7 +240,7 @@ class Mas:
         self._code.close()
 
     def _when_idle(self) -> None:
-        if self.options.until_idle and not self._ending:
+        if self._watches_idle and not self._ending:
             self._idle_looks += 1
             self._look_again(self._idle_looks, _HOPS)
 
@@ -231,7 +248,7 @@ class Mas:
         if look != self._idle_looks or self.activity.pending or not self.scheduler.idle or self._ending:
             return
         if hops == 0:
-            self.end(0)
+            self._tell_idle()
             return
         asyncio.get_running_loop().call_soon(self._look_again, look, hops - 1)
 

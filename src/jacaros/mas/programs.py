@@ -20,6 +20,8 @@ NEVER_SELECTED = "plan-never-selected"
 """What is told of plans behind those that are always taken first: agents of a class of their own may take them."""
 
 _LIBRARY = "$jacaros/"
+TEST_LIBRARY = ("tester_agent.asl", "test_assert.asl", "test_manager.asl", "test_performance.asl")
+"""Files that programs of Jason include for their tests; ours stand for them."""
 
 
 class Programs:
@@ -29,12 +31,20 @@ class Programs:
         folders: where programs and included files are looked for, in order.
         warn: takes the text of a warning about a program.
         code: the project's Python code, which adds internal actions and functions.
+        prepare: what is run of a program that was read; all of it unless given.
     """
 
-    def __init__(self, folders: Sequence[Path], warn: Callable[[str], None], code: PythonCode) -> None:
+    def __init__(
+        self,
+        folders: Sequence[Path],
+        warn: Callable[[str], None],
+        code: PythonCode,
+        prepare: Callable[[nodes.Program], nodes.Program] | None = None,
+    ) -> None:
         self._folders = tuple(folders)
         self._code = code
         self._warn = warn
+        self._prepare = prepare or (lambda program: program)
         self._read: dict[Path, nodes.Program] = {}
 
     def load_all(self, agents: Sequence[AgentSpec]) -> list[nodes.Program]:
@@ -82,9 +92,10 @@ class Programs:
         program = self._read.get(path)
         if program is None:
             program, warnings = self._parse(path)
+            program = self._prepare(program)
             found = check_for_run(program, KnownActions(self._code.actions, self._code.hint))
             for warning in wanted([*warnings, *found]):
-                if not (chooses and warning.code == NEVER_SELECTED):
+                if _concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):
                     self._warn(warning.render())
             self._read[path] = program
         return program
@@ -128,17 +139,44 @@ class Programs:
 
     def include(self, path: str, including: str) -> tuple[str, str]:
         """Name and text of an included file: beside the including one, in one of the folders, or (``$jacaros/…``)
-        in the library that comes with the package.
+        in the library that comes with the package.  Jason's files for tests are in that library too, whatever folder
+        is written before their name.
 
         Raises:
             FileNotFoundError: there is none.
         """
         if path.startswith(_LIBRARY):
-            found = resources.files("jacaros.asl").joinpath("library", path.removeprefix(_LIBRARY))
-            return path, found.read_text(encoding="utf-8")
+            return _of_library(path.removeprefix(_LIBRARY))
         beside = Path(including).parent / path
-        file = beside if beside.is_file() else self.find(path)
+        try:
+            file = beside if beside.is_file() else self.find(path)
+        except FileNotFoundError:
+            name = path.rpartition("/")[2]
+            if name in TEST_LIBRARY:
+                return _of_library(name)
+            raise
         return str(file), file.read_text(encoding="utf-8")
+
+
+def _concerns_author(warning: Diagnostic, path: Path) -> bool:
+    """Whether a warning is for whoever wrote the program at *path*.
+
+    A library that comes with the package is of no concern; and a plan that stands before an include is often meant to
+    take the place of one in it, as in tests.
+    """
+    if warning.span is None:
+        return True
+    file = warning.span.file.name
+    return not file.startswith("$") and (warning.code != NEVER_SELECTED or file == str(path))
+
+
+def library_file(name: str) -> Path:
+    """The path of a program that comes with the package; it need not be there."""
+    return Path(str(resources.files("jacaros.asl").joinpath("library", name)))
+
+
+def _of_library(name: str) -> tuple[str, str]:
+    return f"{_LIBRARY}{name}", library_file(name).read_text(encoding="utf-8")
 
 
 def text_of(path: Path) -> str:

@@ -20,6 +20,7 @@ from jacaros.mas.deployment import (
 )
 from jacaros.mas.jcm import read_jcm
 from jacaros.mas.mas2j import read_mas2j
+from jacaros.mas.programs import TEST_LIBRARY, library_file
 from jacaros.mas.project_cursor import ProjectCursor
 from jacaros.mas.project_parts import AgentPart, FocusPart, ProjectPart, WorkspacePart, Written
 
@@ -161,6 +162,8 @@ class _Resolver:
         for folder in self.source_paths:
             if (folder / file).is_file():
                 return folder / file
+        if Path(file).name in TEST_LIBRARY:
+            return library_file(Path(file).name)
         self._report(
             f"the program of agent '{agent.name}' is not found: {file}",
             agent.span,

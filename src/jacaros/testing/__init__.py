@@ -1,6 +1,60 @@
-"""For tests of agent programs and projects."""
+"""For tests of agent programs and projects.
 
-from jacaros.testing.judging import Verdict, judge
-from jacaros.testing.run import RunResult, run_project
+Each name is imported when it is first used: pytest imports this package whenever it starts, for `pytest_plugin`.
+"""
 
-__all__ = ["RunResult", "Verdict", "judge", "run_project"]
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jacaros.testing.harness import AgentHarness
+    from jacaros.testing.judging import Verdict, judge
+    from jacaros.testing.junit import write_junit
+    from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
+    from jacaros.testing.recorded import ActionFailed, PursuedGoal, RecordedAct, SentMessage
+    from jacaros.testing.run import RunResult, run_project
+    from jacaros.testing.suites import AgentTest, Suite, collect, suite_of
+    from jacaros.testing.trial import TrialOptions, run_suite, run_suites
+
+__all__ = [
+    "ActionFailed",
+    "AgentHarness",
+    "AgentTest",
+    "Outcome",
+    "Problem",
+    "PursuedGoal",
+    "RecordedAct",
+    "RunResult",
+    "SentMessage",
+    "Suite",
+    "SuiteOutcome",
+    "TrialOptions",
+    "Verdict",
+    "collect",
+    "judge",
+    "run_project",
+    "run_suite",
+    "run_suites",
+    "suite_of",
+    "write_junit",
+]
+
+_MODULES = {
+    "harness": ("AgentHarness",),
+    "judging": ("Verdict", "judge"),
+    "junit": ("write_junit",),
+    "outcomes": ("Outcome", "Problem", "SuiteOutcome"),
+    "recorded": ("ActionFailed", "PursuedGoal", "RecordedAct", "SentMessage"),
+    "run": ("RunResult", "run_project"),
+    "suites": ("AgentTest", "Suite", "collect", "suite_of"),
+    "trial": ("TrialOptions", "run_suite", "run_suites"),
+}
+_HOME = {name: module for module, names in _MODULES.items() for name in names}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__} has no attribute {name}")
+    value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value

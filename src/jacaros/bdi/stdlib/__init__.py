@@ -2,6 +2,7 @@
 
 from jacaros.bdi.stdlib import (
     agents,
+    assertions,
     beliefs,
     collections,
     directory,
@@ -24,6 +25,7 @@ from jacaros.bdi.stdlib import (
 
 __all__ = [
     "agents",
+    "assertions",
     "beliefs",
     "collections",
     "directory",

@@ -1,0 +1,38 @@
+// Tests of the patrol: the corners in their order, and the end of the shift.
+
+{ include("$jacaros/tester_agent.asl") }
+
++!start : not ready.
+
+{ include("../robot.asl") }
+
+@goes_round_the_corners[test]
++!test_corners
+  <- !fake_action(driveTo(_, _), after(1000));
+     !!patrol;
+     .wait(visits(5), 10000);
+     !assert_did(driveTo(2, 0), 2);
+     !assert_did(driveTo(2, 2));
+     !assert_did(driveTo(0, 2));
+     !assert_did(driveTo(0, 0));
+     !assert_printed("round 1, corner 4");
+     !assert_printed("round 2, corner 1").
+
+@ends_the_shift_after_its_recharges[test]
++!test_shift
+  <- !fake_action(.stopMAS);
+     -+recharges(10);
+     -+visits(43);
+     !patrol;
+     !assert_not_did(driveTo(_, _));
+     !assert_printed("43 corners, that is 10 rounds and 3 of the next");
+     !assert_printed("10 recharges, and never less than 100 %");
+     !assert_did(.stopMAS).
+
+@remembers_the_lowest_percentage_only[test]
++!test_lowest
+  <- !remember(30);
+     !remember(17);
+     !remember(25);
+     .findall(Least, lowest(Least), All);
+     !assert_true(All == [17]).

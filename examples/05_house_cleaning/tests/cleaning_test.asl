@@ -1,0 +1,70 @@
+// Tests of how the rooms are cleaned; wheels, battery and household are faked.
+
+{ include("$jacaros/tester_agent.asl") }
+
++!start : not ready.
+
+{ include("../robot.asl") }
+
++!fakes
+  <- !fake_action(driveTo(_, _), after(1000));
+     !fake_action(clean(_), after(5000));
+     !fake_action(rotate(_));
+     !fake_action(operationRecharge, after(2000));
+     !fake_action(updateWhereAmI);
+     !fake_action(.stopMAS).
+
+@cleans_the_room_that_it_is_in[test]
++!test_room
+  <- !fakes;
+     !clean_room(2, kitchen);
+     !assert_did(clean(2), 1);
+     !assert_false(cleaning(_)).
+
+@knows_what_it_is_cleaning[test]
++!test_cleaning
+  <- !fakes;
+     !!clean_room(2, kitchen);
+     .wait(1000);
+     !assert_true(cleaning(kitchen)).
+
+@counts_a_round_in_the_hallway[test]
++!test_round
+  <- !fakes;
+     !clean_room(0, hallway);
+     !assert_not_did(clean(_));
+     !assert_true(done(1));
+     !assert_printed("hallway: round 1 is done").
+
+@comes_back_into_its_room_after_a_recharge[test]
++!test_return
+  <- !fakes;
+     +cleaning(bathroom);
+     +diagnostics("Low Battery");
+     !assert_did(driveTo(1, 1), 1);
+     !assert_did(operationRecharge, 1);
+     !assert_printed("back into the bathroom");
+     !assert_did(driveTo(0, 2), 1).
+
+@stays_at_the_dock_when_it_was_between_rooms[test]
++!test_between
+  <- !fakes;
+     +diagnostics("Low Battery");
+     !assert_did(driveTo(_, _), 1);
+     !assert_did(driveTo(1, 1)).
+
+@stops_after_its_rounds[test]
++!test_end
+  <- !fakes;
+     -+done(4);
+     -+recharges(3);
+     !clean_house;
+     !assert_printed("The house is clean: 4 rounds, the battery charged 3 times.");
+     !assert_did(.stopMAS);
+     !assert_not_did(updateWhereAmI).
+
+@tells_what_it_does[test]
++!test_telling
+  <- +vacuum("", kitchen);  // nothing yet
+     +vacuum("carpet", kitchen);
+     !assert_printed("kitchen: vacuum the carpet").

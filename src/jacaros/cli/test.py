@@ -1,0 +1,213 @@
+"""``jacaros test FILE|FOLDER ...``."""
+
+import os
+import sys
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from jacaros.errors import UsageError
+
+if TYPE_CHECKING:
+    from jacaros.testing.outcomes import SuiteOutcome
+    from jacaros.testing.suites import AgentTest, Suite
+    from jacaros.testing.trial import TrialOptions
+
+_COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
+
+
+@click.command("test", short_help="Run the tests of agent programs.")
+@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
+@click.option(
+    "-k", "pattern", metavar="PATTERN", help="Only tests whose FILE::NAME has it; * stands for anything."
+)
+@click.option("-x", "first", is_flag=True, help="End after the first test that fails.")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0.0, min_open=True),
+    default=60.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds of the run's clock that a test may take; a label [test, timeout(Ms)] has its own.",
+)
+@click.option(
+    "--cycles",
+    type=click.IntRange(1),
+    default=1_000_000,
+    show_default=True,
+    metavar="N",
+    help="Reasoning cycles that a test may take.",
+)
+@click.option(
+    "--patience",
+    type=click.FloatRange(0.0),
+    default=300.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds of real time that a test may take; 0 for any.",
+)
+@click.option(
+    "--clock",
+    type=click.Choice(["real", "fast"]),
+    default="fast",
+    show_default=True,
+    help="In real time, or as fast as the machine can.",
+)
+@click.option("--seed", type=int, default=0, show_default=True, metavar="N", help="Of all random numbers.")
+@click.option(
+    "--world", metavar="FILE", help="World file, or the name of a world, in place of the project's own."
+)
+@click.option(
+    "--shared", is_flag=True, help="One run for all tests of a file, as on Jason; else one for each."
+)
+@click.option(
+    "--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write the outcomes as JUnit XML."
+)
+@click.option("--slowest", "slow", type=int, default=3, metavar="N", help="How many slow tests are told (3).")
+@click.option(
+    "--color",
+    type=click.Choice(["auto", "always", "never"]),
+    default="auto",
+    show_default=True,
+    help="Colours in the report; auto looks for a terminal and NO_COLOR.",
+)
+@click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="Show how long tests take, and what agents print in those that pass.",
+)
+def command(
+    paths: tuple[Path, ...],
+    pattern: str | None,
+    first: bool,
+    timeout: float,
+    cycles: int,
+    patience: float,
+    clock: str,
+    seed: int,
+    world: str | None,
+    shared: bool,
+    junit: Path | None,
+    slow: int,
+    color: str,
+    verbose: bool,
+) -> int:
+    """Run the tests in files and folders (by default, in this folder).
+
+    A test is a plan whose label says so: `@charges[test] +!test_charging <- ...`. In folders all programs with such
+    plans are taken, and all projects called `test_...` or `..._test`.
+    """  # fmt: skip
+    # Imported here: with it comes all that runs a system.
+    from jacaros.testing.junit import write_junit
+    from jacaros.testing.report import failures, slowest, summary
+    from jacaros.testing.suites import collect
+    from jacaros.testing.trial import TrialOptions
+
+    paint = _Paint(color)
+    suites = _chosen(collect(paths or (Path(),)), paths, pattern)
+    options = TrialOptions(clock == "fast", seed, timeout, cycles, patience, world, shared)
+    outcomes = _Progress(options, paint, pattern, first, verbose).run(suites)
+    for line in (*failures(outcomes, paint), *slowest(outcomes, slow), "", summary(outcomes, seed, paint)):
+        click.echo(line, color=True)
+    if junit is not None:
+        try:
+            write_junit(junit, outcomes)
+        except OSError as error:
+            raise UsageError(f"{junit} cannot be written: {error}") from error
+    return 0 if all(outcome.passed for outcome in outcomes) else 1
+
+
+class _Paint:
+    """Colours, where they are wanted."""
+
+    def __init__(self, color: str) -> None:
+        if color == "auto":
+            self._wanted = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+        else:
+            self._wanted = color == "always"
+
+    def __call__(self, text: str, kind: str) -> str:
+        if not self._wanted:
+            return text
+        return click.style(
+            text, fg=_COLOURS.get(kind), bold=kind == "failed" or None, dim=kind == "quiet" or None
+        )
+
+
+class _Progress:
+    """Runs suites and tells each test as it ends."""
+
+    def __init__(
+        self, options: "TrialOptions", paint: _Paint, pattern: str | None, first: bool, verbose: bool
+    ) -> None:
+        self._options, self._paint, self._pattern = options, paint, pattern
+        self._first, self._verbose = first, verbose
+
+    def run(self, suites: "Sequence[Suite]") -> "list[SuiteOutcome]":
+        """Run all tests that the pattern means, or up to the first that fails."""
+        from jacaros.testing.outcomes import SuiteOutcome
+
+        outcomes = []
+        for suite in suites:
+            for warning in suite.warnings:
+                click.echo(warning, err=True)
+            click.echo(self._paint(str(suite.path), "place"), color=True)
+            outcome = SuiteOutcome(suite)
+            outcomes.append(outcome)
+            self._run(outcome)
+            if self._first and not outcome.passed:
+                break
+        return outcomes
+
+    def _run(self, suite: "SuiteOutcome") -> None:
+        from jacaros.testing.report import line_of
+        from jacaros.testing.trial import run_suite
+
+        if suite.suite.error is not None:
+            click.echo(f"  {self._paint('ERROR ', 'failed')}  the file cannot be run", color=True)
+            return
+        for outcome in run_suite(
+            suite.suite, self._options, lambda test: _is_meant(suite.suite, test, self._pattern)
+        ):
+            suite.outcomes.append(outcome)
+            click.echo(line_of(outcome, self._paint, self._verbose), color=True)
+            if self._verbose and outcome.passed:
+                for text in outcome.output:
+                    click.echo(self._paint(f"          {text}", "quiet"), color=True)
+            if self._first and not outcome.passed:
+                return
+
+
+def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) -> "list[Suite]":
+    """The suites that have something to run.
+
+    Raises:
+        UsageError: there is nothing.
+    """
+    places = ", ".join(map(str, paths)) or "this folder"
+    if not any(suite.tests or suite.error is not None for suite in found):
+        raise UsageError(
+            f"there are no tests in {places}; a test is a plan for a goal whose label says so: "
+            "@name[test] +!goal <- ..."
+        )
+    chosen = [
+        suite
+        for suite in found
+        if suite.error is not None or any(_is_meant(suite, test, pattern) for test in suite.tests)
+    ]
+    if not any(suite.tests for suite in chosen) and not any(suite.error is not None for suite in chosen):
+        names = [f"{suite.path}::{test.name}" for suite in found for test in suite.tests]
+        raise UsageError(
+            f"no test in {places} is meant by -k {pattern}; there are {', '.join(names[:5])} ..."
+        )
+    return chosen
+
+
+def _is_meant(suite: "Suite", test: "AgentTest", pattern: str | None) -> bool:
+    if pattern is None:
+        return True
+    return fnmatchcase(f"{suite.path}::{test.name}".lower(), f"*{pattern.lower()}*")

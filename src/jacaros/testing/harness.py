@@ -1,0 +1,421 @@
+"""One agent in the hands of a Python test: given beliefs, percepts, messages and goals, made to reason, and looked at.
+
+No environment, no other agents, no waiting: the agent's actions and messages are recorded, and its time is virtual and
+moves only when the test lets it::
+
+    def test_a_low_battery_sends_the_robot_to_the_dock() -> None:
+        agent = AgentHarness(Path("robot.asl"))
+        agent.perceive("battery(15)")
+        agent.run()
+        agent.assert_did("driveTo(1, 1)")
+        agent.act("driveTo").fail("blocked")
+        agent.run()
+        agent.assert_printed("I need help")
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NoReturn
+
+import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import load_program, parse_formula, parse_literal, parse_term
+from jacaros.bdi import belief_update, goals
+from jacaros.bdi.act import Act, Percept
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.options import Options
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.watched import WatchedGoal
+from jacaros.body.values import to_value
+from jacaros.clock import Timer
+from jacaros.compiler.lowering import Names, lower_value
+from jacaros.mas.programs import Programs
+from jacaros.mas.python_code import PythonCode
+from jacaros.project_modules import ProjectModules
+from jacaros.terms.order import annotation_set
+from jacaros.terms.text import text
+from jacaros.terms.unifier import Trail, is_ground, rename, resolve, undo, unify
+from jacaros.terms.values import SOURCE_PERCEPT, Term, annotations_of, bare
+from jacaros.testing.port import HarnessPort
+from jacaros.testing.recorded import Action, PursuedGoal, RecordedAct, SentMessage
+
+_QUANTUM = 50
+_SHOWN = 20
+_LONGEST = 3600.0
+"""Seconds of virtual time after which `AgentHarness.run` gives up on an agent that never gets idle."""
+
+
+class AgentHarness:
+    """An agent under test.
+
+    Literals, goals and formulae are given as text, in the syntax of the language.
+
+    Args:
+        program: the program as text, or the path of a file.
+        name: of the agent.
+        actions: functions that answer external actions, by name, see `RecordedAct.answer`.  Actions without one stay
+            pending until the test ends them, see `act`.
+        others: names of the agents that can be sent messages; all names can if it is None.
+        folders: where included files are looked for, beside the folder of the program.
+        seed: of the agent's random numbers.
+
+    Attributes:
+        prints: what the agent has printed, line by line.
+        logs: what was told to people, each as ``level: text``.
+        acts: the external actions begun, oldest first.
+        sent: the messages sent, oldest first.
+        files: texts of the files that it would have written, by path.
+        exit_code: the code of ``.stopMAS``; None while the program has not called it.
+        mind: the agent itself, for what this class does not offer.
+
+    Raises:
+        AslError: the program is wrong.
+    """
+
+    __test__ = False
+
+    def __init__(
+        self,
+        program: str | Path,
+        *,
+        name: str = "agent",
+        actions: Mapping[str, Action] | None = None,
+        others: Collection[str] | None = None,
+        folders: Sequence[Path] = (),
+        seed: int = 0,
+    ) -> None:
+        self.name = name
+        self.others = others
+        self.prints: list[str] = []
+        self.logs: list[str] = []
+        self.acts: list[RecordedAct] = []
+        self.sent: list[SentMessage] = []
+        self.files: dict[str, str] = {}
+        self.exit_code: int | None = None
+        self._actions = dict(actions or {})
+        self._by_number: dict[int, RecordedAct] = {}
+        self._asked = 0
+        file = program if isinstance(program, Path) else Path(f"{name}.asl")
+        written = program.read_text(encoding="utf-8") if isinstance(program, Path) else program
+        code = PythonCode(ProjectModules(file.parent, *folders))
+        programs = Programs((file.parent, *folders), lambda told: self.logs.append(f"warning: {told}"), code)
+        self._port = HarnessPort(self, seed, programs, file)
+        tree, _ = load_program(str(file), written, programs.include, code.functions)
+        wrong = code.take_errors()
+        if wrong:
+            raise AslError(wrong)
+        self.mind = Agent(name, tree, self._port, Options(), code.actions)
+        self.mind.start()
+
+    # ---- giving
+
+    def add_belief(self, *literals: str) -> None:
+        """Let the agent believe something, as its own note unless the literal names a source; the events are external."""
+        for literal in literals:
+            belief_update.tell(self.mind, _literal(literal))
+
+    def remove_belief(self, *literals: str) -> None:
+        """Take the agent's own notes (or what the named source told) away; the first match of each."""
+        for literal in literals:
+            belief_update.untell(self.mind, _literal(literal))
+
+    def perceive(self, *literals: str) -> None:
+        """Let the agent perceive something from now on: beliefs with ``source(percept)``."""
+        self._perceive("add", literals)
+
+    def perceive_no_more(self, *literals: str) -> None:
+        """End percepts that were given by `perceive`; written as they were."""
+        self._perceive("remove", literals)
+
+    def signal(self, *literals: str) -> None:
+        """Let the agent notice something that does not last: an event, no belief."""
+        self._perceive("signal", literals)
+
+    def _perceive(self, kind: str, literals: Sequence[str]) -> None:
+        percepts = []
+        for literal in literals:
+            term = _literal(literal)
+            if not is_ground(term):
+                raise ValueError(f"a percept has no variables: {literal}")
+            annotations = annotation_set((*annotations_of(term), SOURCE_PERCEPT))
+            percepts.append(Percept(kind, bare(term), annotations))
+        self.mind.perceive(percepts)
+
+    def receive(self, sender: str, performative: str, content: str) -> None:
+        """Let the agent receive a message: ``agent.receive("boss", "achieve", "clean(kitchen)")``."""
+        self._asked += 1
+        message = SpeechAct(
+            performative, sender, self.name, lower_value(parse_term(content)), f"test{self._asked}"
+        )
+        self.mind.receive(message)
+
+    def achieve(self, goal: str) -> PursuedGoal:
+        """Give the agent a goal, with an intention of its own; tells later what became of it."""
+        return PursuedGoal(goal, WatchedGoal(self.mind, _literal(goal)))
+
+    # ---- letting it reason
+
+    def step(self, cycles: int = 1) -> bool:
+        """Let it make at most so many reasoning cycles; no time passes.  Whether there is more to do."""
+        return not self._stopped and self.mind.run(cycles)
+
+    def run(self, seconds: float | None = None, cycles: int = 100_000) -> None:
+        """Let it reason.
+
+        Args:
+            seconds: for so long in virtual time; without, until it has nothing to do and waits for no time to pass.
+            cycles: at most so many reasoning cycles.
+
+        Raises:
+            AssertionError: it made that many cycles, or went on for an hour of virtual time.
+        """
+        __tracebackhide__ = True
+        over: list[bool] = []
+        end = self._port.clock.call_later(_LONGEST if seconds is None else seconds, lambda: over.append(True))
+        while not self._stopped:
+            cycles = self._reason(cycles)
+            if over or self._stopped:
+                break
+            if seconds is None and self._timers_left(end) == 0:
+                break
+            self._port.clock.advance()
+        end.cancel()
+        if over and seconds is None:
+            self._complain("it went on for an hour: use run(seconds=...)")
+
+    def _reason(self, cycles: int) -> int:
+        __tracebackhide__ = True
+        while not self._stopped and self.mind.run(_QUANTUM):
+            cycles -= _QUANTUM
+            if cycles <= 0:
+                self._complain("it made very many reasoning cycles without an end: an endless loop?")
+        return cycles
+
+    def _timers_left(self, own: Timer) -> int:
+        return sum(1 for timer in self._port.clock.pending() if timer is not own)
+
+    @property
+    def time(self) -> float:
+        """Seconds of virtual time since the beginning."""
+        return self._port.clock.elapsed
+
+    @property
+    def _stopped(self) -> bool:
+        return self.exit_code is not None
+
+    # ---- called by the port
+
+    def act_of(self, number: int) -> RecordedAct:
+        """The act of that number."""
+        return self._by_number[number]
+
+    def begin(self, act: Act) -> None:
+        """The agent begins an external action."""
+        recorded = RecordedAct(act, self.mind.complete)
+        self.acts.append(recorded)
+        self._by_number[act.id] = recorded
+        function = self._actions.get(recorded.name)
+        if function is not None:
+            recorded.answer(function)
+
+    def send(self, message: SpeechAct) -> bool:
+        """It sends a message; False when there is no such agent."""
+        if message.receiver == self.name:
+            self.mind.receive(message)
+            return True
+        if self.others is not None and message.receiver not in self.others:
+            return False
+        self.sent.append(SentMessage(message))
+        return True
+
+    def stop(self, exit_code: int) -> None:
+        """It ends the run."""
+        self.exit_code = exit_code
+        self.mind.stopped = True
+
+    # ---- asking
+
+    def act(self, pattern: str) -> RecordedAct:
+        """The oldest pending act of that name, or that matches the pattern (``driveTo(_, 2)``).
+
+        Raises:
+            AssertionError: there is none.
+        """
+        __tracebackhide__ = True
+        wanted = _literal(pattern)
+        pending = [act for act in self.acts if act.pending]
+        found = next((act for act in pending if act.name == pattern or _matches(wanted, act.term)), None)
+        if found is None:
+            self._complain(f"no act {pattern} is pending")
+        return found
+
+    def answers(self, formula: str) -> list[dict[str, Any]]:
+        """All answers of a formula (``battery(L) & L < 20``): values by the names of its variables, as plain values."""
+        names = Names()
+        term = lower_value(parse_formula(formula), names.__getitem__)
+        found = []
+        for _ in self.mind.context.answers(term):
+            found.append({name: to_value(resolve(v)) for name, v in names.items() if name[0] != "_"})
+        undo(self.mind.trail, 0)
+        return found
+
+    def believes(self, formula: str) -> bool:
+        """Whether a formula holds."""
+        return bool(self.answers(formula))
+
+    @property
+    def beliefs(self) -> list[str]:
+        """All beliefs with their annotations, as text."""
+        return [text(literal) for literal in self.mind.beliefs.literals()]
+
+    @property
+    def goals(self) -> list[str]:
+        """All goals that it pursues or is about to, as text without annotations."""
+        return [text(bare(goal)) for goal, _ in goals.desires(self.mind)]
+
+    @property
+    def intentions(self) -> list[list[str]]:
+        """The goals of each intention, the one that it began with first, as text without annotations."""
+        stacks = [
+            [text(bare(goal)) for goal in reversed(goals.goal_literals(intention))]
+            for intention in self.mind.alive.values()
+        ]
+        return [stack for stack in stacks if stack]
+
+    # ---- asserting
+
+    def assert_believes(self, *formulae: str) -> None:
+        """Assert that each formula holds."""
+        __tracebackhide__ = True
+        for formula in formulae:
+            if not self.believes(formula):
+                self._complain(f"it does not believe {formula}")
+
+    def assert_believes_not(self, *formulae: str) -> None:
+        """Assert that none of the formulae holds."""
+        __tracebackhide__ = True
+        for formula in formulae:
+            if self.believes(formula):
+                self._complain(f"it believes {formula}")
+
+    def assert_pursues(self, goal: str) -> None:
+        """Assert that a goal that matches is pursued."""
+        __tracebackhide__ = True
+        if not self._pursues(goal):
+            self._complain(f"it does not pursue !{goal}")
+
+    def assert_pursues_not(self, goal: str) -> None:
+        """Assert that no goal that matches is pursued."""
+        __tracebackhide__ = True
+        if self._pursues(goal):
+            self._complain(f"it pursues !{goal}")
+
+    def _pursues(self, goal: str) -> bool:
+        pattern = _literal(goal)
+        return any(_matches(pattern, each) for each, _ in goals.desires(self.mind))
+
+    def assert_idle(self) -> None:
+        """Assert that it has no goal and nothing to do."""
+        __tracebackhide__ = True
+        if self.goals or not self.mind.is_idle():
+            self._complain("it is not idle")
+
+    def assert_achieved(self, goal: PursuedGoal) -> None:
+        """Assert that a goal of this test was achieved."""
+        __tracebackhide__ = True
+        if not goal.achieved:
+            self._complain(f"not achieved: {goal}")
+
+    def assert_failed(self, goal: PursuedGoal, reason: str | None = None) -> None:
+        """Assert that a goal of this test failed; with a reason, that it is among those of the failure.
+
+        The reasons are terms such as ``error(no_relevant)`` and ``env_failure_reason(blocked(wall))``.
+        """
+        __tracebackhide__ = True
+        if not goal.failed:
+            self._complain(f"it did not fail: {goal}")
+        if reason is not None and not any(_matches(_literal(reason), each) for each in goal.reasons):
+            self._complain(f"it failed for another reason than {reason}: {goal}")
+
+    def assert_printed(self, part: str) -> None:
+        """Assert that a printed line has this in it."""
+        __tracebackhide__ = True
+        if not any(part in line for line in self.prints):
+            self._complain(f"it did not print {part!r}")
+
+    def assert_printed_not(self, part: str) -> None:
+        """Assert that no printed line has this in it."""
+        __tracebackhide__ = True
+        if any(part in line for line in self.prints):
+            self._complain(f"it printed {part!r}")
+
+    def assert_did(self, *actions: str) -> None:
+        """Assert that actions that match were begun, in this order; others may have come between."""
+        __tracebackhide__ = True
+        begun = iter(self.acts)
+        for action in actions:
+            pattern = _literal(action)
+            if not any(_matches(pattern, act.term) for act in begun):
+                order = " in this order" if len(actions) > 1 else ""
+                self._complain(f"it did not do {', '.join(actions)}{order}")
+
+    def assert_did_not(self, *actions: str) -> None:
+        """Assert that no action that matches one of these was begun."""
+        __tracebackhide__ = True
+        for action in actions:
+            pattern = _literal(action)
+            if any(_matches(pattern, act.term) for act in self.acts):
+                self._complain(f"it did {action}")
+
+    def assert_sent(self, receiver: str, performative: str, content: str) -> None:
+        """Assert that such a message was sent; the content is a pattern."""
+        __tracebackhide__ = True
+        if not self._has_sent(receiver, performative, content):
+            self._complain(f"it did not send {performative} {content} to {receiver}")
+
+    def assert_sent_not(self, receiver: str, performative: str, content: str) -> None:
+        """Assert that no such message was sent."""
+        __tracebackhide__ = True
+        if self._has_sent(receiver, performative, content):
+            self._complain(f"it sent {performative} {content} to {receiver}")
+
+    def _has_sent(self, receiver: str, performative: str, content: str) -> bool:
+        pattern = lower_value(parse_term(content))
+        return any(
+            (message.receiver, message.performative) == (receiver, performative)
+            and _matches(pattern, message.term)
+            for message in self.sent
+        )
+
+    def __str__(self) -> str:
+        """All that can be seen of the agent, for people."""
+        parts = {
+            "beliefs": self.beliefs,
+            "goals": [f"!{goal}" for goal in self.goals],
+            "acts": [f"{act}{' (pending)' if act.pending else ''}" for act in self.acts],
+            "sent": [repr(message) for message in self.sent],
+            "printed": self.prints,
+            "logged": self.logs,
+        }
+        lines = [f"agent {self.name} at {self.time:g} s"]
+        for title, shown in parts.items():
+            if shown:
+                rest = [f"... and {len(shown) - _SHOWN} before"] if len(shown) > _SHOWN else []
+                lines += [f"  {title}:", *(f"    {line}" for line in (*rest, *shown[-_SHOWN:]))]
+        return "\n".join(lines)
+
+    def _complain(self, told: str) -> NoReturn:
+        __tracebackhide__ = True
+        raise AssertionError(f"{told}\n{self}")
+
+
+def _literal(written: str) -> Term:
+    return lower_value(parse_literal(written))
+
+
+def _matches(pattern: Term, term: Term) -> bool:
+    """Whether a pattern unifies with a term; annotations count only where the pattern has some."""
+    trail = Trail()
+    found = unify(pattern, rename(term), trail)
+    undo(trail, 0)
+    return found

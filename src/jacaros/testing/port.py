@@ -1,0 +1,133 @@
+"""The port of an agent under test to its harness."""
+
+from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
+from pathlib import Path
+from random import Random
+from typing import Any, Protocol
+
+from jacaros.bdi.act import Act
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.clock import Timer, VirtualClock, run
+from jacaros.mas.coroutines import Ended
+from jacaros.mas.programs import Programs
+from jacaros.testing.recorded import RecordedAct
+
+
+class Harness(Protocol):
+    """What the port asks of the harness."""
+
+    name: str
+    others: Collection[str] | None
+    prints: list[str]
+    logs: list[str]
+    files: dict[str, str]
+
+    def begin(self, act: Act) -> None:
+        """The agent begins an external action."""
+
+    def act_of(self, number: int) -> RecordedAct:
+        """An action that it has begun."""
+
+    def send(self, message: SpeechAct) -> bool:
+        """It sends a message; False when there is no such agent."""
+
+    def stop(self, exit_code: int) -> None:
+        """It ends the run."""
+
+
+class HarnessPort:
+    """The agent's port to its host, `jacaros.bdi.architecture.Architecture`."""
+
+    def __init__(self, harness: Harness, seed: int, programs: Programs, file: Path) -> None:
+        self.random = Random(seed)
+        self.clock = VirtualClock()
+        self._harness = harness
+        self._programs, self._file = programs, file
+        self._services: list[str] = []
+
+    def now(self) -> float:
+        return self.clock.now()
+
+    def ready(self) -> None:
+        pass
+
+    def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
+        return self.clock.call_later(delay, callback)
+
+    def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> Timer:
+        # Its waiting takes no time here: it is run to its end at once, and told in the next cycle that looks at timers.
+        result: object = None
+        error: BaseException | None = None
+        try:
+            result = run(lambda: coroutine, VirtualClock())
+        except Exception as wrong:
+            error = wrong
+        return self.clock.call_later(0.0, lambda: ended(result, error))
+
+    def act(self, act: Act) -> None:
+        self._harness.begin(act)
+
+    def cancel_act(self, act_id: int) -> None:
+        act = self._harness.act_of(act_id)
+        act.pending, act.cancelled = False, True
+
+    def suspend_act(self, act_id: int) -> None:
+        self._harness.act_of(act_id).paused = True
+
+    def resume_act(self, act_id: int) -> None:
+        self._harness.act_of(act_id).paused = False
+
+    def send(self, message: SpeechAct) -> bool:
+        return self._harness.send(message)
+
+    def agent_names(self) -> Sequence[str]:
+        return (self._harness.name, *(self._harness.others or ()))
+
+    def print(self, text: str) -> None:
+        self._harness.prints.append(text)
+
+    def log(self, level: str, text: str) -> None:
+        self._harness.logs.append(f"{level}: {text}")
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        if delay > 0:
+            self.clock.call_later(delay, lambda: self._harness.stop(exit_code))
+        else:
+            self._harness.stop(exit_code)
+
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
+        del classes
+        self._harness.logs.append(f"info: .create_agent({name}, {source}): this test has no other agents")
+        return None
+
+    def clone_agent(self, name: str) -> str | None:
+        self._harness.logs.append(f"info: .clone({name}): this test has no other agents")
+        return None
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        if name == self._harness.name:
+            self.stop_system(delay, 0)
+        return name in self.agent_names()
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        return self._programs.include(path, str(self._file))
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        return self._programs.list_files(folder, self._file.parent)
+
+    def write_file(self, path: str, text: str) -> None:
+        self._harness.files[path] = text
+
+    def register_service(self, service: str) -> None:
+        if service not in self._services:
+            self._services.append(service)
+
+    def deregister_service(self, service: str) -> None:
+        if service in self._services:
+            self._services.remove(service)
+
+    def providers(self, service: str) -> Sequence[str]:
+        return [self._harness.name] if service in self._services else []
+
+    def subscribe_to_service(self, service: str) -> None:
+        del service

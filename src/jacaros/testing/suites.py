@@ -1,0 +1,348 @@
+"""Finding agent tests: the plans labelled ``test`` of programs and projects.
+
+A plan for an achievement goal whose label has the annotation ``test`` is a test::
+
+    @charges_when_low[test]
+    +!test_charging <- ... .
+
+``[test, timeout(2000)]`` gives it a time limit of its own, in milliseconds.
+
+In a folder, and in all folders in it, the test files are: programs that have such a plan themselves, and projects
+(`.jcm`, `.mas2j`) called ``test_...`` or ``..._test``, of which all agents are looked at.  A program called
+``test_...`` or ``..._test`` that cannot be read is a test file too.
+"""
+
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+from jacaros.asl import nodes
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.errors import AslError
+from jacaros.asl.formatter import format_term
+from jacaros.asl.loader import load_program, parse_literals
+from jacaros.asl.source import Span
+from jacaros.errors import JacarosError, UsageError
+from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
+from jacaros.mas.programs import Programs, library_file
+from jacaros.mas.project import load_deployment
+from jacaros.mas.python_code import PythonCode
+from jacaros.project_modules import ProjectModules
+
+LIBRARY: Final = "tester_agent.asl"
+PROJECTS: Final = (".jcm", ".mas2j")
+_HARNESS_GOAL: Final = "execute_test_plans"
+_ROOTS: Final = (".git", "pyproject.toml", "build.gradle", "package.xml", "setup.py")
+_LEVELS: Final = 6
+_PATHS: Final = (
+    ".",
+    "src/agt",
+    "src/agt/inc",
+    "src/asl",
+    "asl",
+    "agents",
+    "inc",
+    "src/test/jason/inc",
+    "src/test/jason/asl",
+    "src/test/inc",
+    "src/test/agt",
+)
+_LABELLED: Final = re.compile(r"@[\w.]*\s*\[[^\]]*\btest\b")
+_COMMENT: Final = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_NAMED_TEST: Final = re.compile(r"test_.*|.*_test")
+
+
+@dataclass(frozen=True)
+class AgentTest:
+    """One test.
+
+    Attributes:
+        name: the label of its plan, or the goal when the plan has none of its own.
+        agent: name of the agent that gets the goal.
+        goal: what it is to achieve.
+        span: where the plan stands.
+        timeout: time limit in seconds, None for the usual one.
+    """
+
+    name: str
+    agent: str
+    goal: nodes.Literal
+    span: Span | None
+    timeout: float | None = None
+
+
+@dataclass
+class Suite:
+    """The tests of one program or project.
+
+    Attributes:
+        path: of the file.
+        tests: in the order of the program.
+        deployment: what is run for each test; None when the file is wrong.
+        error: why it cannot be run.
+        warnings: about its programs.
+    """
+
+    path: Path
+    tests: list[AgentTest] = field(default_factory=list)
+    deployment: Deployment | None = None
+    error: str | None = None
+    warnings: list[str] = field(default_factory=list)
+
+
+def with_assertions(program: nodes.Program) -> nodes.Program:
+    """What is run of a program for its tests: all assertion goals are added, if it does not include them, and the goal by
+    which Jason's harness begins is left out."""
+    labels = {plan.label.functor for plan in program.plans if isinstance(plan.label, nodes.Literal)}
+    added = tuple(plan for plan in _library() if _label(plan) not in labels)
+    goals = tuple(goal for goal in program.goals if goal.functor != _HARNESS_GOAL)
+    return replace(program, goals=goals, plans=(*program.plans, *added))
+
+
+@cache
+def _library() -> tuple[nodes.Plan, ...]:
+    """The assertion goals and what else the harness of Jason offers."""
+    text = library_file(LIBRARY).read_text(encoding="utf-8")
+    programs = Programs((), print, PythonCode(ProjectModules()))
+    return load_program(f"$jacaros/{LIBRARY}", text, programs.include)[0].plans
+
+
+def collect(paths: Sequence[Path]) -> list[Suite]:
+    """The suites in files and folders, in order; a file that is named twice is there once.
+
+    Files that cannot be read are suites too, with an `Suite.error`.
+
+    Raises:
+        UsageError: a path is not there, or is no program, project or folder.
+    """
+    found: dict[Path, Suite] = {}
+    for path in paths:
+        for suite in _in_folder(path) if path.is_dir() else _of_file(path):
+            found.setdefault(suite.path.resolve(), suite)
+    _without_repetitions(list(found.values()))
+    return list(found.values())
+
+
+def suite_of(path: Path) -> Suite:
+    """The tests of one program or project file."""
+    suite = Suite(path)
+    try:
+        deployment = load_deployment(path) if path.suffix in PROJECTS else _lone(path)
+        texts = _programs(deployment, suite.warnings.append)
+        problems: list[Diagnostic] = []
+        declared: set[str] = set()
+        for spec, program in zip(deployment.agents, texts, strict=True):
+            if spec.declared_name not in declared:
+                declared.add(spec.declared_name)
+                suite.tests += _tests(spec.name, program, problems)
+        if problems:
+            raise AslError(problems)
+        suite.deployment = deployment
+    except JacarosError as wrong:
+        suite.tests.clear()
+        suite.error = str(wrong)
+    return suite
+
+
+def is_test_file(path: Path) -> bool:
+    """Whether a program or project that lies in a folder of tests is to be looked at, see the top of this file."""
+    if path.suffix in PROJECTS:
+        return bool(_NAMED_TEST.fullmatch(path.stem))
+    if path.suffix != ".asl":
+        return False
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeError):
+        return bool(_NAMED_TEST.fullmatch(path.stem))
+    if _LABELLED.search(_COMMENT.sub("", text)):
+        return True
+    return bool(_NAMED_TEST.fullmatch(path.stem)) and suite_of(path).error is not None
+
+
+def _in_folder(folder: Path) -> Iterator[Suite]:
+    projects: list[Path] = []
+    programs: list[Path] = []
+    for file in _files(folder):
+        (projects if file.suffix in PROJECTS else programs).append(file)
+    suites = [suite_of(file) for file in projects]
+    # What a test project runs is not run once more alone.
+    run = {
+        spec.source_path.resolve()
+        for suite in suites
+        if suite.deployment is not None
+        for spec in suite.deployment.agents
+    }
+    suites += [suite_of(file) for file in programs if file.resolve() not in run]
+    yield from sorted(suites, key=lambda suite: suite.path)
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
+        for name in sorted(names):
+            file = Path(place) / name
+            if file.suffix in (".asl", *PROJECTS) and is_test_file(file):
+                yield file
+
+
+def _of_file(path: Path) -> Iterator[Suite]:
+    if path.suffix not in (".asl", *PROJECTS):
+        raise UsageError(f"{path} is no .asl, .mas2j or .jcm file, and no folder")
+    if not path.is_file():
+        raise UsageError(f"there is no file {path}")
+    suite = suite_of(path)
+    folders = list(_folders_of_the_manager(suite))
+    if suite.tests or suite.error or not folders:
+        yield suite
+    for folder in folders:
+        yield from _in_folder(folder)
+
+
+def _folders_of_the_manager(suite: Suite) -> Iterator[Path]:
+    """Where a test project of Jason says that its tests are: in the goal of its agent test_manager."""
+    if suite.deployment is None:
+        return
+    for spec in suite.deployment.agents:
+        for goal in parse_literals(spec.goals) if spec.goals.strip() else ():
+            if goal.functor == "create_tester_agents" and isinstance(goal.arguments[0], nodes.String):
+                folder = suite.deployment.base_path / goal.arguments[0].value
+                if folder.is_dir():
+                    yield folder
+
+
+def _without_repetitions(suites: list[Suite]) -> None:
+    """A test that a suite has from a file that it includes is not run there when that file is a suite itself."""
+    own = {suite.path.resolve() for suite in suites if suite.path.suffix == ".asl"}
+    for suite in suites:
+        if suite.path.suffix == ".asl":
+            others = own - {suite.path.resolve()}
+            suite.tests = [test for test in suite.tests if _file_of(test) not in others]
+
+
+def _file_of(test: AgentTest) -> Path | None:
+    return Path(test.span.file.name).resolve() if test.span is not None else None
+
+
+# programs
+
+
+def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes.Program]:
+    """The programs of all agents.
+
+    Raises:
+        AslError: with the errors of all of them.
+    """
+    code = PythonCode(ProjectModules(deployment.base_path, *deployment.source_paths))
+    try:
+        return Programs(deployment.source_paths, warn, code, with_assertions).load_all(deployment.agents)
+    finally:
+        code.close()
+
+
+def _lone(path: Path) -> Deployment:
+    """A program alone, as an agent of its name; its project is looked for in the folders above."""
+    folders = _project_folders(path.parent)
+    base = next((folder for folder in folders if has_own_artifacts(folder)), folders[-1])
+    places = [folder / each for folder in folders for each in _PATHS]
+    agent = AgentSpec(path.stem, path, path.stem)
+    return Deployment(
+        path.stem,
+        base,
+        (agent,),
+        artifact_environment=True,
+        source_paths=tuple(dict.fromkeys(place for place in places if place.is_dir())),
+    )
+
+
+def _project_folders(folder: Path) -> list[Path]:
+    """The folder of a test and those above it, up to the one of its project; alone when there is none."""
+    found = [folder]
+    above = Path(os.path.abspath(folder))
+    relative = folder
+    for _ in range(_LEVELS):
+        if _is_root(above) and above != Path(os.path.abspath(folder)):
+            return found
+        if above.parent == above or (above / ".git").exists():
+            break
+        above, relative = above.parent, relative / ".."
+        found.append(Path(os.path.normpath(relative)))
+    return [folder]
+
+
+def _is_root(folder: Path) -> bool:
+    return any((folder / name).exists() for name in _ROOTS) or any(
+        file.suffix in PROJECTS for file in folder.iterdir()
+    )
+
+
+def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> Iterator[AgentTest]:
+    known: dict[str, nodes.Plan] = {}
+    for plan in program.plans:
+        annotations = _annotations(plan)
+        if not any(isinstance(a, nodes.Literal) and a.functor == "test" for a in annotations):
+            continue
+        literal = plan.trigger.literal
+        if plan.trigger.operator + plan.trigger.kind != "+!" or not isinstance(literal, nodes.Literal):
+            problems.append(
+                Diagnostic(
+                    "error", "a test is a plan for a goal", plan.span, "as in @name[test] +!goal <- ..."
+                )
+            )
+            continue
+        goal = replace(literal, annotations=None)
+        signature = _signature(goal)
+        first = known.setdefault(signature, plan)
+        if first is not plan:
+            # Several plans for one goal are alternatives of one test, unless the first one is always taken.
+            if first.context is None:
+                hint = "give it a goal of its own"
+                problems.append(
+                    Diagnostic(
+                        "error", f"this test is never run: !{signature} has another plan", plan.span, hint
+                    )
+                )
+            continue
+        yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(annotations))
+
+
+def _annotations(plan: nodes.Plan) -> tuple[nodes.Term, ...]:
+    if not isinstance(plan.label, nodes.Literal) or plan.label.annotations is None:
+        return ()
+    return plan.label.annotations.items
+
+
+def _timeout(annotations: Iterable[nodes.Term]) -> float | None:
+    for annotation in annotations:
+        if isinstance(annotation, nodes.Literal) and annotation.functor == "timeout":
+            match annotation.arguments:
+                case (nodes.Number(value=milliseconds),):
+                    return milliseconds / 1000.0
+    return None
+
+
+def _label(plan: nodes.Plan) -> str | None:
+    return plan.label.functor if isinstance(plan.label, nodes.Literal) else None
+
+
+def _name(plan: nodes.Plan, goal: nodes.Literal) -> str:
+    label = _label(plan)
+    return goal.functor if label is None or label.startswith("p__") else label
+
+
+def _signature(goal: nodes.Literal) -> str:
+    """The goal as text, with all variables alike."""
+
+    def plain(term: nodes.Term) -> nodes.Term:
+        if isinstance(term, nodes.Variable):
+            return nodes.Variable("_")
+        return (
+            replace(term, arguments=tuple(map(plain, term.arguments)))
+            if isinstance(term, nodes.Literal)
+            else term
+        )
+
+    return format_term(plain(goal))

@@ -1,0 +1,418 @@
+"""Running tests: each in a system of its own, or those of a file one after the other in one system."""
+
+import asyncio
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Any, NoReturn
+
+from jacaros.asl.source import Span
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.failure import FailureReason
+from jacaros.bdi.goals import describe
+from jacaros.bdi.intention import PLAN, STEP, Intention
+from jacaros.bdi.probe import Assertion
+from jacaros.bdi.waiting import is_action
+from jacaros.bdi.watched import WatchedGoal
+from jacaros.clock import Clock, VirtualClock, WallClock, run
+from jacaros.compiler.lowering import lower_value
+from jacaros.errors import InternalError, JacarosError
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.mas import Mas
+from jacaros.mas.options import RunOptions
+from jacaros.terms.text import text
+from jacaros.terms.values import Term
+from jacaros.testing.fakes import Fakes
+from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
+from jacaros.testing.suites import AgentTest, Suite, with_assertions
+
+LINGER_SECONDS = 1.0
+LINGER_CYCLES = 10_000
+"""When a test has achieved its goal the run goes on until nobody has anything to do, but no longer than this: for the goals
+that it posted with ``!!``, whose assertions count too."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrialOptions:
+    """How tests are run.
+
+    Attributes:
+        fast: on the virtual clock; else in real time.
+        seed: of all random numbers.
+        timeout: seconds of the run's clock after which a test has failed, unless its label says otherwise.
+        cycles: reasoning cycles of all agents together after which a test has failed.
+        patience: seconds of the wall clock after which a test has failed, whatever it does; 0 for no such limit.  It works
+            in the main thread of a process on POSIX systems.
+        world: world file or name in place of the project's own.
+        shared: the tests of a file run one after the other in one system, as on Jason.
+    """
+
+    fast: bool = True
+    seed: int = 0
+    timeout: float = 60.0
+    cycles: int = 1_000_000
+    patience: float = 300.0
+    world: str | Path | None = None
+    shared: bool = False
+
+
+def run_suite(
+    suite: Suite,
+    options: TrialOptions | None = None,
+    chosen: Callable[[AgentTest], bool] = lambda test: True,
+) -> Iterator[Outcome]:
+    """Run the tests of a file; each outcome comes when it is there.
+
+    Raises:
+        InternalError: a defect of JaCaROS showed itself.
+    """
+    options = options or TrialOptions()
+    tests = [test for test in suite.tests if chosen(test)]
+    if suite.error is not None or not tests:
+        return
+    if options.shared:
+        yield from Trial(suite, tests, options).run()
+        return
+    for test in tests:
+        yield from Trial(suite, [test], options).run()
+
+
+def run_suites(suites: Sequence[Suite], options: TrialOptions | None = None) -> list[SuiteOutcome]:
+    """Run all tests of several files."""
+    return [SuiteOutcome(suite, list(run_suite(suite, options))) for suite in suites]
+
+
+class TookTooLong(BaseException):
+    """The wall clock says that a test hangs; no ordinary exception, because those of a step only fail that step."""
+
+
+class Trial:
+    """One run of a system in which tests are made, one after the other.
+
+    Args:
+        suite: what is run.
+        tests: some of its tests.
+        options: how.
+    """
+
+    def __init__(self, suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> None:
+        assert suite.deployment is not None
+        self._deployment = suite.deployment
+        self._warnings = frozenset(suite.warnings)
+        self._options = options
+        self._waiting = deque(tests)
+        self._outcomes = [Outcome(test) for test in tests]
+        self._number = -1
+        self._goal: WatchedGoal | None = None
+        self._done = False
+        self._lingers = False
+        self._cycles = 0
+        self._began = self._began_run = 0.0
+        self._timers: list[Any] = []
+        clock_class = _MeteredVirtualClock if options.fast else _MeteredWallClock
+        self._clock: Clock = clock_class(self._busy)
+        self._mas = Mas(
+            self._deployment,
+            self._clock,
+            self,
+            RunOptions(fast=options.fast, seed=options.seed, world=options.world),
+            with_assertions,
+            self._observe,
+            self._idle,
+        )
+
+    def run(self) -> list[Outcome]:
+        """Make the tests; their outcomes, in order.
+
+        Raises:
+            InternalError: a defect of JaCaROS showed itself.
+        """
+        try:
+            with _patience(self._options.patience * len(self._outcomes)):
+                run(self._main, self._clock)
+        except TookTooLong:
+            self._hangs()
+        except InternalError:
+            raise
+        except JacarosError as wrong:
+            self._end_run(Problem("the system cannot be started", tuple(str(wrong).splitlines())))
+        self._end_run(Problem("the program ended the run (.stopMAS) before the test had ended"))
+        return self._outcomes
+
+    async def _main(self) -> None:
+        asyncio.get_running_loop().set_exception_handler(self._escaped)
+        await self._mas.run(self._next)
+
+    @property
+    def output(self) -> Sequence[str]:
+        """What was printed and logged in the present test."""
+        return self._outcome.output
+
+    # ---- one test after the other
+
+    @property
+    def _outcome(self) -> Outcome:
+        return self._outcomes[max(self._number, 0)]
+
+    def _next(self) -> None:
+        """Begin the next test, or end the run."""
+        for timer in self._timers:
+            timer.cancel()
+        if not self._waiting:
+            self._done = True
+            self._mas.end(0)
+            return
+        test = self._waiting.popleft()
+        self._number += 1
+        self._lingers = False
+        self._cycles = 0
+        self._began, self._began_run = time.perf_counter(), self._clock.now()
+        limit = test.timeout if test.timeout is not None else self._options.timeout
+        self._timers = [self._clock.call_later(limit, lambda: self._timed_out(limit))]
+        host = self._mas.directory.find(test.agent)
+        if host is None or not isinstance(host.mind, Agent):
+            self._fail(
+                Problem(f"the test was not started: there is no agent {test.agent} any more", (), test.span)
+            )
+            return
+        self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
+
+    def _goal_ended(self) -> None:
+        """The goal of the test is achieved or has failed."""
+        assert self._goal is not None
+        if self._goal.failed:
+            self._fail(_failure(self._outcome.test, self._goal.reason))
+            return
+        self._lingers = True
+        self._cycles = 0
+        self._timers.append(self._clock.call_later(LINGER_SECONDS, self._finish))
+
+    def _finish(self) -> None:
+        """The test is over."""
+        outcome = self._outcome
+        outcome.seconds = time.perf_counter() - self._began
+        outcome.simulated = self._clock.now() - self._began_run
+        self._next()
+
+    def _fail(self, problem: Problem) -> None:
+        self._outcome.problems.append(problem)
+        self._finish()
+
+    def _end_run(self, problem: Problem) -> None:
+        """The run is over before its time: a problem of the present test, and of those that have not begun."""
+        if self._done:
+            return
+        self._done = True
+        if not self._lingers:
+            self._outcome.problems.append(problem)
+        if self._began:
+            self._outcome.seconds = time.perf_counter() - self._began
+            self._outcome.simulated = self._clock.now() - self._began_run
+        for outcome in self._outcomes[max(self._number, 0) + 1 :]:
+            outcome.problems.append(Problem("the test was not started: the run had ended"))
+
+    # ---- what ends a test that does not end by itself
+
+    def _timed_out(self, limit: float) -> None:
+        if self._lingers:
+            self._finish()
+            return
+        told = f"the test did not end within {limit:g} s of the run's clock"
+        self._give_up(told)
+
+    def _busy(self, cycles: int) -> None:
+        """Agents made reasoning cycles."""
+        self._cycles += cycles
+        if self._done or self._number < 0:
+            return
+        if self._lingers:
+            if self._cycles > LINGER_CYCLES:
+                self._finish()
+        elif self._cycles > self._options.cycles:
+            self._give_up(
+                f"the test did not end within {self._options.cycles} reasoning cycles: an endless loop?"
+            )
+
+    def _idle(self) -> None:
+        """No agent has anything to do or waits for anything but the environment."""
+        if self._done:
+            return
+        if self._lingers:
+            self._finish()
+        elif self._mas.environment is None:
+            self._give_up("the test did not end, and nothing happens any more")
+        elif self._goal is not None and not self._goal.intentions():
+            self._give_up("the test did not end")
+
+    def _give_up(self, told: str) -> None:
+        assert self._goal is not None
+        problem = _stuck(told, self._goal.intentions(), self._outcome.test)
+        for intention in self._goal.intentions():
+            self._goal.agent.finish(intention)
+        self._fail(problem)
+
+    def _hangs(self) -> None:
+        told = (
+            f"the test was stopped after {self._options.patience:g} s of real time: a step that does not end"
+        )
+        intentions = self._goal.intentions() if self._goal is not None else []
+        self._end_run(_stuck(told, intentions, self._outcome.test))
+
+    def _escaped(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Something raised an exception outside of anybody's care."""
+        del loop
+        error = context.get("exception")
+        if isinstance(error, TookTooLong):
+            self._hangs()
+            self._mas.end(1)
+        elif isinstance(error, Exception) and "handle" in context:
+            self._mas.fail(error)
+        else:
+            self.log(f"error: {context.get('message')}: {type(error).__name__}: {error}", "error")
+
+    # ---- looking on
+
+    def _observe(self, host: AgentHost) -> None:
+        """Look on at an agent, from its making on."""
+        mind = host.mind
+        if isinstance(mind, Agent):
+            probe = _AgentProbe(self, host)
+            mind.probe = probe
+            host.intercept = probe.fakes.begin
+            host.intercept_stop = probe.fakes.stop
+
+    def asserted(self, assertion: Assertion) -> None:
+        """An agent made an assertion."""
+        self._outcome.assertions += 1
+        if not assertion.passed:
+            self._outcome.problems.append(Problem.of(assertion))
+
+    def lost(self, agent: str, told: str, span: Span | None) -> None:
+        """An intention of an agent failed, and nobody took care of that."""
+        outcome = self._outcome
+        if (
+            outcome.output
+            and outcome.output[-1].startswith(f"[{agent}] ")
+            and outcome.output[-1].endswith(told)
+        ):
+            # The warning about it says the same.
+            outcome.output.pop()
+        first, _, rest = told.partition(": ")
+        outcome.problems.append(Problem(f"agent {agent}: {first}", (rest,) if rest else (), span))
+
+    def print(self, agent: str, text: str) -> None:
+        """Keep a line that an agent prints."""
+        self._outcome.output.append(f"[{agent}] {text}")
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Keep a line for people; warnings about the programs are told once, not in each test."""
+        del level
+        if text not in self._warnings:
+            self._outcome.output.append(text)
+
+
+class _AgentProbe:
+    """Looks on at one agent of a trial."""
+
+    def __init__(self, trial: Trial, host: AgentHost) -> None:
+        self._trial = trial
+        self._name = host.name
+        self.fakes = Fakes(host.mind.complete, host.set_timer)
+
+    def asserted(self, assertion: Assertion) -> None:
+        self._trial.asserted(assertion)
+
+    def lost(self, text: str, span: Span | None) -> None:
+        self._trial.lost(self._name, text, span)
+
+    def fake(self, action: Term, outcome: Term) -> None:
+        self.fakes.add(action, outcome)
+
+    def acts(self) -> Sequence[Term]:
+        return self.fakes.acts
+
+    def prints(self) -> Sequence[str]:
+        prefix = f"[{self._name}] "
+        return [line.removeprefix(prefix) for line in self._trial.output if line.startswith(prefix)]
+
+
+def _failure(test: AgentTest, reason: FailureReason | None) -> Problem:
+    """Why the goal of a test failed."""
+    if reason is None:
+        return Problem("the goal of the test failed", (), test.span)
+    place = reason.span() or test.span
+    told = reason.message()
+    others = [text(term) for term in reason.terms if _is_told(term)]
+    return Problem(
+        f"the goal of the test failed: {reason.error()}", tuple(filter(None, (told, *others))), place
+    )
+
+
+def _is_told(term: Term) -> bool:
+    return not (term.__class__ is tuple and term[0].name in ("error", "error_msg"))
+
+
+def _stuck(told: str, intentions: Sequence[Intention], test: AgentTest) -> Problem:
+    """Why a test does not come to an end."""
+    if not intentions:
+        return Problem(f"{told}: its intention was dropped", (), test.span)
+    intention = intentions[-1]
+    state, reason = describe(intention)
+    frame = intention.frames[-1]
+    info = getattr(frame[STEP], "info", None)
+    place = info.node.span if info is not None else frame[PLAN].node.span
+    if state == "waiting":
+        what = f"it waits for the end of {text(reason[1])}" if is_action(reason) else "it waits here"
+        return Problem(told, (what,), place)
+    return Problem(told, (f"it is {state}",) if state != "running" else (), place or test.span)
+
+
+class _MeteredVirtualClock(VirtualClock):
+    """A virtual clock that tells of the cycles of agents."""
+
+    def __init__(self, on_busy: Callable[[int], None]) -> None:
+        super().__init__()
+        self._on_busy = on_busy
+
+    def busy(self, cycles: int) -> None:
+        super().busy(cycles)
+        self._on_busy(cycles)
+
+
+class _MeteredWallClock(WallClock):
+    """The time of day, and told of the cycles of agents."""
+
+    def __init__(self, on_busy: Callable[[int], None]) -> None:
+        self._on_busy = on_busy
+
+    def busy(self, cycles: int) -> None:
+        self._on_busy(cycles)
+
+
+@contextmanager
+def _patience(seconds: float) -> Iterator[None]:
+    """Raise `TookTooLong` in the middle of whatever is done when it takes too long."""
+    if (
+        seconds <= 0
+        or not hasattr(signal, "setitimer")
+        or threading.current_thread() is not threading.main_thread()
+    ):
+        yield
+        return
+
+    def ring(number: int, frame: FrameType | None) -> NoReturn:
+        raise TookTooLong
+
+    before = signal.signal(signal.SIGALRM, ring)
+    rest, _ = signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, rest)
+        signal.signal(signal.SIGALRM, before)

@@ -1,0 +1,152 @@
+"""``jacaros test``: exit codes, report, options, JUnit XML."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from jacaros.cli.main import call
+
+TESTS = """
+@adds[test]   +!adding   <- .print(quiet); !assert_equals(3, 1 + 2).
+@breaks[test] +!breaking <- .print(loud); !assert_equals(3, 1 + 1).
+@ends[test]   +!ending   <- !assert_true(true).
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "sums.asl").write_text(TESTS, encoding="utf-8")
+    return tmp_path
+
+
+def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error output of ``jacaros test``."""
+    code = call(["test", *arguments])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_a_failing_test_is_told_with_all_that_helps(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(capsys, "tests", "--slowest", "0") == (
+        1,
+        """\
+tests/sums.asl
+  ok      adds
+  FAILED  breaks
+  ok      ends
+
+tests/sums.asl::breaks
+  tests/sums.asl:3:43: assert_equals failed
+    3 | @breaks[test] +!breaking <- .print(loud); !assert_equals(3, 1 + 1).
+      |                                           ^^^^^^^^^^^^^^^^^^^^^^^^
+    expected  3
+    but       was 2
+  printed:
+    [sums] loud
+
+2 passed, 1 failed; 3 assertions, seed 0
+""",
+        "",
+    )
+
+
+def test_all_is_well_when_all_pass(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, output, errors = outcome(capsys, "tests/sums.asl", "-k", "sums.asl::*s", "-k", "adds")
+    assert (code, errors) == (0, "")
+    assert output.endswith("1 passed; 1 assertions, seed 0\n")
+    assert "quiet" not in output
+
+
+def test_this_folder_is_meant_when_none_is_named(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, output, _ = outcome(capsys, "-k", "END")
+    assert code == 0
+    assert output.startswith("tests/sums.asl\n  ok      ends\n")
+
+
+def test_prints_of_passing_tests_are_shown_when_wanted(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "[sums] quiet" in outcome(capsys, "-v")[1]
+
+
+def test_the_first_failure_may_end_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "tests" / "xyz.asl").write_text("@later[test] +!later.", encoding="utf-8")
+    code, output, _ = outcome(capsys, "-x")
+    assert code == 1
+    assert "1 passed, 1 failed" in output
+    assert "later" not in output
+
+
+def test_nothing_to_run_is_wrong_usage(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "none.asl").write_text("!go. +!go.", encoding="utf-8")
+    code, output, errors = outcome(capsys, "none.asl")
+    assert (code, output) == (2, "")
+    assert errors == (
+        "jacaros: there are no tests in none.asl; a test is a plan for a goal whose label says so: "
+        "@name[test] +!goal <- ...\n"
+    )
+    code, _, errors = outcome(capsys, "tests", "-k", "nothing")
+    assert code == 2
+    assert "no test in tests is meant by -k nothing; there are tests/sums.asl::adds" in errors
+    assert outcome(capsys, "nowhere")[0] == 2
+    assert outcome(capsys, "--timeout", "0")[0] == 2
+
+
+def test_a_program_with_errors_fails(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "tests" / "test_wrong.asl").write_text("@a[test] +!g <- .print(.", encoding="utf-8")
+    code, output, _ = outcome(capsys, "--junit", "out/report.xml")
+    assert code == 1
+    assert "  ERROR   the file cannot be run" in output
+    assert "tests/test_wrong.asl:1:24: error: " in output
+    assert "2 passed, 1 failed, 1 file cannot be run" in output
+    root = ElementTree.parse(folder / "out" / "report.xml").getroot()
+    assert {name: root.get(name) for name in ("tests", "failures", "errors")} == {
+        "tests": "4",
+        "failures": "1",
+        "errors": "1",
+    }
+
+
+def test_the_junit_file_has_every_test(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "tests" / "bell.asl").write_text(
+        '@b[test] +!b <- .print("a\\\\b < c", "\x07").', encoding="utf-8"
+    )
+    assert outcome(capsys, "tests", "--junit", "report.xml")[0] == 1
+    root = ElementTree.parse(folder / "report.xml").getroot()
+    assert [suite.get("name") for suite in root] == ["tests/bell.asl", "tests/sums.asl"]
+    cases = {case.get("name"): case for case in root.iter("testcase")}
+    assert list(cases) == ["b", "adds", "breaks", "ends"]
+    assert cases["adds"].get("classname") == "tests.sums"
+    assert cases["breaks"].get("line") == "3"
+    assert cases["breaks"].get("assertions") == "1"
+    assert [len(case.findall("failure")) for case in cases.values()] == [0, 0, 1, 0]
+    failure = cases["breaks"].find("failure")
+    assert failure is not None
+    assert failure.get("message") == "assert_equals failed"
+    assert "but       was 2" in (failure.text or "")
+    assert cases["b"].findtext("system-out") == "[bell] a\\\\b < c\N{REPLACEMENT CHARACTER}"
+
+
+def test_colours_are_for_terminals(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "\x1b[" not in outcome(capsys)[1]
+    assert "\x1b[32mok" in outcome(capsys, "--color", "always")[1]
+
+
+def test_slow_tests_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    slow = folder / "slow.asl"
+    slow.write_text("@a[test] +!a <- .wait(600). @b[test] +!b.", encoding="utf-8")
+    output = outcome(capsys, "slow.asl", "--clock", "real")[1]
+    assert "slowest:\n" in output
+    assert output.count("slow.asl::") == 1
+    assert "slowest" not in outcome(capsys, "slow.asl")[1]
+
+
+def test_warnings_about_programs_go_to_the_errors(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "warn.asl").write_text("@a[test] +!a : false <- !missing.", encoding="utf-8")
+    code, output, errors = outcome(capsys, "warn.asl")
+    assert code == 1
+    assert "no plan for !missing/0" in errors
+    assert "no plan for !missing/0" not in output

@@ -1,0 +1,406 @@
+"""Running agent tests: what passes, what fails, and what is told about it."""
+
+import signal
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from jacaros.testing.outcomes import Outcome
+from jacaros.testing.suites import suite_of
+from jacaros.testing.trial import TrialOptions, run_suite
+
+Outcomes = Callable[..., list[Outcome]]
+BRIEF = TrialOptions(timeout=10.0, cycles=20_000)
+
+
+@pytest.fixture
+def outcomes(tmp_path: Path) -> Outcomes:
+    """Runs the tests of a program, with other files beside it."""
+
+    def run_program(text: str, options: TrialOptions = BRIEF, **others: str) -> list[Outcome]:
+        for name, other in others.items():
+            (tmp_path / name.replace("_asl", ".asl").replace("_py", ".py")).write_text(
+                other, encoding="utf-8"
+            )
+        path = tmp_path / "t.asl"
+        path.write_text(text, encoding="utf-8")
+        suite = suite_of(path)
+        assert suite.error is None
+        return list(run_suite(suite, options))
+
+    return run_program
+
+
+@pytest.fixture
+def told(outcomes: Outcomes, tmp_path: Path) -> Callable[..., str]:
+    """What is told about the only test of a program, which fails."""
+
+    def tell(text: str, **others: object) -> str:
+        (outcome,) = outcomes(text, **others)
+        assert not outcome.passed
+        return "\n".join(outcome.lines()).replace(f"{tmp_path}/", "")
+
+    return tell
+
+
+@pytest.mark.parametrize(
+    "assertion",
+    [
+        "assert_equals(2, 1 + 1)",
+        "assert_equals(f(X), f(X))",
+        "assert_equals([1, 2], [2, 1])",
+        "assert_equals(3.9, 3.95, 0.1)",
+        "assert_equals(2, .length([a, b]))",
+        "assert_not_equals(1, 2)",
+        "assert_not_equals([1], [2])",
+        "assert_true(p(1) & not p(3))",
+        "assert_true(.string(\"x\"))",
+        "assert_true(p(X))",
+        "assert_false(p(3))",
+        "assert_contains([a, f(b)], f(_))",
+        "assert_not_contains([a, b], c)",
+        "assert_greater_than(2, 1)",
+        "assert_greater_than_equals(2, 2)",
+        "assert_between(2, 2, 3)",
+        "assert_fail(no_plan_for_this)",
+        "force_pass",
+    ],
+)  # fmt: skip
+def test_an_assertion_that_holds_passes(outcomes: Outcomes, assertion: str) -> None:
+    (outcome,) = outcomes(f"p(1). p(2). @t[test] +!t <- !{assertion}.")
+    assert outcome.problems == []
+    assert outcome.assertions == 1
+
+
+@pytest.mark.parametrize(
+    ("assertion", "lines"),
+    [
+        ("assert_equals(2, 3)", ["expected  2", "but       was 3"]),
+        ("assert_equals(2, two)", ["expected  2", "but       was two"]),
+        ("assert_equals([1, 2], [1])", ["expected  [1,2]", "but       was [1]"]),
+        ("assert_equals(p[a], p[b])", ["expected  p[a]", "but       was p[b]"]),
+        ("assert_equals(1, 1.2, 0.1)", ["expected  1 +/- 0.1", "but       was 1.2"]),
+        ("assert_equals(1, one, 0.1)", ["expected  1 +/- 0.1", "but       was one"]),
+        ("assert_not_equals(1, 1)", ["expected  anything but 1", "but       was 1"]),
+        ("assert_true(p(3))", ["expected  p(3)", "believed is p(1)[source(self)], p(2)[source(self)]"]),
+        ("assert_true(q(3))", ["expected  q(3)", "there is no belief q/1"]),
+        ("assert_true(p(1) & q)", ["expected  (p(1) & q)", "but       it does not hold"]),
+        ("assert_false(p(1))", ["expected  not p(1)", "but       it holds"]),
+        ("assert_contains([a], b)", ["expected  b", "but       [a] does not contain it"]),
+        ("assert_contains(7, b)", ["expected  b", "but       7 is no list or set"]),
+        ("assert_not_contains([a], a)", ["expected  no a", "but       [a] contains it"]),
+        ("assert_greater_than(1, 1)", ["expected  more than 1", "but       was 1"]),
+        ("assert_greater_than(one, 0)", ["expected  more than 0", "but       was one"]),
+        ("assert_greater_than_equals(1, 2)", ["expected  2 or more", "but       was 1"]),
+        ("assert_between(4, 1, 3)", ["expected  1 to 3", "but       was 4"]),
+        ("assert_fail(fine)", ["expected  !fine to fail", "but       it was achieved"]),
+        ('force_failure("no such day")', ["because   no such day"]),
+        ("assert_did(go(_))", ["expected  go(_)", "but       it did nothing"]),
+    ],
+)
+def test_an_assertion_that_does_not_hold_fails_with_place_and_values(
+    outcomes: Outcomes, assertion: str, lines: list[str]
+) -> None:
+    (outcome,) = outcomes(f"p(1). p(2). +!fine.\n@t[test] +!t <-\n   !{assertion}.")
+    (problem,) = outcome.problems
+    assert problem.message == f"{assertion.partition('(')[0]} failed"
+    assert problem.span is not None
+    assert (problem.span.line, problem.span.column) == (3, 4)
+    shown = "\n".join(problem.details)
+    assert [line for line in lines if line not in shown] == []
+
+
+def test_a_test_goes_on_after_an_assertion_that_failed(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        "@t[test] +!t <- !assert_true(a); !assert_true(true); !assert_true(b); .print(end)."
+    )
+    assert [problem.details[0] for problem in outcome.problems] == ["expected  a", "expected  b"]
+    assert outcome.assertions == 3
+    assert outcome.output == ["[t] end"]
+
+
+def test_the_place_is_that_of_the_branch_that_was_taken(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        "@t[test] +!t <-\n if (b) {\n !assert_true(x)\n } else {\n !assert_equals(1, 2)\n }; .print(end)."
+    )
+    assert outcome.problems[0].span is not None
+    assert outcome.problems[0].span.line == 5
+
+
+def test_each_test_begins_afresh(outcomes: Outcomes) -> None:
+    both = "@a[test] +!a <- +p. @b[test] +!b <- !assert_false(p)."
+    assert [outcome.passed for outcome in outcomes(both)] == [True, True]
+    assert [outcome.passed for outcome in outcomes(both, replace(BRIEF, shared=True))] == [True, False]
+
+
+def test_the_goals_of_the_program_are_pursued_too(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        "!start. +!start <- +started. @t[test] +!t <- .wait(started); !assert_true(started)."
+    )
+    assert outcome.passed
+
+
+def test_a_plan_before_an_include_takes_the_place_of_another(outcomes: Outcomes) -> None:
+    program = '+!start. { include("robot.asl") } @t[test] +!t <- .wait(10); !assert_false(started).'
+    (outcome,) = outcomes(program, robot_asl="!start. +!start <- +started.")
+    assert outcome.passed
+
+
+def test_assertions_of_separate_goals_count(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes("@t[test] +!t <- !!later. +!later <- .wait(500); !assert_true(false).")
+    assert [problem.message for problem in outcome.problems] == ["assert_true failed"]
+
+
+def test_a_run_that_never_gets_quiet_does_not_hold_a_test_up(outcomes: Outcomes) -> None:
+    endless = "!tick. +!tick <- .wait(10); !tick. "
+    busy = "!tick. +!tick <- !tick. "
+    for begin in (endless, busy):
+        (outcome,) = outcomes(begin + "@t[test] +!t <- .print(done).")
+        assert outcome.passed
+        assert outcome.simulated <= 1.0
+
+
+def test_a_goal_that_fails_fails_its_test(told: Callable[..., str]) -> None:
+    assert told("@t[test] +!t <-\n !help. +!help <-\n .fail(broken(leg), error_msg(\"ouch\")).") == (
+        "t.asl:3:2: the goal of the test failed: internal_action\n"
+        '  3 |  .fail(broken(leg), error_msg("ouch")).\n'
+        "    |  ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"
+        "  ouch\n"
+        "  broken(leg)"
+    )  # fmt: skip
+
+
+def test_a_goal_without_plan_fails_its_test(told: Callable[..., str]) -> None:
+    assert "no relevant plan for !nobody(1)" in told("@t[test] +!t <- !nobody(1).")
+    assert "no applicable plan for !t" in told("@t[test] +!t : never <- .print(x).")
+
+
+def test_a_goal_that_its_own_handler_saves_passes(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes("@t[test] +!t <- .fail. -!t <- !assert_true(true).")
+    assert outcome.passed
+    assert outcome.assertions == 1
+
+
+def test_an_intention_that_nobody_saves_fails_the_test(told: Callable[..., str]) -> None:
+    shown = told("@t[test] +!t <- !!other; .wait(50). +!other <- ?nothing(X).")
+    assert "agent t: the goal !other failed and has no plan for its failure" in shown
+    assert "test_goal_failed" in shown
+
+
+def test_a_crash_in_an_internal_action_fails_the_test(told: Callable[..., str]) -> None:
+    assert "the goal of the test failed: " in told("@t[test] +!t <- .nth(7, [a], X); .print(X).")
+
+
+def test_a_time_limit_is_told_with_what_the_test_waits_for(told: Callable[..., str]) -> None:
+    shown = told("@t[test, timeout(500)] +!t <- .print(begun);\n .wait(600).")
+    assert "t.asl:2:2: the test did not end within 0.5 s of the run's clock" in shown
+    assert "printed:\n  [t] begun" in shown
+
+
+def test_the_usual_time_limit_counts(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes("@t[test] +!t <- .wait(11000).")
+    assert outcome.problems[0].message == "the test did not end within 10 s of the run's clock"
+    assert outcome.simulated == pytest.approx(10.0)
+
+
+def test_an_endless_loop_is_ended(told: Callable[..., str]) -> None:
+    assert "did not end within 20000 reasoning cycles: an endless loop?" in told("@t[test] +!t <- !t.")
+    assert "an endless loop?" in told("@t[test] +!t <- while (true) { +p; -p }.")
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs timers of the operating system")
+def test_a_step_that_does_not_end_is_stopped(outcomes: Outcomes) -> None:
+    program = (
+        "@t[test] +!t <- .findall(X, .range(X, 1, 100000000000), _). @u[test] +!u <- !assert_true(true)."
+    )
+    before = signal.getsignal(signal.SIGALRM)
+    hanging, other = outcomes(program, replace(BRIEF, patience=0.3))
+    assert "stopped after 0.3 s of real time" in hanging.problems[0].message
+    assert other.passed
+    assert signal.getsignal(signal.SIGALRM) is before
+    assert signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
+
+
+def test_waiting_for_what_never_comes_is_told_at_once(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes('@t[test] +!t <- .wait("+never").')
+    assert outcome.problems[0].message == "the test did not end, and nothing happens any more"
+    assert outcome.simulated < 1.0
+
+
+def test_a_dropped_test_fails(told: Callable[..., str]) -> None:
+    assert "its intention was dropped" in told("@t[test] +!t <- .drop_intention.")
+
+
+def test_a_program_that_ends_the_run_fails_the_test(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes("@t[test] +!t <- .stopMAS; .wait(10).")
+    assert "(.stopMAS)" in outcome.problems[0].message
+    first, second = outcomes(
+        "@t[test] +!t <- .stopMAS; .wait(10). @u[test] +!u.", replace(BRIEF, shared=True)
+    )
+    assert "(.stopMAS)" in first.problems[0].message
+    assert second.problems[0].message == "the test was not started: the run had ended"
+
+
+def test_in_a_shared_run_the_tests_after_a_stuck_one_are_made(outcomes: Outcomes) -> None:
+    stuck, other = outcomes('@t[test] +!t <- .wait("+never"). @u[test] +!u.', replace(BRIEF, shared=True))
+    assert not stuck.passed
+    assert other.passed
+
+
+def test_a_test_may_fork(outcomes: Outcomes) -> None:
+    program = "+!a <- .wait(10); +c(1). +!b <- .wait(20). @t[test] +!t <- (!a |&| !b); !assert_true(c(1))."
+    (outcome,) = outcomes(program)
+    assert outcome.passed
+    assert outcome.assertions == 1
+
+
+def test_actions_can_be_faked(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        """
+        @t[test] +!t
+          <- !fake_action(drive(_, _));
+             !fake_action(pose(7, _));
+             drive(1, 2);
+             pose(X, Y);
+             !assert_equals(7, X);
+             !assert_did(drive(1, _));
+             !assert_not_did(drive(2, _)).
+        """
+    )
+    assert outcome.problems == []
+
+
+def test_a_faked_action_can_fail_and_take_time(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        """
+        @t[test] +!t
+          <- !fake_action(drive, failed(blocked(wall), "a wall"));
+             !fake_action(wait, after(1500));
+             wait;
+             !go.
+        +!go <- drive.
+        -!go[error_msg(Text), env_failure_reason(Reason)]
+          <- !assert_equals("a wall", Text); !assert_equals(blocked(wall), Reason).
+        """
+    )
+    assert outcome.problems == []
+    assert outcome.assertions == 2
+    assert outcome.simulated == pytest.approx(1.5)
+
+
+def test_the_last_fake_of_an_action_counts(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        "@t[test] +!t <- !fake_action(see(1)); see(X); !fake_action(see(2)); see(Y); !assert_equals([1, 2], [X, Y])."
+    )
+    assert outcome.passed
+
+
+def test_an_action_that_never_ends_is_told(told: Callable[..., str]) -> None:
+    shown = told("@t[test] +!t <- !fake_action(drive(_), never);\n drive(3).")
+    assert "t.asl:2:2: the test did not end" in shown
+    assert "it waits for the end of drive(3)" in shown
+
+
+def test_a_wrong_outcome_of_a_fake_is_told(told: Callable[..., str]) -> None:
+    assert "soon is no outcome of a fake" in told("@t[test] +!t <- !fake_action(drive, soon).")
+
+
+def test_tests_may_make_agents_and_talk_with_them(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        """
+        @t[test] +!t
+          <- .create_agent(bob, "bob.asl");
+             .send(bob, askOne, age(X), age(Age));
+             !assert_equals(42, Age);
+             .send(bob, achieve, greet(t));
+             .wait(hello[source(bob)], 1000);
+             !assert_true(hello[source(bob)]).
+        """,
+        bob_asl="age(42). +!greet(Who) <- .send(Who, tell, hello).",
+    )
+    assert outcome.problems == []
+
+
+def test_assertions_of_other_agents_count(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        '@t[test] +!t <- .create_agent(bob, "bob.asl").',
+        bob_asl='{ include("$jacaros/test_assert.asl") } !check. +!check <- !assert_true(false).',
+    )
+    assert outcome.problems[0].span is not None
+    assert outcome.problems[0].span.file.name.endswith("bob.asl")
+
+
+def test_artifacts_of_the_project_can_be_used(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes(
+        """
+        @t[test] +!t
+          <- makeArtifact("c", "Counter", [], Id); focus(Id); inc; .wait(count(1), 1000); !assert_true(count(1)).
+        """,
+        artifacts_py=(
+            "from jacaros.env import Artifact, operation\n\n\n"
+            "class Counter(Artifact):\n"
+            "    def init(self) -> None:\n"
+            "        self.define_property('count', 0)\n\n"
+            "    @operation\n"
+            "    def inc(self) -> None:\n"
+            "        self.update_property('count', self.value('count') + 1)\n"
+        ),
+    )
+    assert outcome.problems == []
+
+
+def test_a_test_project_runs_with_its_robot(tmp_path: Path) -> None:
+    (tmp_path / "robot.asl").write_text(
+        """
+        { include("$jacaros/artifacts.asl") }
+        @drives[test] +!drives
+          <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
+             moveForward(1);
+             getCurrentPose(X, _, _);
+             !assert_equals(1, X, 0.05).
+        """,
+        encoding="utf-8",
+    )
+    project = tmp_path / "test_drive.jcm"
+    project.write_text('mas drive { agent robot : robot.asl world: "empty" }', encoding="utf-8")
+    (outcome,) = run_suite(suite_of(project))
+    assert outcome.problems == []
+    assert outcome.simulated > 1.0
+
+
+def test_a_world_that_is_not_there_fails_the_test(outcomes: Outcomes) -> None:
+    program = (
+        '{ include("$jacaros/artifacts.asl") } @t[test] +!t <- !use_artifact("wheels", "ArtCmdVel"); move(1).'
+    )
+    (outcome,) = outcomes(program, replace(BRIEF, world="nowhere"))
+    assert "nowhere" in "\n".join(outcome.lines())
+
+
+def test_tests_can_be_run_in_real_time(outcomes: Outcomes) -> None:
+    (outcome,) = outcomes("@t[test] +!t <- .wait(20).", replace(BRIEF, fast=False))
+    assert outcome.passed
+    assert outcome.seconds >= 0.02
+
+
+def test_a_seed_makes_tests_repeatable(outcomes: Outcomes) -> None:
+    program = "@t[test] +!t <- .random(X); .print(X)."
+    once, again, other = (outcomes(program, replace(BRIEF, seed=seed))[0].output for seed in (1, 1, 2))
+    assert once == again
+    assert once != other
+
+
+def test_assertions_outside_of_tests_are_told_to_people(tmp_path: Path) -> None:
+    from jacaros.testing import run_project
+
+    program = tmp_path / "a.asl"
+    program.write_text(
+        '{ include("$jasonJar/test/jason/inc/test_assert.asl") }'
+        "!go. +!go <- !assert_true(p); !assert_false(p); .print(end).",
+        encoding="utf-8",
+    )
+    result = run_project(program, until_idle=True)
+    assert result.lines == ["[a] end"]
+    assert "assert_true failed: expected p, but there is no belief p/0" in result.errors[0]
+    assert "assert_false passed" in result.errors[1]
