@@ -555,3 +555,16 @@ def test_a_tail_call_out_of_an_atomic_plan_ends_its_privilege() -> None:
         +!b <- .print(b1); .print(b2); .print(b3).
         """
     ) == ["2", "1", "z1", "z2", "b1", "z3", "b2", "z4", "b3"]
+
+
+def test_dropping_all_intentions_gives_up_the_planned_events() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- .at("now +1 s", {+!late}); .at("now", {+!now}); .wait(10); .drop_all_intentions;
+               .at("now +1 s", {+!later}); .wait(3000); .print(end).
+        +!late <- .print(late).
+        +!now <- .print(now).
+        +!later <- .print(later).
+        """
+    ) == ["now", "later", "end"]
