@@ -214,6 +214,14 @@ class VirtualEventLoop(asyncio.SelectorEventLoop):
         future.add_done_callback(lambda _: self._foreign_work_done())
         return future
 
+    async def shutdown_default_executor(self, *limit: float | None) -> None:
+        """Wait for the threads of `run_in_executor`; the time-out that Python sets must not come at once."""
+        self.virtual_selector.foreign_work += 1
+        try:
+            await super().shutdown_default_executor(*limit)
+        finally:
+            self._foreign_work_done()
+
     def _foreign_work_done(self) -> None:
         self.virtual_selector.foreign_work -= 1
 

@@ -264,7 +264,7 @@ def _hints(function: Callable[..., Any]) -> dict[str, Any]:
     try:
         return typing.get_type_hints(function)
     except Exception:
-        return dict(function.__annotations__)
+        return operations.written_annotations(function)
 
 
 def _wants_agent(function: Callable[..., Any]) -> bool:

@@ -326,6 +326,32 @@ def remember(agent: Agent, place: str) -> None:
     assert said(tmp_path, program, python) == ["once kitchen", "1"]
 
 
+def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path: Path) -> None:
+    python = """
+    from __future__ import annotations
+    from typing import TYPE_CHECKING
+    from jacaros import internal_action
+
+    if TYPE_CHECKING:
+        from collections.abc import Iterator
+        from jacaros import Agent, Out
+
+    @internal_action
+    def hello(agent: Agent, word: str, result: Out) -> None:
+        result.set(f"{word} {agent.name}")
+
+    @internal_action
+    def each(n: int) -> Iterator[int]:
+        yield from range(n)
+
+    @internal_action
+    def test(n: int) -> Iterator[None]:
+        yield
+    """
+    program = '!go. +!go <- my.hello("hi", X); .print(X); my.each(3, Y); .print(Y); my.test(1); .print(ok).'
+    assert said(tmp_path, program, python) == ["hi t", "0", "ok"]
+
+
 def test_a_package_is_searched_file_by_file(tmp_path: Path) -> None:
     write(
         tmp_path,

@@ -4,6 +4,7 @@ import inspect
 import types
 import typing
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, NamedTuple
 
 from jacaros.env.errors import InvalidArtifact
@@ -131,7 +132,18 @@ def _annotations(function: Callable[..., object]) -> dict[str, Any]:
         return {name: _known(kind) for name, kind in typing.get_type_hints(function).items()}
     except Exception:
         names = {**vars(typing), "Out": Out, "Atom": Atom, "Structure": Structure}
-        return {name: _resolved(kind, names) for name, kind in function.__annotations__.items()}
+        return {name: _resolved(kind, names) for name, kind in written_annotations(function).items()}
+
+
+def written_annotations(function: Callable[..., object]) -> dict[str, Any]:
+    """The annotations of a function as they are written; those that cannot be resolved are texts."""
+    try:
+        return dict(function.__annotations__)
+    except NameError:
+        # From Python 3.14 on they are resolved when they are asked for.
+        library = import_module("annotationlib")
+        found: dict[str, Any] = library.get_annotations(function, format=library.Format.STRING)
+        return found
 
 
 def _resolved(kind: Any, names: dict[str, Any]) -> Any:
