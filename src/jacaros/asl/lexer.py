@@ -39,6 +39,8 @@ _TOKEN: Final = re.compile(
     """,
     re.VERBOSE,
 )
+_ESCAPES: Final = re.compile(r"""\\[ntbrf\\'"0-7]|\\(?P<wrong>.)""")
+"""The escapes that a string may hold; what becomes of them is another matter."""
 _UNUSUAL: Final = frozenset({"quoted", "word", "open_string", "open_quoted", "open_comment", "wrong"})
 
 
@@ -102,6 +104,10 @@ def tokenize(
                 begin = found.end() - len(text) + text.rfind("\n") + 1
             continue
         column = found.end() - len(text) - begin + 1
+        if kind == "string" and "\\" in text:
+            for escape in _ESCAPES.finditer(text):
+                if escape["wrong"]:
+                    report(_wrong_escape(file, escape, line, column))
         if kind in _UNUSUAL:
             kind = _unusual(file, kind, text, line, column, report)
         if not ascii_only and kind in ("atom", "variable") and text[0] != "'" and not text.isascii():
@@ -138,6 +144,17 @@ def _unusual(
         hint = "a comment begins with //" if text in "#%" else None
     report(Diagnostic("error", message, Span(file, line, column, line, end), hint, code))
     return "error"
+
+
+def _wrong_escape(file: SourceFile, escape: re.Match[str], line: int, column: int) -> Diagnostic:
+    begin, end = column + escape.start(), column + escape.end()
+    return Diagnostic(
+        "error",
+        f"'{escape.group()}' is no escape of a string",
+        Span(file, line, begin, line, end),
+        r"only \n and \" are converted, and a backslash is written \\",
+        "wrong-escape",
+    )
 
 
 def _not_ascii(file: SourceFile, lexeme: str, line: int, column: int) -> Diagnostic:

@@ -60,8 +60,23 @@ class TermParser(LiteralParser):
                 left = self._connective(left, level, formula)
 
     def element(self) -> nodes.Term:
-        """An element of a list: ``|`` begins the tail, so it can only stand in brackets."""
-        return self.expression(_AND)
+        """An element of a list or an annotation: formulae stand in brackets, as ``|`` begins the tail."""
+        start = self.token
+        element = self.expression(_SUM)
+        if isinstance(element, nodes.Not) and start.kind == "not":
+            self.report(
+                "formula-in-list", "a formula in a list stands in brackets", element.span, "as in [(not a)]"
+            )
+        elif self.token.kind in _LEVELS and self.token.kind != "|":
+            self.report(
+                "formula-in-list",
+                "a formula in a list stands in brackets",
+                self.span_of(self.token),
+                "as in [(X < 2)]",
+            )
+            self.advance()
+            self.expression(_AND)
+        return element
 
     def operand(self, formula: bool = False) -> nodes.Term:
         """What stands between binary operators."""

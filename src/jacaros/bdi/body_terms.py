@@ -13,7 +13,7 @@ from jacaros.compiler.runtime import Failure
 from jacaros.compiler.triggers import trigger
 from jacaros.compiler.unit import CodeUnit, install_body
 from jacaros.terms.plans import PLAN as PLAN_TERM
-from jacaros.terms.plans import RULE, TRIGGER, is_body
+from jacaros.terms.plans import RULE, TRIGGERS, is_body
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
     ACTION,
@@ -52,7 +52,7 @@ def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: Any) ->
     if is_body(term):
         return _run_body(agent, term, frame, next_step)
     symbol = functor_of(term)
-    if symbol is None or symbol in (PLAN_TERM, TRIGGER, RULE):
+    if symbol is None or symbol in TRIGGERS or symbol in (PLAN_TERM, RULE):
         unknown = bare(term).__class__ is Var
         raise Failure((ERROR, atom("body_var_without_value" if unknown else "body_var_not_literal")))
     if symbol.kind in (ACTION, PLAN):

@@ -12,7 +12,7 @@ from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.compiler.plan import Plan, label_of, with_subplans
 from jacaros.compiler.reflection import Reflection
 from jacaros.compiler.runtime import Failure
-from jacaros.terms.plans import PLAN, RULE, TRIGGER, is_body
+from jacaros.terms.plans import PLAN, RULE, TRIGGERS, is_body
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
@@ -146,7 +146,7 @@ def change_plans(agent: Circumstance, operator: str, term: Term) -> bool:
     if term[0] is RULE:
         change_rule(agent, operator, term)
         return True
-    if term[0] is TRIGGER or is_body(term):
+    if term[0] in TRIGGERS or is_body(term):
         raise Failure((ERROR, atom("body_var_with_op")))
     return False
 

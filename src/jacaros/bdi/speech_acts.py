@@ -16,7 +16,7 @@ from jacaros.compiler.lowering import fresh_names, lower_plan
 from jacaros.compiler.runtime import run
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.order import annotation_set
-from jacaros.terms.plans import PLAN, TRIGGER, body_steps, step_parts
+from jacaros.terms.plans import PLAN, TRIGGERS, body_steps, step_parts
 from jacaros.terms.text import text
 from jacaros.terms.unifier import is_flat, rename, resolve, undo
 from jacaros.terms.values import (
@@ -253,7 +253,7 @@ def _trigger_of(content: Term) -> Any:
             return None
         literal = lower_plan(plan, fresh_names())[2]
         return _trigger_of(literal)
-    if content.__class__ is tuple and content[0] is TRIGGER:
+    if content.__class__ is tuple and content[0] in TRIGGERS:
         operator = deref(content[1]).name
         symbol = parts(content[2])[0]
         return None if symbol is None else trigger(operator[0], operator[1:], symbol)

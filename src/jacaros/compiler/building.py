@@ -8,7 +8,7 @@ from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.variables import variables_in
 from jacaros.terms.order import annotation_set
-from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, NO_LABEL, PLAN, RULE, TRIGGER
+from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, BODY_TERM, NO_LABEL, PLAN, RULE, TRIGGER
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, Functor, atom, functor
 from jacaros.terms.values import PLAN as PLAN_KIND
@@ -146,7 +146,7 @@ def _arithmetic(fn: FunctionBuilder, node: nodes.Arithmetic) -> str:
         if node.operator == "-":
             fn.line(f"{result} = -{operand} if {operand}.__class__ is float else negate({operand})")
         else:
-            fn.line(f"{result} = {operand}")
+            fn.line(f"{result} = {operand} if {operand}.__class__ is float else affirm({operand})")
         return result
     left, right = operands
     if node.operator in _INLINE:
@@ -207,7 +207,7 @@ def _rule(fn: FunctionBuilder, node: nodes.RuleTerm) -> str:
     return f"({fn.constant(RULE)}, {build(fn, node.rule.head)}, {build(fn, node.rule.body)})"
 
 
-def _body(fn: FunctionBuilder, body: nodes.Body) -> str:
+def _body(fn: FunctionBuilder, body: nodes.Body, symbol: Functor = BODY_SEQUENCE) -> str:
     result = fn.constant(BODY_END)
     written = list(body.steps)
     last = written[-1] if len(written) > 1 else None
@@ -217,7 +217,7 @@ def _body(fn: FunctionBuilder, body: nodes.Body) -> str:
         written.pop()
     steps = [_step(fn, s) for s in written]
     for step in reversed(steps):
-        result = f"({fn.constant(BODY_SEQUENCE)}, {step}, {result})"
+        result = f"({fn.constant(symbol)}, {step}, {result})"
     return result
 
 
@@ -267,6 +267,6 @@ _COMPOUND: dict[type, Callable[..., str]] = {
     nodes.PlanTerm: lambda fn, n: _plan(fn, n.plan),
     nodes.TriggerTerm: lambda fn, n: _trigger(fn, n.trigger),
     nodes.RuleTerm: _rule,
-    nodes.BodyTerm: lambda fn, n: _body(fn, n.body),
+    nodes.BodyTerm: lambda fn, n: _body(fn, n.body, BODY_TERM),
     nodes.Body: _body,
 }

@@ -16,6 +16,7 @@ from jacaros.terms.values import (
     LOGIC,
     RELATION,
     Annotated,
+    Functor,
     String,
     Term,
     Var,
@@ -152,15 +153,15 @@ def _trigger_term(node: nodes.TriggerTerm, lookup: Lookup) -> Term:
 
 
 def _body_term(node: nodes.BodyTerm, lookup: Lookup) -> Term:
-    return lower(node.body, lookup)
+    return _body(node.body, lookup, plans.BODY_TERM)
 
 
-def _body(node: nodes.Body, lookup: Lookup) -> Term:
+def _body(node: nodes.Body, lookup: Lookup, symbol: Functor = plans.BODY_SEQUENCE) -> Term:
     *steps, last = node.steps or (None,)
     if steps and isinstance(last, nodes.ExternalAction) and isinstance(last.action, nodes.Variable):
         # A variable at the end stands for all that follows.
-        return plans.make_body([lower(s, lookup) for s in steps], lower(last.action, lookup))
-    return plans.make_body(lower(s, lookup) for s in node.steps)
+        return plans.make_body([lower(s, lookup) for s in steps], lower(last.action, lookup), symbol)
+    return plans.make_body([lower(s, lookup) for s in node.steps], symbol=symbol)
 
 
 def _achieve(node: nodes.Achieve, lookup: Lookup) -> Term:

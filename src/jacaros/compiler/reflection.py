@@ -103,11 +103,11 @@ class Reflection:
             return self._logic(symbol.name, term)
         if symbol is plans.PLAN:
             return nodes.PlanTerm(self.plan(term))
-        if symbol is plans.TRIGGER:
+        if symbol in plans.TRIGGERS:
             return nodes.TriggerTerm(self.trigger(term))
         if symbol is plans.RULE:
             return nodes.RuleTerm(self.rule(term))
-        if symbol is plans.BODY_SEQUENCE:
+        if symbol in plans.BODIES:
             return nodes.BodyTerm(self.body(term))
         return self._literal(symbol, term[1:])
 

@@ -7,7 +7,8 @@ from collections.abc import Generator, Iterator
 from typing import Any
 
 from jacaros.errors import InternalError
-from jacaros.terms.arithmetic import binary, divide, integer_divide, negate, power, remainder
+from jacaros.terms import plans
+from jacaros.terms.arithmetic import affirm, binary, divide, integer_divide, negate, power, remainder
 from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set, at_most, less
 from jacaros.terms.unifier import (
@@ -321,6 +322,8 @@ def deconstruct(left: Term, right: Term, trail: Trail) -> bool:
     if term.__class__ is Var:
         return _construct(term, [resolve(i) for i in list_items(right)], trail)
     inner = bare(term)
+    if inner.__class__ is tuple and inner[0] is plans.PLAN:
+        return unify(make_list(_plan_parts(inner)), right, trail)
     if inner.__class__ is tuple and inner[0] is not CONS:
         symbol, arguments = inner[0], inner[1:]
     elif inner.__class__ is Functor:
@@ -345,9 +348,18 @@ def deconstruct_in(namespace: Term, left: Term, right: Term, trail: Trail) -> bo
     return unify(wanted, parts[0], trail) and _construct(term, parts, trail, namespace_name(parts[0]))
 
 
+def _plan_parts(plan: Term) -> list[Term]:
+    """Label, trigger, context and body of a plan."""
+    label, event, context, body = plan[1:]
+    event = deref(event)
+    return [label, (plans.PLAN_TRIGGER, *event[1:]), context, body]
+
+
 def _construct(variable: Term, parts: list[Term], trail: Trail, allowed: str | None = None) -> bool:
     if len(parts) == 3:
         parts = [atom("default"), *parts]
+    if len(parts) == 4 and parts[1].__class__ is tuple and parts[1][0] in plans.TRIGGERS:
+        return unify(variable, _plan_of(*parts), trail)
     if len(parts) != 4 or parts[1].__class__ is not Functor:
         return False
     namespace = namespace_name(parts[0])
@@ -358,6 +370,12 @@ def _construct(variable: Term, parts: list[Term], trail: Trail, allowed: str | N
     term: Term = (symbol, *arguments) if arguments else symbol
     annotations = annotation_set(tuple(list_items(parts[3])))
     return unify(variable, Annotated(term, annotations) if annotations else term, trail)
+
+
+def _plan_of(label: Term, event: Term, context: Term, body: Term) -> Term:
+    if plans.is_body(body):
+        body = plans.make_body(plans.body_steps(body))
+    return (plans.PLAN, label, (plans.TRIGGER, *event[1:]), context, body)
 
 
 CLOSED = frozenset({float, String, Functor})
@@ -405,6 +423,7 @@ def join_branch(agent: Any, frame: list[Any]) -> Any:
 
 
 _FUNCTIONS = (
+    affirm,
     annotation_set,
     annotations_of_event,
     answers_of,

@@ -55,7 +55,9 @@ def remainder(left: float, right: float) -> float:
 
 
 def power(left: float, right: float) -> float:
-    """``**``; infinite or not a number where there is no real result."""
+    """``**``; infinite or not a number where there is no real result, and ``1 ** x`` is 1 for finite x only."""
+    if abs(left) == 1.0 and not math.isfinite(right):
+        return math.nan
     try:
         result = left**right
     except ZeroDivisionError:
@@ -79,6 +81,7 @@ ADD = functor("+", 2, kind=ARITHMETIC)
 SUBTRACT = functor("-", 2, kind=ARITHMETIC)
 MULTIPLY = functor("*", 2, kind=ARITHMETIC)
 NEGATE = functor("-", 1, kind=ARITHMETIC)
+AFFIRM = functor("+", 1, kind=ARITHMETIC)
 
 Evaluator = Callable[..., Term]
 functions: dict[str, Evaluator] = {}
@@ -154,3 +157,9 @@ def negate(operand: Term) -> Term:
     """The value of unary minus on any term."""
     operand = settle(operand)
     return -operand if operand.__class__ is float else _evaluate((NEGATE, operand))
+
+
+def affirm(operand: Term) -> Term:
+    """The value of unary plus on any term."""
+    operand = settle(operand)
+    return operand if operand.__class__ is float else _evaluate((AFFIRM, operand))

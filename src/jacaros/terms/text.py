@@ -6,13 +6,17 @@ from typing import Any, cast
 
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.plans import (
+    BODIES,
     BODY_END,
     BODY_SEQUENCE,
+    BODY_TERM,
+    PLAN_TRIGGER,
     body_steps,
     plan_text_parts,
     step_parts,
     trigger_parts,
 )
+from jacaros.terms.plans import PLAN as PLAN_TERM
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import (
     ARITHMETIC,
@@ -48,13 +52,22 @@ def double_text(value: float) -> str:
     magnitude = abs(value)
     if 1e-3 <= magnitude < 1e7 or magnitude == 0.0:
         return repr(value)
-    mantissa, _, exponent = f"{value!r}e".partition("e")
+    mantissa, _, exponent = f"{_shortest(value)}e".partition("e")
     if not exponent.rstrip("e"):
         digits, power = _scientific(value)
         return f"{digits}E{power}"
     if "." not in mantissa:
         mantissa += ".0"
     return f"{mantissa}E{int(exponent.rstrip('e'))}"
+
+
+def _shortest(value: float) -> str:
+    """The shortest digits that tell the number from others, two of them at least as in Java."""
+    shortest = repr(value)
+    if "e" in shortest and "." not in shortest:
+        nearest = f"{value:.1e}"
+        return nearest if float(nearest) == value else shortest
+    return shortest
 
 
 def _scientific(value: float) -> tuple[str, int]:
@@ -69,7 +82,7 @@ def _scientific(value: float) -> tuple[str, int]:
 
 
 def quoted(text: str) -> str:
-    """A string in double quotes."""
+    """A string in double quotes as it is written in a program; `text` shows its characters as they are."""
     return '"' + text.replace("\n", "\\n").replace('"', '\\"') + '"'
 
 
@@ -83,9 +96,18 @@ def display(term: Term) -> str:
     term = resolve(term)
     if term.__class__ is String:
         return str(term)
-    if term.__class__ is Var:
-        return f"{term.name}<no-value>"
+    if _is_unknown(term):
+        return f"{_write(term)}<no-value>"
     return _write(term)
+
+
+def _is_unknown(term: Term) -> bool:
+    """Whether a term is a variable without value, perhaps negated or with annotations."""
+    if term.__class__ is Annotated:
+        term = term.term
+    if term.__class__ is tuple and term[0] is NEGATED:
+        term = term[1]
+    return term.__class__ is Var
 
 
 _Pieces = list[Any]
@@ -105,9 +127,9 @@ def _write(term: Term) -> str:
         elif kind is float:
             written.append(number_text(piece))
         elif kind is Functor:
-            written.append(_name(piece))
+            written.append(_name(piece) if piece is not BODY_END else "{ }")
         elif kind is String:
-            written.append(quoted(piece))
+            written.append(f'"{piece}"')
         elif kind is tuple:
             todo.extend(reversed(_structure(piece)))
         elif kind is Annotated:
@@ -178,14 +200,18 @@ def _plan_piece(term: tuple[Term, ...]) -> _Pieces:
     name = cast("Functor", term[0]).name
     if name == "plan":
         return ["{ ", *_plan(term), " }"]
-    if name == "trigger":
+    if name in ("trigger", "plan_trigger"):
         operator, literal = trigger_parts(term)
-        return ["{ " + operator, literal, " }"]
+        return [operator, literal] if term[0] is PLAN_TRIGGER else ["{ " + operator, literal, " }"]
     if name == "rule":
         return ["{ ", term[1], " :- ", term[2], " }"]
-    if term[0] is BODY_SEQUENCE:
-        return [piece for step in body_steps(term) for piece in ("; ", *_step(step))][1:]
-    return _step(term)
+    if term[0] is BODY_TERM:
+        return ["{ ", *_body(term), " }"]
+    return _body(term) if term[0] in BODIES else _step(term)
+
+
+def _body(body: Term) -> _Pieces:
+    return [piece for step in body_steps(body) for piece in ("; ", *_step(step))][1:]
 
 
 def _plan(term: tuple[Term, ...]) -> _Pieces:
@@ -198,25 +224,53 @@ def _plan(term: tuple[Term, ...]) -> _Pieces:
     if not (context.__class__ is Functor and context.name == "true"):
         pieces += (" : ", context)
     if body is not BODY_END:
-        pieces += (" <- ", body)
+        pieces += (" <- ", *_body(body))
     return pieces
+
+
+def plan_text(plan: Term) -> str:
+    """A plan as it is written in a program, without braces."""
+    return (
+        "".join(_write(piece) if piece.__class__ is not str else piece for piece in _plan(resolve(plan)))
+        + "."
+    )
+
+
+_STATEMENTS = {
+    "if": (".if_then_else",),
+    "while": (".loop",),
+    "for": (".foreach",),
+    "|&|": (".fork", "and"),
+    "|||": (".fork", "or"),
+}
+"""The internal actions that control statements are for Jason, and so in what it prints."""
+_PLAN_CHANGES = {
+    "+": (".add_plan", "self", "begin"),
+    "+<": (".add_plan", "self", "begin"),
+    "+>": (".add_plan", "self", "end"),
+    "-": (".remove_plan",),
+}
 
 
 def _step(step: Term) -> _Pieces:
     operator, operands = step_parts(step)
-    written = [["{ ", o, " }"] if _is_body(o) else [o] for o in operands]
-    if operator == "if":
-        rest = [" else ", *written[2]] if len(written) > 2 else []
-        return ["if (", *written[0], ") ", *written[1], *rest]
-    if operator in ("while", "for"):
-        return [f"{operator} (", *written[0], ") ", *written[1]]
-    if operator in ("|&|", "|||"):
-        return [piece for operand in written for piece in (f" {operator} ", *operand)][1:]
-    return [operator, *written[0]]
+    if operator in _STATEMENTS:
+        name, *first = _STATEMENTS[operator]
+        written = [[word] for word in first] + [_body(o) if _is_part(o) else [o] for o in operands]
+        return [f"{name}(", *[piece for part in written for piece in (",", *part)][1:], ")"]
+    if operator in _PLAN_CHANGES and _is_plan(operands[0]):
+        name, *more = _PLAN_CHANGES[operator]
+        return [f"{name}(", operands[0], *[f",{word}" for word in more], ")"]
+    return ["+" if operator == "+<" else operator, operands[0]]
 
 
-def _is_body(term: Term) -> bool:
-    return term.__class__ is tuple and term[0] is BODY_SEQUENCE
+def _is_part(term: Term) -> bool:
+    """Whether an operand is the body of a control statement."""
+    return term is BODY_END or (term.__class__ is tuple and term[0] is BODY_SEQUENCE)
+
+
+def _is_plan(term: Term) -> bool:
+    return term.__class__ is tuple and term[0] is PLAN_TERM
 
 
 class _End:

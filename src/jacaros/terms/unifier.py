@@ -6,11 +6,13 @@ subset of those of the right one.
 """
 
 from collections.abc import Iterator
+from typing import Any
 
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.deep import MANY_TURNS, Turns, rebuild
 from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set
+from jacaros.terms.plans import TWINS
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
@@ -82,7 +84,7 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:
             if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
                 return _unify_negated(left, right, trail)
             if kind is tuple and right.__class__ is tuple:
-                if left[0] is not right[0]:
+                if left[0] is not right[0] and TWINS.get(left[0]) is not right[0]:
                     return False
                 for i in range(1, len(left) - 1):
                     if not unify(left[i], right[i], trail):
@@ -131,7 +133,7 @@ def _unify_deep(left: Term, right: Term, trail: Trail) -> bool:
             if not unify(left, right, trail):
                 return False
         elif left is not right:
-            if left[0] is not right[0]:
+            if left[0] is not right[0] and TWINS.get(left[0]) is not right[0]:
                 return False
             if by_variable:
                 if (id(left), id(right)) in met:
@@ -167,9 +169,9 @@ def _known_negation(term: Term) -> Term:
 
 
 def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
-    """Bind, unless the value plainly contains the variable (a cyclic term could never be printed)."""
+    """Bind; a value that contains the variable has a fresh one in its place, so that every term is finite."""
     if value.__class__ in HOLDERS and _occurs(variable, value):
-        return False
+        value = _rename(resolve(value), _Alone({variable: Var(variable.name)}))
     bind(variable, value, trail)
     return True
 
@@ -432,6 +434,14 @@ def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
     if term.__class__ in ATOMIC or not free_variables(term):
         return term
     return _rename(term, {} if names is None else names)
+
+
+class _Alone(dict[Var, Var]):
+    """New names for the variables it holds; all others keep theirs."""
+
+    def get(self, key: Var, default: Any = None) -> Any:
+        del default
+        return dict.get(self, key, key)
 
 
 def _rename(term: Term, names: dict[Var, Var]) -> Term:

@@ -381,7 +381,7 @@ def test_the_stack_of_an_intention_tells_its_goal_and_what_is_left_to_do() -> No
         !g(1).
         +!g(X) <- .intention(_, running, [im(_, { +!g(Y) }, { _; B }, _)|_], current); .print(Y); .print(B); .wait(X).
         """
-    ) == ["1", ".print(Y); .print(B); .wait(1)"]
+    ) == ["1", "{ .print(Y); .print(B); .wait(1) }"]
 
 
 def test_terms_that_are_no_goals_or_bodies_fail_with_the_reason() -> None:

@@ -2,7 +2,7 @@ import pytest
 
 from jacaros.terms.arithmetic import ADD, NEGATE
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.plans import NO_LABEL, PLAN, RULE, make_body, step, trigger
+from jacaros.terms.plans import BODY_TERM, NO_LABEL, PLAN, RULE, make_body, step, trigger
 from jacaros.terms.text import display, double_text, number_text, text
 from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import (
@@ -39,6 +39,9 @@ from jacaros.terms.values import (
         (1e20, "1.0E20"),
         (-1e21, "-1.0E21"),
         (1.5e-7, "1.5E-7"),
+        (5e-324, "4.9E-324"),
+        (1e-323, "9.9E-324"),
+        (1e23, "1.0E23"),
         (0.001, "0.001"),
         (0.0001, "1.0E-4"),
         (0.00012, "1.2E-4"),
@@ -77,7 +80,7 @@ def filled(kind: type, *items: Term) -> Term:
         (functor("q", 0, negated=True), "~q"),
         (functor("q", 0, True, "ns"), "ns::~q"),
         (String("x"), '"x"'),
-        (String('say "x"\n'), '"say \\"x\\"\\n"'),
+        (String('say "x"\n'), '"say "x"\n"'),
         (structure("f", atom("a"), structure("g", 1.0), String("s")), 'f(a,g(1),"s")'),
         ((functor("p", 1, negated=True), 1.0), "~p(1)"),
         (make_list([]), "[]"),
@@ -109,6 +112,11 @@ def filled(kind: type, *items: Term) -> Term:
             ),
             "{ @l +b(X) : c <- !g; act(1) }",
         ),
+        (make_body([step("!", atom("g")), step("+<", atom("b"))], symbol=BODY_TERM), "{ !g; +b }"),
+        (make_body([step("!", atom("g"))]), "!g"),
+        (make_body([]), "{ }"),
+        (step("if", atom("c"), make_body([step("", atom("a"))]), make_body([])), ".if_then_else(c,a,)"),
+        (step("|&|", *(make_body([step("!", atom(name))]) for name in "ab")), ".fork(and,!a,!b)"),
     ],
 )
 def test_terms_are_written_as_jason_does(term: Term, written: str) -> None:
@@ -128,6 +136,7 @@ def test_print_shows_strings_bare_only_at_the_top() -> None:
 def test_print_marks_variables_without_value_only_at_the_top() -> None:
     assert display(Var("X")) == "X<no-value>"
     assert display(Var("_")) == "_<no-value>"
+    assert display(Annotated(Var("X"), (atom("a"),))) == "X[a]<no-value>"
     assert display(structure("f", Var("X"))) == "f(X)"
 
 

@@ -14,7 +14,7 @@ from jacaros.bdi.plan_terms import bindings_of, variables_of
 from jacaros.bdi.stack import achieve
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
-from jacaros.terms.plans import make_body, trigger
+from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.text import text
 from jacaros.terms.unifier import rename, resolve
 from jacaros.terms.values import (
@@ -108,8 +108,11 @@ def _means(ctx: Context, frame: Any) -> Term:
     kind = frame[GOAL][0]
     goal = resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))
     rest = make_body(
-        lower(node, lambda name: values[name] if name in values else Var(name))
-        for node in _remaining(frame[STEP])
+        [
+            lower(node, lambda name: values[name] if name in values else Var(name))
+            for node in _remaining(frame[STEP])
+        ],
+        symbol=BODY_TERM,
     )
     event = trigger(kind.operator + kind.kind, goal)
     return structure("im", ctx.agent.library.label(plan), event, resolve(rest), bindings_of(frame))

@@ -12,7 +12,7 @@ from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.lowering import fresh_names, lower_trigger
 from jacaros.compiler.runtime import own_annotations
 from jacaros.compiler.triggers import Trigger, trigger
-from jacaros.terms.plans import TRIGGER, body_steps, is_body, step_parts, trigger_parts
+from jacaros.terms.plans import TRIGGERS, body_steps, is_body, step_parts, trigger_parts
 from jacaros.terms.text import text
 from jacaros.terms.unifier import rename
 from jacaros.terms.values import String, Term, atom, deref, functor
@@ -25,7 +25,7 @@ def trigger_of(term: Term) -> tuple[Trigger | None, Term, str] | None:
     term = deref(term)
     if term.__class__ is String:
         term = lower_trigger(parse_trigger(str(term)), fresh_names())
-    if term.__class__ is tuple and term[0] is TRIGGER:
+    if term.__class__ is tuple and term[0] in TRIGGERS:
         operator, literal = trigger_parts(term)
     elif is_body(term):
         steps = list(body_steps(term))
