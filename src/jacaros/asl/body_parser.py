@@ -237,6 +237,13 @@ class BodyParser(TermParser):
         if kind == "?":
             self.advance()
             formula = self.condition()
+            if isinstance(formula, nodes.InternalAction):
+                self.report(
+                    "tested-action",
+                    f"'{formula.name}' is an internal action and no test goal",
+                    formula.span,
+                    "write it without '?'",
+                )
             return nodes.Test(formula, span=self.span_from(start))
         if kind in ("+", "-", "^"):
             return self._belief_change()

@@ -69,7 +69,7 @@ class ProgramParser(PlanParser):
                     "unclosed-block",
                     f"the block of '{begin.functor}' has no end",
                     begin.span,
-                    "close it with { end }",
+                    f"close it with {{ end }}; the file ends at line {self.token.line}",
                 )
                 return section
             self._recovering(self._clause, section)

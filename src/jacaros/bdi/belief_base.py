@@ -1,6 +1,7 @@
 """Beliefs and rules, indexed by functor and, where programs ask for it, by arguments."""
 
 from collections.abc import Generator, Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from jacaros.asl import nodes
@@ -8,6 +9,7 @@ from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.lowering import fresh_names, lower, lower_value
 from jacaros.compiler.unit import compile_rule_function
 from jacaros.terms.order import annotation_set
+from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, equal, is_key, rename, resolve, unify
 from jacaros.terms.values import (
     BY_SELF,
@@ -33,7 +35,7 @@ class Rule:
     __slots__ = ("_actions", "_function", "node", "term")
 
     def __init__(self, node: nodes.Rule, actions: Mapping[str, ActionInfo]) -> None:
-        self.node = node
+        self.node = _with_source(node)
         self._actions = actions
         self._function: Any = None
 
@@ -45,15 +47,35 @@ class Rule:
         return found
 
     def head_annotations(self) -> tuple[Term, ...]:
-        """The annotations written at the head."""
+        """The annotations of the head, ``source(self)`` when it names no source."""
         annotations = self.node.head.annotations
-        if annotations is None:
-            return ()
-        return annotations_of(lower_value(self.node.head)) if annotations.items else ()
+        return BY_SELF if annotations is None else annotations_of(lower_value(self.node.head))
+
+    def text(self) -> str:
+        """The rule as Jason prints it."""
+        lookup = fresh_names()
+        head = lower(self.node.head, lookup)
+        if self.node.head.annotations is None:
+            head = Annotated(head, BY_SELF)
+        return f"{text(head)} :- {text(lower(self.node.body, lookup))}"
 
     def head(self) -> Term:
         """The head as a term with fresh variables."""
         return lower(self.node.head, fresh_names())
+
+
+_SOURCE_SELF = nodes.Literal("source", (nodes.Literal("self"),))
+
+
+def _with_source(rule: nodes.Rule) -> nodes.Rule:
+    """The rule with ``source(self)`` among the annotations of its head, when there are some and none is a source."""
+    annotations = rule.head.annotations
+    if annotations is None:
+        return rule
+    if any(isinstance(item, nodes.Literal) and item.functor == "source" for item in annotations.items):
+        return rule
+    more = replace(annotations, items=(*annotations.items, _SOURCE_SELF))
+    return replace(rule, head=replace(rule.head, annotations=more))
 
 
 class OpenFact:

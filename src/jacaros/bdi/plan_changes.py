@@ -157,10 +157,11 @@ def change_rule(agent: Circumstance, operator: str, term: Term) -> None:
     head = functor_of(lower(node.head, fresh_names()))
     assert head is not None
     table = agent.beliefs[head]
+    rule = Rule(node, agent.actions)
     if operator in ("-", "--"):
         for entry, _ in table.entries():
-            if isinstance(entry, Rule) and shape(entry.node) == shape(node):
+            if isinstance(entry, Rule) and shape(entry.node) == shape(rule.node):
                 table.remove(entry)
                 return
         return
-    belief_update.add_rule(agent, Rule(node, agent.actions), head, last=operator == "+>")
+    belief_update.add_rule(agent, rule, head, last=operator == "+>")

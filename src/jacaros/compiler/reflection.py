@@ -66,10 +66,14 @@ class Reflection:
         name = self._names.get(id(variable))
         if name is None:
             self._kept.append(variable)
-            name = self._names[id(variable)] = (
-                f"{variable.name.lstrip('_') or 'V'}_{len(self._names) + 1}".title()
-            )
+            name = self._names[id(variable)] = self._free_name(variable.name)
         return nodes.Variable(name)
+
+    def _free_name(self, written: str) -> str:
+        """The name of a variable, with a number when another one has it already or when it is unnamed."""
+        if written[0] != "_" and written not in self._names.values():
+            return written
+        return f"{written.lstrip('_') or 'V'}_{len(self._names) + 1}".title()
 
     def _literal(self, symbol: Functor, arguments: tuple[Term, ...]) -> nodes.Literal | nodes.InternalAction:
         built = tuple(self.term(a) for a in arguments)

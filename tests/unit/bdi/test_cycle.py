@@ -211,8 +211,8 @@ def test_variables_inside_a_negation_or_a_collection_stay_free() -> None:
     assert printed(
         """
         !g. p(1). p(2).
-        +!g <- ?(not q(Z)); Z = 3; .findall(X, p(X), [1,2]); X = 5; ?(.findall(Y, p(Y), L)); Y = 6; .count(p(W), 2); W = 7;
-          .print(Z, X, Y, L, W).
+        +!g <- ?(not q(Z)); Z = 3; .findall(X, p(X), [1,2]); X = 5; ?(true & .findall(Y, p(Y), L)); Y = 6; .count(p(W), 2);
+          W = 7; .print(Z, X, Y, L, W).
         """
     ) == ["356[1,2]7"]
 
@@ -530,7 +530,7 @@ def test_events_of_another_intention_share_no_variables() -> None:
 def test_annotations_of_a_rule_head_have_the_values_of_the_answer() -> None:
     assert printed(
         "!g. p(1). p(2). hd(X)[k(X)] :- p(X). +!g <- .findall(K,hd(_)[k(K)],L); .print(L); ?hd(Y)[|R]; .print(Y, R)."
-    ) == ["[1,2]", "1[k(1)]"]
+    ) == ["[1,2]", "1[k(1),source(self)]"]
 
 
 def test_ending_a_goal_of_a_suspended_intention_lets_its_caller_go_on_at_once() -> None:

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from jacaros.asl import nodes
-from jacaros.asl.formatter import format_term
 from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import Rule, parts
 from jacaros.bdi.context import Context
@@ -64,7 +63,7 @@ def list_rules(ctx: Context) -> None:
     for table in ctx.agent.beliefs.values():
         for entry, _ in table.entries():
             if isinstance(entry, Rule):
-                ctx.architecture.print(format_term(entry.node))
+                ctx.architecture.print(entry.text())
 
 
 @internal_action(".relevant_rules", arity=2)

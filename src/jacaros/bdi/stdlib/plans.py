@@ -9,7 +9,7 @@ from jacaros.bdi.plan_terms import plan_term
 from jacaros.bdi.stdlib.waiting import trigger_of
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.reflection import NotAPlan
-from jacaros.terms.text import text
+from jacaros.terms.text import plan_text, text
 from jacaros.terms.values import SELF, Term, atom, bare, is_list, list_items, make_list
 
 
@@ -85,4 +85,4 @@ def relevant_plan(ctx: Context, event: Term, target: Term) -> Iterator[None]:
 def list_plans(ctx: Context, event: Term = None) -> None:
     """``.list_plans [({T})]``: print the plans."""
     for plan in ctx.agent.library.plans if event is None else _relevant(ctx, event):
-        ctx.architecture.print(text(_term(ctx, plan)))
+        ctx.architecture.print(plan_text(_term(ctx, plan)))

@@ -1,0 +1,4 @@
+// A string holds only the escapes of the language.
+!start.
++!start <- .print("a\"b");
+  .print("a\d"); .stopMAS.
