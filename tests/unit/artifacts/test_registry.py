@@ -106,7 +106,7 @@ def test_a_dotted_name_leads_to_a_module_beside_the_project(tmp_path: Path) -> N
     assert find("board.Board").__name__ == "Board"
     with pytest.raises(UnknownArtifactType):
         find("board.Table")
-    with pytest.raises(InvalidArtifact, match="broken.py"):
+    with pytest.raises(InvalidArtifact, match=r"broken\.py"):
         find("broken.Broken")
 
 
