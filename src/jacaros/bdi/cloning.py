@@ -1,11 +1,17 @@
 """Copies of a mind: what ``.clone`` gives to the new agent."""
 
+from typing import Any
+
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event
 from jacaros.bdi.forks import copied
-from jacaros.bdi.intention import Intention
+from jacaros.bdi.intention import GOAL, Intention
 from jacaros.bdi.plan_changes import look_at_plans
+from jacaros.compiler.function import FIRST_SLOT
+from jacaros.compiler.runtime import Remaining
+from jacaros.terms.detaching import detached
 from jacaros.terms.unifier import rename
+from jacaros.terms.values import Term
 
 
 def copy_mind(original: Circumstance, clone: Circumstance) -> None:
@@ -15,34 +21,45 @@ def copy_mind(original: Circumstance, clone: Circumstance) -> None:
     The running intention is not copied, nor are those that wait or are suspended, and branches of forks: what
     they wait for belongs to the original.
     """
-    _copy_beliefs(original, clone)
+    copies: dict[int, Term] = {}
+    _copy_beliefs(original, clone, copies)
     clone.functions = dict(original.functions)
-    clone.namespace_properties = {name: dict(held) for name, held in original.namespace_properties.items()}
+    clone.namespace_properties = {
+        name: {key: detached(value, copies) for key, value in held.items()}
+        for name, held in original.namespace_properties.items()
+    }
     clone.plans_made = original.plans_made
     clone.library.take_over(original.library)
     look_at_plans(clone)
     for event in original.events:
         if event.intention is None:
-            clone.events.append(Event(_copied_goal(event.goal), None, event.annotations, event.cause))
+            clone.events.append(Event(_copied_goal(event.goal, copies), None, event.annotations, event.cause))
         elif _can_be_copied(original, event.intention):
-            owner = _copied_intention(clone, event.intention)
-            clone.events.append(Event(_copied_goal(event.goal), owner, event.annotations, event.cause))
+            owner = _copied_intention(clone, event.intention, copies)
+            clone.events.append(
+                Event(_copied_goal(event.goal, copies), owner, event.annotations, event.cause)
+            )
     for intention in original.intentions:
         if _can_be_copied(original, intention):
-            clone.intentions.append(_copied_intention(clone, intention))
+            clone.intentions.append(_copied_intention(clone, intention, copies))
 
 
-def _copy_beliefs(original: Circumstance, clone: Circumstance) -> None:
+def _copy_beliefs(original: Circumstance, clone: Circumstance, copies: dict[int, Term]) -> None:
     for symbol, table in original.beliefs.items():
         other = clone.beliefs[symbol]
         for entry, annotations in table.rows.items():
-            other.add(entry, annotations)
+            other.add(_copied_entry(entry, copies), annotations)
         for entry, annotations in table.late.items():
-            other.add(entry, annotations, last=True)
+            other.add(_copied_entry(entry, copies), annotations, last=True)
 
 
-def _copied_goal(goal: tuple[object, ...]) -> tuple[object, ...]:
-    return (goal[0], *(rename(argument) for argument in goal[1:]))
+def _copied_entry(entry: Any, copies: dict[int, Term]) -> Any:
+    """A row with collections of its own; rules and open facts do not change."""
+    return tuple(detached(a, copies) for a in entry) if entry.__class__ is tuple else entry
+
+
+def _copied_goal(goal: tuple[Any, ...], copies: dict[int, Term]) -> tuple[Any, ...]:
+    return (goal[0], *(detached(rename(argument), copies) for argument in goal[1:]))
 
 
 def _can_be_copied(agent: Circumstance, intention: Intention) -> bool:
@@ -57,8 +74,13 @@ def _can_be_copied(agent: Circumstance, intention: Intention) -> bool:
     )
 
 
-def _copied_intention(clone: Circumstance, intention: Intention) -> Intention:
+def _copied_intention(clone: Circumstance, intention: Intention, copies: dict[int, Term]) -> Intention:
     copy = clone.new_intention(intention.cause)
     copy.frames = copied(intention.frames)
+    for frame in copy.frames:
+        frame[GOAL] = _copied_goal(frame[GOAL], copies)
+        frame[FIRST_SLOT:] = [
+            value if isinstance(value, Remaining) else detached(value, copies) for value in frame[FIRST_SLOT:]
+        ]
     copy.handlers = list(intention.handlers)
     return copy

@@ -120,7 +120,7 @@ class _StepPlace:
         term = lower(self.node, lambda name: lookup[name] if name in lookup else Var(name))
         try:
             term = resolve(term)
-        except ArithmeticFault:
+        except (ArithmeticFault, RecursionError):
             # The formula holds the very expression that has no value: it is shown as it is written.
             term = String(format_term(self.node)) if isinstance(self.node, nodes.Term) else String("")
         return _code(term, self.node.span, self.plan.file)

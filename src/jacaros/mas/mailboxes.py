@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from jacaros.bdi.speech_act import SpeechAct
+from jacaros.terms.detaching import detached, holds_collection
 from jacaros.terms.unifier import is_ground, rename
 
 
@@ -20,12 +21,18 @@ class Mailboxes:
     def deliver(self, message: SpeechAct) -> bool:
         """Put *message* into the mailbox of its receiver; False when there is no such agent.
 
-        Variables are renamed apart: what the receiver binds stays unknown to the sender.
+        Variables are renamed apart, and sets, maps and queues copied: what the receiver binds or changes stays
+        unknown to the sender.
         """
         receive = self._find(message.receiver)
         if receive is None:
             return False
-        if not is_ground(message.content):
-            message = replace(message, content=rename(message.content))
+        content = message.content
+        if not is_ground(content):
+            content = rename(content)
+        if holds_collection(content):
+            content = detached(content)
+        if content is not message.content:
+            message = replace(message, content=content)
         receive(message)
         return True

@@ -156,3 +156,24 @@ def test_an_agent_is_told_that_it_falls_asleep_and_awakes(tmp_path: Path, plan: 
     result = run(tmp_path, a_asl=f"!go. +!go <- .wait(10); .print(up); .wait(10). {plan}")
     word = "sleep" if "sleep" in plan else "awake"
     assert sorted(result.of("a")) == sorted(["up", *([word] * (3 if word == "sleep" else 2))])
+
+
+def test_a_clone_shares_no_collections_with_its_original(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        a_asl="""!go.
+            +!go <- .set.create(S); .set.add(S, 1); .map.create(M); .map.put(M, k, [S]); +held(S, M); .queue.add(Q, S);
+                +queued(Q); .clone("b"); .send(b, achieve, change); .wait(10); .print(S, M).
+            +!change : held(S, M) & queued(Q) <- .set.add(S, 2); .print(S, M, Q).""",
+    )
+    assert result.lines == ["[b] {1,2}{k->[{1,2}]}[{1,2}]", "[a] {1}{k->[{1}]}"]
+
+
+def test_a_message_brings_a_copy_of_a_collection(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        m_mas2j="MAS m { agents: a; b; }",
+        a_asl="""!go. +!go <- .set.create(S); .set.add(S, 1); .send(b, tell, box(f(S))); .wait(20); .print(S).""",
+        b_asl="+box(f(S)) <- .set.add(S, 2); .print(S).",
+    )
+    assert result.lines == ["[b] {1,2}", "[a] {1}"]
