@@ -91,6 +91,8 @@ def test_a_syntax_error_in_a_program(project: Project) -> None:
         1,
         """\
         robot.asl:6:6: error: '(' is not closed: ')' is expected before '.print'
+          5 |      .print("b"
+            |            ^
           6 |      .print("c").
             |      ^^^^^^
         hint: it was opened at line 5, column 12

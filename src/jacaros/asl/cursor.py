@@ -130,7 +130,14 @@ class Cursor:
 
     # reports
 
-    def report(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
+    def report(
+        self,
+        code: str,
+        message: str,
+        span: Span | None = None,
+        hint: str | None = None,
+        opened: Span | None = None,
+    ) -> None:
         """Record an error, unless there is one for the same place; reading goes on."""
         if self.torn and code in _AFTER_TEAR:
             return
@@ -138,7 +145,7 @@ class Cursor:
         place = (span.line, span.column)
         if place not in self._blamed:
             self._blamed.add(place)
-            self.diagnostics.append(Diagnostic("error", message, span, hint, code))
+            self.diagnostics.append(Diagnostic("error", message, span, hint, code, opened))
 
     def forgive(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
         """Record what Jason refuses and the JaCaROS thesis prints: a warning in programs that name the artifact
@@ -188,6 +195,7 @@ class Cursor:
                 "mismatched-bracket",
                 f"'{opener.kind}' is closed by '{token.kind}'",
                 hint=f"{where}; close it with '{closer}'",
+                opened=self.span_of(opener),
             )
             if not self._closes_outer(opener) or self.peek().kind == token.kind:
                 self.advance()
@@ -196,11 +204,14 @@ class Cursor:
         slip = self.slip()
         if slip is not None:
             self.fail(slip.code, slip.message, self._blame(slip), slip.hint)
-        self.fail(
-            "unclosed-bracket",
-            f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
-            hint=where,
-        )
+        if token.kind != "error":
+            self.report(
+                "unclosed-bracket",
+                f"'{opener.kind}' is not closed: '{closer}' is expected before {found}",
+                hint=where,
+                opened=self.span_of(opener),
+            )
+        raise SyntaxPanic
 
     def _closes_outer(self, opener: Token) -> bool:
         """Whether the bracket here closes one that was opened before *opener* in this clause."""

@@ -13,7 +13,8 @@ Severity = OneOf["error", "warning", "note"]
 class Diagnostic:
     """One message about a program text; ``span`` is None when no single place is to blame.
 
-    ``code`` names the kind of the problem; docs/reference/diagnostics.md lists them.
+    ``code`` names the kind of the problem; docs/reference/diagnostics.md lists them.  ``opened`` is the bracket that is
+    not closed.
     """
 
     severity: Severity
@@ -21,12 +22,15 @@ class Diagnostic:
     span: Span | None = None
     hint: str | None = None
     code: str = ""
+    opened: Span | None = None
 
     def render(self, with_code: bool = False) -> str:
         """The message as people read it: place, message (with its code, if wanted), excerpt with carets, hint."""
         code = f" [{self.code}]" if with_code and self.code else ""
         lines = [f"{self.place()}{self.severity}: {self.message}{code}"]
         if self.span is not None:
+            if self.opened is not None and self.opened.line != self.span.line:
+                lines.extend(excerpt(self.opened))
             lines.extend(excerpt(self.span))
         if self.hint is not None:
             lines.append(f"hint: {self.hint}")

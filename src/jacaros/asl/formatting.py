@@ -35,7 +35,8 @@ def format_program(name: str, text: str) -> str:
                 break
             result = again
     except RecursionError:
-        raise AslError([Diagnostic("error", f"{name} is nested too deeply to be formatted")]) from None
+        wrong = Diagnostic("error", f"{name} is nested too deeply to be formatted", code="nested-too-deeply")
+        raise AslError([wrong]) from None
     if _substance(result) != _substance(text) or _meaning(name, result) != meaning:
         raise InternalError(f"formatting would change the meaning of {name}")
     return result

@@ -7,6 +7,7 @@ from urllib.parse import quote
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.kinds import KINDS
+from jacaros.asl.source import Span
 from jacaros.cli.version import version_of
 from jacaros.mas.checking import Findings
 
@@ -39,6 +40,7 @@ def _plain(diagnostic: Diagnostic) -> Object:
         "code": diagnostic.code,
         "message": diagnostic.message,
         "hint": diagnostic.hint,
+        "opened": None if diagnostic.opened is None else [diagnostic.opened.line, diagnostic.opened.column],
     }
 
 
@@ -72,17 +74,21 @@ def _result(diagnostic: Diagnostic, codes: list[str]) -> Object:
         "level": diagnostic.severity,
         "message": {"text": text},
     }
-    span = diagnostic.span
-    if span is not None:
-        region = {
-            "startLine": span.line,
-            "startColumn": span.column,
-            "endLine": span.end_line,
-            "endColumn": span.end_column,
-        }
-        location = {"artifactLocation": {"uri": _uri(span.file.name)}, "region": region}
-        result["locations"] = [{"physicalLocation": location}]
+    if diagnostic.span is not None:
+        result["locations"] = [_location(diagnostic.span)]
+    if diagnostic.opened is not None:
+        result["relatedLocations"] = [{**_location(diagnostic.opened), "message": {"text": "opened here"}}]
     return result
+
+
+def _location(span: Span) -> Object:
+    region = {
+        "startLine": span.line,
+        "startColumn": span.column,
+        "endLine": span.end_line,
+        "endColumn": span.end_column,
+    }
+    return {"physicalLocation": {"artifactLocation": {"uri": _uri(span.file.name)}, "region": region}}
 
 
 def _uri(name: str) -> str:

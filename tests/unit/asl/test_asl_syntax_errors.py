@@ -46,6 +46,8 @@ def test_all_errors_of_a_file_are_reported_at_once_in_order():
     ) == dedent(
         """\
         robot.asl:2:1: error: '(' is not closed: ')' is expected before '!'
+          1 | battery(60
+            |        ^
           2 | !patrol.
             | ^
         hint: it was opened at line 1, column 8

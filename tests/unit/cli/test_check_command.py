@@ -176,6 +176,16 @@ def check_result(result: dict[str, Any], rules: list[str]) -> None:
         assert (region["startLine"], region["startColumn"]) <= (region["endLine"], region["endColumn"])
 
 
+def test_the_bracket_that_is_not_closed_is_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "open.asl").write_text("+!g <- a(1,\n  2; b.", encoding="utf-8")
+    (told,) = json.loads(outcome(capsys, "open.asl", "--format", "json")[1])["diagnostics"]
+    assert (told["line"], told["opened"]) == (2, [1, 9])
+    (result,) = json.loads(outcome(capsys, "open.asl", "--format", "sarif")[1])["runs"][0]["results"]
+    (related,) = result["relatedLocations"]
+    assert related["message"] == {"text": "opened here"}
+    assert related["physicalLocation"]["region"]["startLine"] == 1
+
+
 def test_files_with_unusual_names_have_right_addresses(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
