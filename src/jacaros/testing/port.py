@@ -6,6 +6,7 @@ from random import Random
 from typing import Any, Protocol
 
 from jacaros.bdi.act import Act
+from jacaros.bdi.agent import Agent
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Timer, VirtualClock, run
 from jacaros.mas.coroutines import Ended
@@ -17,6 +18,7 @@ class Harness(Protocol):
     """What the port asks of the harness."""
 
     name: str
+    mind: Agent
     others: Collection[str] | None
     prints: list[str]
     logs: list[str]
@@ -91,6 +93,7 @@ class HarnessPort:
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         if delay > 0:
+            self._harness.mind.shut_down_in(delay * 1000)
             self.clock.call_later(delay, lambda: self._harness.stop(exit_code))
         else:
             self._harness.stop(exit_code)
