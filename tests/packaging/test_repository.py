@@ -29,6 +29,8 @@ FOREIGN = tuple(
 HOSTS = {
     "127.0.0.1",
     "localhost",
+    "docs.oasis-open.org",  # the format SARIF
+    "json.schemastore.org",  # the name of its schema
     "keepachangelog.com",
     "semver.org",
     "www.apache.org",
