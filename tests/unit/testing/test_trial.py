@@ -112,6 +112,15 @@ def test_an_assertion_that_does_not_hold_fails_with_place_and_values(
     assert [line for line in lines if line not in shown] == []
 
 
+@pytest.mark.parametrize("name", ["assert_true", "assert_false"])
+def test_a_formula_that_cannot_be_evaluated_fails_its_assertion(outcomes: Outcomes, name: str) -> None:
+    (outcome,) = outcomes(f"q :- 1 div 0 > 2. @t[test] +!t <-\n !{name}(q); .print(end).")
+    assert [problem.message for problem in outcome.problems] == [f"{name} failed"]
+    assert outcome.problems[0].span is not None
+    assert outcome.problems[0].span.line == 2
+    assert outcome.output[-1] == "[t] end"
+
+
 def test_a_test_goes_on_after_an_assertion_that_failed(outcomes: Outcomes) -> None:
     (outcome,) = outcomes(
         "@t[test] +!t <- !assert_true(a); !assert_true(true); !assert_true(b); .print(end)."

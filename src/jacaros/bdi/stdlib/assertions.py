@@ -13,6 +13,7 @@ from jacaros.bdi.failure import place_of_call
 from jacaros.bdi.intention import GOAL, PLAN
 from jacaros.bdi.internal_action import ActionError, internal_action
 from jacaros.bdi.probe import Assertion, Probe
+from jacaros.errors import InternalError
 from jacaros.terms.collections import QueueValue, SetValue
 from jacaros.terms.text import display, text
 from jacaros.terms.unifier import Trail, equal, undo, unify
@@ -73,6 +74,11 @@ def _holds(ctx: Context, formula: Term) -> bool:
         return ctx.succeeds(formula)
     finally:
         undo(ctx.trail, mark)
+
+
+def _fault(fault: Exception) -> str:
+    """What is told of a formula that cannot be evaluated: an assertion about it fails, where the test makes it."""
+    return f"it cannot be evaluated: {fault or type(fault).__name__}"
 
 
 def _is_in(item: Term, items: Iterable[Term]) -> bool:
@@ -140,14 +146,26 @@ def assert_not_equals(ctx: Context, unwanted: Term, actual: Term) -> None:
 @internal_action("jacaros.assert_true", arity=1)
 def assert_true(ctx: Context, formula: Term) -> None:
     """``jacaros.assert_true(Formula)``: it holds now."""
-    passed = _holds(ctx, formula)
+    try:
+        passed = _holds(ctx, formula)
+    except InternalError:
+        raise
+    except Exception as fault:
+        _tell(ctx, False, text(formula), _fault(fault))
+        return
     _tell(ctx, passed, text(formula), "" if passed else _believed(ctx, formula))
 
 
 @internal_action("jacaros.assert_false", arity=1)
 def assert_false(ctx: Context, formula: Term) -> None:
     """``jacaros.assert_false(Formula)``: it does not hold now."""
-    passed = not _holds(ctx, formula)
+    try:
+        passed = not _holds(ctx, formula)
+    except InternalError:
+        raise
+    except Exception as fault:
+        _tell(ctx, False, f"not {text(formula)}", _fault(fault))
+        return
     _tell(ctx, passed, f"not {text(formula)}", "" if passed else "it holds")
 
 
