@@ -30,11 +30,12 @@ from program_grammar import Grammar  # noqa: E402
 from recording_host import RecordingHost  # noqa: E402
 
 from jacaros.asl.checker import check  # noqa: E402
+from jacaros.asl.checks.actions import KnownActions  # noqa: E402
 from jacaros.asl.diagnostics import Diagnostic  # noqa: E402
-from jacaros.asl.errors import AslError  # noqa: E402
 from jacaros.asl.formatter import format_plan, format_term  # noqa: E402
-from jacaros.asl.loader import load_program  # noqa: E402
+from jacaros.asl.loader import read_program  # noqa: E402
 from jacaros.asl.nodes import Program  # noqa: E402
+from jacaros.asl.source import SourceFile  # noqa: E402
 from jacaros.bdi.act import Act, Completion  # noqa: E402
 from jacaros.bdi.agent import Agent  # noqa: E402
 from jacaros.bdi.internal_action import STANDARD  # noqa: E402
@@ -175,17 +176,15 @@ def _characters_changed(text: str, random: Random) -> str:
 
 def examine(text: str) -> str:
     """Load, check, format and run a text; ``refused`` or ``program``.  What escapes is a finding."""
-    try:
-        program, warnings = load_program("fuzz.asl", text, _read)
-    except AslError as refused:
-        assert refused.diagnostics  # noqa: PT017 - no test of pytest
-        _show(refused.diagnostics, text)
-        return "refused"
-    _show((*warnings, *check(program, STANDARD)), text)
+    program, diagnostics = read_program(SourceFile("fuzz.asl", text), _read)
+    errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
+    _show((*diagnostics, *check(program, KnownActions(STANDARD), errors)), text)
     for clause in program.beliefs:
         format_term(clause)
     for plan in program.plans:
         format_plan(plan)
+    if errors:
+        return "refused"
     live(program)
     return "program"
 

@@ -205,6 +205,11 @@ class Table:
         found.extend(self.late.items())
         return found
 
+    def in_order(self) -> Iterator[tuple[Any, tuple[Term, ...]]]:
+        """The entries one by one in the order in which they answer, for who stops when something changes."""
+        yield from reversed(self.rows.items())
+        yield from self.late.items()
+
     def candidates(self, arguments: Row) -> Iterable[tuple[Any, tuple[Term, ...]]]:
         """The entries that may unify with the arguments, in order; an index is used where one helps."""
         if not self.plain:

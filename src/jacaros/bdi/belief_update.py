@@ -129,7 +129,8 @@ def _remove_first(
     """Remove the first match; the row as asked for, with variables bound, or None when nothing matches."""
     table = agent.beliefs[symbol]
     trail = agent.trail
-    for entry, held in list(table.candidates(arguments)):
+    unbound = all(a.__class__ is Var and a.ref is None for a in arguments)
+    for entry, held in table.in_order() if unbound else table.candidates(arguments):
         mark = len(trail)
         row = entry if entry.__class__ is tuple else _open_row(entry)
         if (
@@ -183,7 +184,7 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
 
 def _delete_own(agent: Circumstance, symbol: Functor) -> None:
     table = agent.beliefs[symbol]
-    for entry, held in table.entries():
+    for entry, held in table.in_order():
         row = entry if entry.__class__ is tuple else _open_row(entry)
         if row is not None and BY_SELF[0] in held:
             if take_away(table, entry, held, BY_SELF):

@@ -61,6 +61,7 @@ class Circumstance:
         project_functions: those of the project, with their least and greatest numbers of arguments.
         cycles: number of steps made.
         next_look: number of the cycle in which percepts and messages are looked at next.
+        blamed: plans whose goal condition cannot be evaluated, as people have been told.
         goal_depth: how many plans may be on the stack of an intention.
         rule_depth: how many rules and conditions may be open at the same time in one search.
         stopped: the agent is over.
@@ -117,6 +118,7 @@ class Circumstance:
         self.project_functions: Mapping[str, tuple[int, int | None]] = {}
         self.context: Any = None
         self.cycles = 0
+        self.blamed: set[Any] = set()
         self.goal_depth = options.goal_depth
         self.rule_depth = options.rule_depth
         self.stopped = False

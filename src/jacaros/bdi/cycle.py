@@ -119,7 +119,7 @@ def _read_message(agent: Circumstance) -> None:
 
 
 def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
-    """Whether the goal condition of a frame holds; one that cannot be evaluated is never asked again."""
+    """Whether the goal condition of a frame holds; one that cannot be evaluated does not, which is told once."""
     achieved = frame[PLAN].goal_condition
     if achieved is None:
         return False
@@ -128,8 +128,10 @@ def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
     except InternalError:
         raise
     except Exception as fault:
-        frame[PLAN].goal_condition = None
-        rescue.passed_over(agent, f"the goal condition of plan {text(frame[PLAN].label)}", fault)
+        undo(agent.trail, 0)
+        if frame[PLAN] not in agent.blamed:
+            agent.blamed.add(frame[PLAN])
+            rescue.passed_over(agent, f"the goal condition of plan {text(frame[PLAN].label)}", fault)
         return False
 
 

@@ -112,7 +112,45 @@ def settle(term: Term) -> Term:
 
 
 def _evaluate(term: Term) -> Term:
-    operands = [settle(a) for a in term[1:]]
+    try:
+        operands = [settle(a) for a in term[1:]]
+    except RecursionError:
+        return _evaluate_deep(term)
+    return _apply(term, operands)
+
+
+_TOO_MANY = 1_000_000
+"""Operations that wait for their operands at the same time."""
+
+
+def _evaluate_deep(term: Term) -> Term:
+    """The value of arithmetic that is nested too deeply for Python's stack; calls of functions inside stay as they are.
+
+    Raises:
+        RecursionError: it is nested without end.
+    """
+    todo: list[Term] = [term]
+    done: list[Term] = []
+    while todo:
+        item = deref(todo.pop())
+        if item.__class__ is list:
+            (operation,) = item
+            count = len(operation) - 1
+            operands = done[-count:]
+            del done[-count:]
+            done.append(_apply(operation, operands))
+        elif item.__class__ is tuple and item[0].kind == ARITHMETIC:
+            todo.append([item])
+            todo.extend(item[:0:-1])
+            if len(todo) > _TOO_MANY:
+                raise RecursionError("arithmetic is nested too deeply")
+        else:
+            done.append(item)
+    return done[0]
+
+
+def _apply(term: Term, operands: list[Term]) -> Term:
+    """The value of an operation, or the term itself while an operand is not known."""
     for operand in operands:
         if operand.__class__ is not float and _is_open(operand):
             return term
