@@ -102,7 +102,10 @@ class Agent(Circumstance):
     def take_up(self, program: nodes.Program) -> None:
         """Take up the beliefs and goals of a program."""
         for belief in reversed(program.beliefs):
-            self._initial_belief(belief)
+            try:
+                self._initial_belief(belief)
+            except ArithmeticFault as fault:
+                self._without_value(belief, fault)
         self.adopt(program.goals)
         self.architecture.ready()
 
@@ -118,9 +121,12 @@ class Agent(Circumstance):
         try:
             return lower_value(node)
         except ArithmeticFault as fault:
-            place = f"{node.span.file.name}:{node.span.line}: " if node.span is not None else ""
-            self.architecture.log("error", f"{place}an initial belief or goal cannot be evaluated: {fault}")
+            self._without_value(node, fault)
             return None
+
+    def _without_value(self, node: nodes.Node, fault: ArithmeticFault) -> None:
+        place = f"{node.span.file.name}:{node.span.line}: " if node.span is not None else ""
+        self.architecture.log("error", f"{place}an initial belief or goal cannot be evaluated: {fault}")
 
     def include(self, path: str, namespace: str | None = None) -> None:
         """Take in a program file at run time, all of it in a namespace if one is given.

@@ -16,7 +16,7 @@ from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, 
 from jacaros.bdi.internal_action import Crashed
 from jacaros.bdi.stack import achieve, remove_event
 from jacaros.bdi.waiting import Waiting
-from jacaros.compiler.runtime import SUSPENDED, Fail, literal_of
+from jacaros.compiler.runtime import SUSPENDED, Fail
 from jacaros.errors import InternalError
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
@@ -440,7 +440,7 @@ def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReaso
 
 def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
     bottom = next((frame[GOAL] for frame in intention.frames if frame[GOAL][0].kind), None)
-    what = "an intention" if bottom is None else f"the goal !{text(literal_of(bottom, ()))}"
+    what = "an intention" if bottom is None else f"the goal !{failure.goal_text(bottom)}"
     where = reason.where()
     place = f" ({where})" if where else ""
     told = f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
@@ -456,7 +456,7 @@ def _lost_in_handler(
         intention.on_failed(annotations if isinstance(annotations, FailureReason) else None)
         agent.finish(intention)
         return
-    shown = f"-{goal[0].kind}{text(literal_of(goal, ()))}"
+    shown = f"-{goal[0].kind}{failure.goal_text(goal)}"
     told = (
         f": {annotations.error()}, {annotations.message()}" if isinstance(annotations, FailureReason) else ""
     )

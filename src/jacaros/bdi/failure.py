@@ -120,7 +120,7 @@ class _StepPlace:
         term = lower(self.node, lambda name: lookup[name] if name in lookup else Var(name))
         try:
             term = resolve(term)
-        except (ArithmeticFault, RecursionError):
+        except (ArithmeticFault, CyclicTerm, RecursionError):
             # The formula holds the very expression that has no value: it is shown as it is written.
             term = String(format_term(self.node)) if isinstance(self.node, nodes.Term) else String("")
         return _code(term, self.node.span, self.plan.file)
@@ -160,7 +160,10 @@ class _GoalPlace:
     def annotations(self) -> tuple[Term, ...]:
         # A goal that was posted again by its handler has the reasons of its last failure: they would double each time.
         shown = tuple(a for a in annotations_of_event(self.goal_annotations) if functor_of(a) not in _REASONS)
-        term = resolve(literal_of(self.goal, shown))
+        try:
+            term = resolve(literal_of(self.goal, shown))
+        except (ArithmeticFault, CyclicTerm):
+            term = String(goal_text(self.goal))
         span, file = self._call()
         return _code(term, span, file)
 
@@ -271,12 +274,20 @@ def _plain_failure(node: nodes.Node) -> tuple[str, str]:
     return error, {"test_goal_failed": "a test found no answer"}.get(error, error.replace("_", " "))
 
 
+def goal_text(goal: tuple[Any, ...]) -> str:
+    """A goal for people; one whose arguments have no value (``g(1 div 0)``) by its name."""
+    try:
+        return text(literal_of(goal, ()))
+    except (ArithmeticFault, CyclicTerm):
+        return f"{goal[0].functor.name}(...)"
+
+
 def no_plan(
     agent: Circumstance, goal: tuple[Any, ...], annotations: Any, caller: Frame | None
 ) -> FailureReason:
     """The reason of a goal that has no relevant or no applicable plan."""
     relevant = agent.selects[goal[0]] is not None
-    shown = goal[0].kind + text(literal_of(goal, ()))
+    shown = goal[0].kind + goal_text(goal)
     if relevant and agent.refused_options:
         agent.refused_options = False
         terms = error_terms("no_option", f"no option is selected for {shown}")

@@ -96,6 +96,32 @@ def _annotated(
     return annotated(done.pop(), annotations, tail)
 
 
+_HASHABLE = 10_000
+"""Levels of a term (each element of a list is one) that Python can hash without overflowing its stack."""
+
+
+def as_key(term: Term) -> Term:
+    """The term itself, which becomes an element of a set or a key of a map.
+
+    Raises:
+        RecursionError: it is nested too deeply for that.
+    """
+    todo = [(term, 0)]
+    while todo:
+        item, depth = todo.pop()
+        if item.__class__ is Annotated:
+            todo += ((part, depth + 1) for part in _parts(item))
+        elif item.__class__ is tuple:
+            if depth > _HASHABLE:
+                raise RecursionError(f"elements of sets and keys of maps have {_HASHABLE} levels at most")
+            todo += [
+                (part, depth + 1)
+                for part in item[1:]
+                if part.__class__ is tuple or part.__class__ is Annotated
+            ]
+    return term
+
+
 class Turns:
     """Watches a walk along bound variables, and finds out when it goes in a circle (Brent)."""
 

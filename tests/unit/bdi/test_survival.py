@@ -185,3 +185,31 @@ def test_handlers_without_end_end_their_intention() -> None:
 def test_belief_changes_that_cause_each_other_without_end_fail() -> None:
     program = "!s. +!s <- +b(1); .print(never). +b(N) <- +b(N+1); .print(never). -!s[error(E)] <- .print(E)."
     assert ended(program, goal_depth=500) == ["too_deep"]
+
+
+def test_a_rule_whose_head_has_no_value_is_left_out_and_told() -> None:
+    host = mind("r(1)[1 div 0] :- p. p. !g. +!g <- .print(alive).")
+    host.run()
+    assert host.printed == ["alive"]
+    assert any("cannot be evaluated" in text for level, text in host.logged if level == "error")
+
+
+def test_a_goal_without_plan_whose_argument_has_no_value_fails_with_a_reason() -> None:
+    program = """
+    !g. !h.
+    +!g <- Y = 1 div X; X = 0; !unknown(Y); .print(never).
+    -!g[error(E)] <- .print(E).
+    +!h <- .print(alive).
+    """
+    assert sorted(printed(program)) in (["alive", "arithmetic_error"], ["alive", "no_relevant"])
+
+
+def test_an_element_that_python_could_not_hash_is_refused() -> None:
+    program = """
+    !g.
+    +!g <- !deep(20000, a, T); .set.create(S); .set.add(S, [1, 2]); .print(S); .set.add(S, T); .print(never).
+    +!deep(0, T, T).
+    +!deep(N, T, R) <- !deep(N-1, f(T), R).
+    -!g[error(E)] <- .print(E).
+    """
+    assert printed(program) == ["{[1,2]}", "too_deep"]

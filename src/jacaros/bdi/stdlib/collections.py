@@ -11,6 +11,7 @@ from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import members
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.deep import as_key
 from jacaros.terms.text import text
 from jacaros.terms.values import Functor, Term, Var
 
@@ -52,25 +53,25 @@ def create_set(ctx: Context, variable: Term) -> bool:
 @internal_action(".set.add", arity=2)
 def add_to_set(ctx: Context, collection: Term, item: Term) -> None:
     """``.set.add(S, X)`` puts an element in."""
-    _set(ctx, collection).items[item] = None
+    _set(ctx, collection).items[as_key(item)] = None
 
 
 @internal_action(".set.add_all", arity=2)
 def add_all_to_set(ctx: Context, collection: Term, items: Term) -> None:
     """``.set.add_all(S, C)`` puts the elements of a list, set or queue in."""
-    _set(ctx, collection).items.update(dict.fromkeys(_items(items)))
+    _set(ctx, collection).items.update(dict.fromkeys(map(as_key, _items(items))))
 
 
 @internal_action(".set.union", arity=2)
 def union_of_sets(ctx: Context, collection: Term, items: Term) -> None:
     """``.set.union(S, C)`` does the same as ``.set.add_all``."""
-    _set(ctx, collection).items.update(dict.fromkeys(_items(items)))
+    _set(ctx, collection).items.update(dict.fromkeys(map(as_key, _items(items))))
 
 
 @internal_action(".set.intersection", arity=2)
 def intersection_of_sets(ctx: Context, collection: Term, items: Term) -> None:
     """``.set.intersection(S, C)`` leaves in *S* only what is also in the list, set or queue *C*."""
-    target, kept = _set(ctx, collection), dict.fromkeys(_items(items))
+    target, kept = _set(ctx, collection), dict.fromkeys(map(as_key, _items(items)))
     target.items = {item: None for item in target.items if item in kept}
 
 
@@ -79,13 +80,13 @@ def difference_of_sets(ctx: Context, collection: Term, items: Term) -> None:
     """``.set.difference(S, C)`` takes out of *S* what is in the list, set or queue *C*."""
     target = _set(ctx, collection)
     for item in _items(items):
-        target.items.pop(item, None)
+        target.items.pop(as_key(item), None)
 
 
 @internal_action(".set.remove", arity=2)
 def remove_from_set(ctx: Context, collection: Term, item: Term) -> None:
     """``.set.remove(S, X)`` takes an element out; it need not be there."""
-    _set(ctx, collection).items.pop(item, None)
+    _set(ctx, collection).items.pop(as_key(item), None)
 
 
 @internal_action(".set.to_list", arity=2)
@@ -115,20 +116,20 @@ def create_map(ctx: Context, variable: Term) -> bool:
 @internal_action(".map.put", arity=3)
 def put(ctx: Context, collection: Term, key: Term, value: Term) -> None:
     """``.map.put(M, K, V)`` makes *V* the value of the key *K*."""
-    _map(ctx, collection).items[key] = value
+    _map(ctx, collection).items[as_key(key)] = value
 
 
 @internal_action(".map.get", arity=(3, 4))
 def get(ctx: Context, collection: Term, key: Term, value: Term, *default: Term) -> bool:
     """``.map.get(M, K, V[, Default])``: *V* is the value of *K*, or the default.  Fails without either."""
-    found = _map(ctx, collection).items.get(key, *default)
+    found = _map(ctx, collection).items.get(as_key(key), *default)
     return found is not None and ctx.unify(value, found)
 
 
 @internal_action(".map.remove", arity=(2, 3))
 def remove_from_map(ctx: Context, collection: Term, key: Term, value: Term = None) -> bool:
     """``.map.remove(M, K[, V])`` takes a key out, whose value *V* was.  Fails when it is not there."""
-    removed = _map(ctx, collection).items.pop(key, None)
+    removed = _map(ctx, collection).items.pop(as_key(key), None)
     return removed is not None and (value is None or ctx.unify(value, removed))
 
 

@@ -8,6 +8,7 @@ from jacaros.bdi.stdlib.arguments import characters, elements, members, number, 
 from jacaros.bdi.stdlib.beliefs import best
 from jacaros.bdi.stdlib.java_regex import replace_all
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.deep import as_key
 from jacaros.terms.order import compare, sorted_terms
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, equal, is_ground, undo, unify
@@ -56,7 +57,7 @@ def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
 
 def _holds(collection: SetValue | QueueValue, item: Term) -> bool:
     if isinstance(collection, SetValue):
-        return item in collection.items
+        return as_key(item) in collection.items
     return any(equal(item, other) for other in collection)
 
 
