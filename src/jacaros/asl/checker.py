@@ -1,6 +1,6 @@
 """Warnings about programs that can be run but probably do not do what is meant."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 from jacaros.asl import nodes
@@ -11,7 +11,7 @@ from jacaros.asl.checks.actions import (
     unknown_performatives,
     wrong_arguments,
 )
-from jacaros.asl.checks.formulas import clauses
+from jacaros.asl.checks.formulas import clauses as clauses_of
 from jacaros.asl.checks.goals import goals_without_plan
 from jacaros.asl.checks.plans import (
     contexts_never_true,
@@ -22,9 +22,12 @@ from jacaros.asl.checks.plans import (
 from jacaros.asl.checks.variables import singletons, vain_comparisons
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import Span
+from jacaros.asl.walk import walk
 
-_STYLE: Final = frozenset({"singleton-variable", "capital-constant", "narrow-handler"})
-"""What need not be told each time a program is run."""
+_LOOKED_AT: Final = (
+    *(nodes.Plan, nodes.Rule, nodes.Trigger, nodes.InternalAction, nodes.Achieve, nodes.BeliefChange),
+    *(nodes.If, nodes.While, nodes.For, nodes.Test),
+)
 
 
 def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic] = ()) -> list[Diagnostic]:
@@ -36,38 +39,49 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
         errors: what is wrong in it.  Clauses with errors are passed over, and so are the checks that need all
             clauses, since what is missing may stand in those with errors.
     """
-    wrong = [error.span for error in errors if error.span is not None]
-    sound = [clause for clause in clauses(program) if not _holds_any(clause.span, wrong)]
-    plans = [clause for clause in sound if isinstance(clause, nodes.Plan)]
-    roots = (*sound, *(belief for belief in program.beliefs if not isinstance(belief, nodes.Rule)))
-    found = [
-        *unknown_actions(program, roots, known),
-        *wrong_arguments(roots, known),
-        *acting_conditions(roots, known),
-        *unknown_performatives(roots),
-        *contexts_never_true(plans),
-        *misspelt_label_words(plans),
-        *(warning for clause in sound for warning in _of_clause(clause)),
-    ]
+    warnings = _mistakes(program, known, errors)
+    for clause in _sound(program, errors):
+        warnings += singletons(clause)
     if not errors:
-        found += [*goals_without_plan(program), *never_selected(program), *narrow_handlers(program)]
-    return sorted(dict.fromkeys(found), key=place)
+        warnings += narrow_handlers(program)
+    return sorted(dict.fromkeys(warnings), key=place)
 
 
 def check_for_run(program: nodes.Program, known: KnownActions) -> list[Diagnostic]:
     """The warnings of `check` that are nearly always mistakes: what is a matter of style is left out."""
-    return [warning for warning in check(program, known) if warning.code not in _STYLE]
+    return sorted(dict.fromkeys(_mistakes(program, known, ())), key=place)
+
+
+def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic]) -> list[Diagnostic]:
+    clauses = _sound(program, errors)
+    facts = [belief for belief in program.beliefs if not isinstance(belief, nodes.Rule)]
+    # One walk for all: a program may have many thousand beliefs.
+    found = [node for node in walk(*facts, *clauses) if isinstance(node, _LOOKED_AT)]
+    warnings = [
+        *unknown_actions(program, found, known),
+        *wrong_arguments(found, known),
+        *acting_conditions(found, known),
+        *unknown_performatives(found),
+        *contexts_never_true(found),
+        *misspelt_label_words(found),
+    ]
+    for clause in clauses:
+        warnings += vain_comparisons(clause)
+    if not errors:
+        warnings += [*goals_without_plan(program, found), *never_selected(program, found)]
+    return warnings
+
+
+def _sound(program: nodes.Program, errors: Sequence[Diagnostic]) -> list[nodes.Plan | nodes.Rule]:
+    """The plans and rules without errors in them."""
+    wrong = [error.span for error in errors if error.span is not None]
+    return [clause for clause in clauses_of(program) if not _holds_any(clause.span, wrong)]
 
 
 def place(diagnostic: Diagnostic) -> tuple[str, int, int]:
     """What diagnostics are sorted by: file, line, column."""
     span = diagnostic.span
     return ("", 0, 0) if span is None else (span.file.name, span.line, span.column)
-
-
-def _of_clause(clause: nodes.Plan | nodes.Rule) -> Iterator[Diagnostic]:
-    yield from singletons(clause)
-    yield from vain_comparisons(clause)
 
 
 def _holds_any(span: Span | None, places: Sequence[Span]) -> bool:

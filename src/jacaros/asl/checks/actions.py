@@ -1,6 +1,6 @@
 """Internal actions: their names, numbers of arguments, and where they stand."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Final, Protocol
@@ -10,7 +10,6 @@ from jacaros.asl.checks.formulas import conditions, parts_of
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.functions import ARITIES
 from jacaros.asl.spelling import is_slip_of
-from jacaros.asl.walk import walk
 
 _PERFORMATIVES: Final = (
     *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
@@ -52,12 +51,12 @@ class KnownActions:
 
 
 def unknown_actions(
-    program: nodes.Program, roots: tuple[nodes.Node, ...], known: KnownActions
+    program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
 ) -> Iterator[Diagnostic]:
     """Internal actions that there are not."""
     functions = {function.implementation for function in program.functions}
     registered = {function.name for function in program.functions}
-    for node in walk(*roots):
+    for node in found:
         if not isinstance(node, nodes.InternalAction):
             continue
         name = node.name
@@ -88,9 +87,9 @@ def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
     return _arguments_message(node, least, None if most == float("inf") else int(most), "the function")
 
 
-def wrong_arguments(roots: tuple[nodes.Node, ...], known: KnownActions) -> Iterator[Diagnostic]:
+def wrong_arguments(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
     """Internal actions with too few or too many arguments."""
-    for node in walk(*roots):
+    for node in found:
         if isinstance(node, nodes.InternalAction):
             signature = known.signatures.get(node.name)
             count = len(node.arguments)
@@ -120,9 +119,9 @@ def _arguments(count: int) -> str:
     return f"{count or 'no'} argument{'' if count == 1 else 's'}"
 
 
-def acting_conditions(roots: tuple[nodes.Node, ...], known: KnownActions) -> Iterator[Diagnostic]:
+def acting_conditions(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
     """Internal actions that act or wait and are asked whether they hold."""
-    for node in walk(*roots):
+    for node in found:
         for formula in conditions(node):
             for part in parts_of(formula):
                 if isinstance(part, nodes.InternalAction):
@@ -137,10 +136,10 @@ def acting_conditions(roots: tuple[nodes.Node, ...], known: KnownActions) -> Ite
                         )
 
 
-def unknown_performatives(roots: tuple[nodes.Node, ...]) -> Iterator[Diagnostic]:
+def unknown_performatives(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Performatives that are nearly those of the language; any other word may be one of the program's own."""
     places = {".send": 1, ".broadcast": 0}
-    for node in walk(*roots):
+    for node in found:
         if not isinstance(node, nodes.InternalAction) or len(node.arguments) <= places.get(node.name, 99):
             continue
         word = node.arguments[places[node.name]]

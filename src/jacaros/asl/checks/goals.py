@@ -1,25 +1,24 @@
 """Goals that are posted and that no plan is for."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.walk import walk
 
 _ADDING_PLANS: Final = frozenset({".add_plan", ".include"})
 _Signature = tuple[object, str, int]
 
 
-def goals_without_plan(program: nodes.Program) -> Iterator[Diagnostic]:
+def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Goals that are posted and that no plan (nor ``-!`` handler) is for.
 
     Programs with plans for any goal (``+!G``) and programs that add plans are left alone.
     """
     handled: set[_Signature] = set()
     posted: list[nodes.Literal] = list(program.goals)
-    for node in walk(program.beliefs, program.plans):
+    for node in found:
         if isinstance(node, nodes.Trigger) and node.kind == "!":
             if isinstance(node.literal, nodes.Variable):
                 return

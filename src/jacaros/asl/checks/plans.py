@@ -14,12 +14,12 @@ _REMOVING: Final = frozenset({".remove_plan", ".add_plan", ".include"})
 _LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs")
 
 
-def never_selected(program: nodes.Program) -> Iterator[Diagnostic]:
+def never_selected(program: nodes.Program, found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Plans behind one that is always taken before them.
 
     Programs that change their plans or choose among them by rules of their own are left alone.
     """
-    for node in walk(program.beliefs, program.plans):
+    for node in found:
         if isinstance(node, nodes.InternalAction) and node.name in _REMOVING:
             return
         if isinstance(node, nodes.BeliefChange) and isinstance(node.operand, nodes.PlanTerm | nodes.Variable):
@@ -93,9 +93,9 @@ def _same(one: nodes.Node, two: nodes.Node | None) -> bool:
     return one == two and not any(isinstance(node, nodes.Variable) for node in walk(one))
 
 
-def contexts_never_true(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
+def contexts_never_true(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Plans whose condition contradicts itself."""
-    for node in walk(*plans):
+    for node in found:
         if isinstance(node, nodes.Plan) and node.context is not None:
             why = contradiction(node.context)
             if why is not None:
@@ -134,9 +134,9 @@ def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
             )
 
 
-def misspelt_label_words(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
+def misspelt_label_words(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Annotations of labels that are nearly those with a meaning."""
-    for node in walk(*plans):
+    for node in found:
         if not isinstance(node, nodes.Plan) or not isinstance(node.label, nodes.Literal):
             continue
         annotations = node.label.annotations

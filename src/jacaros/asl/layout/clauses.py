@@ -37,8 +37,7 @@ class ProgramLayout(StepLayout):
         kind = self.pieces[begin].kind
         if kind == "{":
             return self._directive(begin), self.closer[begin] + 1
-        dots = self.split(begin, end, ".")
-        stop = dots[0] if dots else end
+        stop = self.find(begin, end, ".")
         if kind in _TRIGGERS or kind == "@":
             return self._plan_clause(begin, stop, end)
         arrows = self.split(begin, stop, ":-")
@@ -80,8 +79,7 @@ class ProgramLayout(StepLayout):
         """Whether the braces at *opener* stand where the plan may end, and not where a term is expected."""
         before = self.pieces[opener - 1].kind
         if before == ")":
-            condition = next(at for at, closer in self.closer.items() if closer == opener - 1)
-            return self.pieces[condition - 1].kind not in ("if", "while", "for", "elif")
+            return self.pieces[self.opener[opener - 1] - 1].kind not in ("if", "while", "for", "elif")
         return opener > begin and before in ("atom", "variable", "number", "string", "]", "}", "true")
 
     def _subplans(self, opener: int) -> Document:

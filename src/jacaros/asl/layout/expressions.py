@@ -33,6 +33,7 @@ class ExpressionLayout(ABC):
     def __init__(self, pieces: Sequence[Piece]) -> None:
         self.pieces = pieces
         self.closer = _matching(pieces)
+        self.opener = {closer: opener for opener, closer in self.closer.items()}
 
     @abstractmethod
     def braces(self, opener: int) -> Document:
@@ -84,6 +85,13 @@ class ExpressionLayout(ABC):
                 found.append(at)
             at = self.closer.get(at, at) + 1
         return found
+
+    def find(self, begin: int, end: int, kind: str) -> int:
+        """The place of the first token of this kind outside of brackets, or *end*."""
+        at = begin
+        while at < end and self.pieces[at].kind != kind:
+            at = self.closer.get(at, at) + 1
+        return min(at, end)
 
     def on_one_line(self, begin: int, end: int) -> bool:
         """Whether the pieces stand on one line of the source."""
