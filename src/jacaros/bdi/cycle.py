@@ -341,7 +341,7 @@ def _too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
 def _alone(agent: Circumstance) -> bool:
     """Whether nothing else wants the next cycle."""
     if agent.atomic is not None:
-        return True
+        return not agent.goal_conditions
     return not (
         agent.events
         or agent.intentions
@@ -349,6 +349,7 @@ def _alone(agent: Circumstance) -> bool:
         or agent.tasks
         or agent.percepts
         or agent.condition_waits
+        or agent.goal_conditions
     )
 
 
