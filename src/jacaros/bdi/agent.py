@@ -324,7 +324,7 @@ class Agent(Circumstance):
         deadlines.watch(self, goal, annotations, separate)
         return Posted(goal, annotations)
 
-    def goal_from(self, operator: str, kind: str, term: Term) -> Any:
+    def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Any:
         """The goal that a term denotes.
 
         Raises:
@@ -335,8 +335,12 @@ class Agent(Circumstance):
         if symbol is None or symbol.kind:
             raise Failure((ERROR, atom(_no_goal(term))))
         goal = (trigger(operator, kind, symbol), *arguments_of(term))
-        annotations = annotations_of(term)
-        return Posted(goal, own_annotations(annotations)) if annotations else goal
+        if not annotations_of(term):
+            return goal
+        annotations = own_annotations(annotations_of(term))
+        if kind == "!":
+            deadlines.watch(self, goal, annotations, separate)
+        return Posted(goal, annotations)
 
     def test_goal_from(self, term: Term) -> Any:
         """The test goal for a query known only at run time; fails without plans for it."""

@@ -235,16 +235,16 @@ def step_failure(frame: Frame, fault: Exception) -> FailureReason:
 def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
     node = info.node
     if isinstance(fault, Failure):
-        return fault.annotations
+        return (*fault.annotations, *_message_unless_given(fault.annotations, _default_message(fault)))
     if isinstance(fault, Fail):
         return error_terms(*_plain_failure(node))
     if isinstance(fault, WrongArguments):
         return error_terms("wrong_arguments", str(fault))
     if isinstance(fault, ActionError):
         given = fault.annotations
-        if any(t.__class__ is tuple and t[0] is ERROR for t in given):
-            return given
-        return ((ERROR, atom("internal_action")), *given, *_message_unless_given(given, str(fault)))
+        known = any(t.__class__ is tuple and t[0] is ERROR for t in given)
+        error = () if known else ((ERROR, atom("internal_action")),)
+        return (*error, *given, *_message_unless_given(given, str(fault)))
     if isinstance(fault, ArithmeticFault):
         return error_terms("arithmetic_error", str(fault))
     if isinstance(fault, RecursionError):
@@ -257,6 +257,20 @@ def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
         raise fault
     kind = "internal_action" if isinstance(node, nodes.Constraint) else "unknown"
     return error_terms(kind, f"{type(fault).__name__}: {fault}")
+
+
+_MESSAGES = {
+    "body_var_without_value": "a variable that stands for a step has no value",
+    "body_var_not_literal": "a variable that stands for a goal or a belief holds something else",
+    "body_var_with_op": "a variable behind an operator holds a plan body",
+}
+
+
+def _default_message(fault: Failure) -> str:
+    """What people are told of a failure whose cause gives no words."""
+    found = (text(term[1]) for term in fault.annotations if term.__class__ is tuple and term[0] is ERROR)
+    error = next(found, "unknown")
+    return _MESSAGES.get(error, error.replace("_", " "))
 
 
 def _message_unless_given(given: tuple[Term, ...], message: str) -> tuple[Term, ...]:

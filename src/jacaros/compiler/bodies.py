@@ -102,7 +102,7 @@ def _achieve(compiler: BodyCompiler, step: nodes.Achieve, name: str, next_name: 
                 items, tail = annotation_parts(fn, goal.annotations)
                 posted = f"agent.annotated_goal({posted}, {items}, {tail}, {step.separate})"
         else:
-            posted = f'agent.goal_from("+", "!", {build(fn, goal)})'
+            posted = f'agent.goal_from("+", "!", {build(fn, goal)}, {step.separate})'
         if step.separate:
             fn.line(f"agent.post_separate({posted})")
         elif "agent." in posted:

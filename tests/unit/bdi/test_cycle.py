@@ -568,3 +568,38 @@ def test_dropping_all_intentions_gives_up_the_planned_events() -> None:
         +!later <- .print(later).
         """
     ) == ["now", "later", "end"]
+
+
+def test_every_failure_of_a_step_has_a_message_for_people() -> None:
+    lines = printed(
+        """
+        !s.
+        +!s <- for (.member(G, [nobody, empty, number, body])) { !!try(G) }.
+        +!try(G) <- !G.
+        -!try(G)[error(E), error_msg(M)] <- .length(M, N); .print(G, " ", E, " ", N > 5).
+        +!nobody <- .send(ghost, tell, p).
+        +!empty <- !X.
+        +!number <- X = 5; +X.
+        +!body <- X = { a; b }; +X.
+        """
+    )
+    assert [line.split()[:2] for line in lines] == [
+        ["nobody", "receiver_not_found"],
+        ["empty", "body_var_without_value"],
+        ["number", "body_var_not_literal"],
+        ["body", "body_var_with_op"],
+    ]
+
+
+def test_a_goal_in_a_variable_has_a_deadline_too() -> None:
+    assert printed(
+        """
+        !a. !b.
+        +!a <- G = slow; !G[hard_deadline(100)].
+        -!a[error(E)] <- .print(a, E).
+        +!b <- G = late[hard_deadline(50)]; !!G.
+        +!slow <- .wait(10000).
+        +!late <- .wait(10000).
+        -!late[error(E)] <- .print(late, E).
+        """
+    ) == ["latedeadline_reached", "adeadline_reached"]
