@@ -213,3 +213,13 @@ def test_an_element_that_python_could_not_hash_is_refused() -> None:
     -!g[error(E)] <- .print(E).
     """
     assert printed(program) == ["{[1,2]}", "too_deep"]
+
+
+def test_a_sum_that_waits_for_its_operand_may_be_deeper_than_the_stack_of_python() -> None:
+    program = """
+    !s.
+    +!s <- !sum(500, 0, Open, S); Open = 1; .print(S).
+    +!sum(0, A, _, A).
+    +!sum(N, A, Open, S) <- !sum(N-1, A+Open, Open, S).
+    """
+    assert printed(program) == ["500"]
