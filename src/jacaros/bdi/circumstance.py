@@ -47,6 +47,7 @@ class Circumstance:
         condition_waits: waits for a condition.
         pending_acts: external actions under way, by number.
         pending_asks: questions whose answer is awaited, by message id.
+        abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
         meta: whether plans or an observer want to hear of changes of goal states.
         goal_observer: told of the state, text and number of each goal that changes, or None.
         probe: the test that looks on, or None.
@@ -107,6 +108,7 @@ class Circumstance:
         self.condition_waits: list[tuple[Any, Waiting]] = []
         self.pending_acts: dict[int, Waiting] = {}
         self.pending_asks: dict[str, Any] = {}
+        self.abandoned_asks: set[str | None] = set()
         self.meta = False
         self.goal_observer: Callable[[str, str, int], None] | None = None
         self.probe: Probe | None = None

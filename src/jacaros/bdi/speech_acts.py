@@ -55,7 +55,8 @@ def process(agent: Circumstance, message: SpeechAct) -> None:
     if message.in_reply_to is not None and message.in_reply_to in agent.pending_asks:
         agent.pending_asks[message.in_reply_to](message)
         return
-    if message.in_reply_to is not None and message.performative in ("tell", "untell") and _is_late(message):
+    if message.in_reply_to in agent.abandoned_asks:
+        agent.abandoned_asks.remove(message.in_reply_to)
         return
     if agent.accepts is not None and not agent.accepts(message):
         return
@@ -69,11 +70,6 @@ def process(agent: Circumstance, message: SpeechAct) -> None:
         )
         return
     action(agent, message)
-
-
-def _is_late(message: SpeechAct) -> bool:
-    """An answer to a synchronous question that nobody waits for any more."""
-    return message.id.startswith("late")
 
 
 def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:

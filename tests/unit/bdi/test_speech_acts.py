@@ -87,3 +87,16 @@ def test_a_plan_of_the_program_comes_before_what_a_message_does() -> None:
     host = after("+!kqml_received(S, tell, C, _) <- .print(S, C).", message("tell", "p(1)"))
     assert host.printed == ["annp(1)"]
     assert believed(host, "p") == []
+
+
+LATE = "!ask. +?late(X) <- .wait(300); X = 3. "
+
+
+def test_an_answer_that_nobody_waits_for_any_more_is_thrown_away() -> None:
+    asking = "+!ask <- .send(self, askOne, late(X), A, 100); .print(A); .wait(1000); .count(late(_), N); .print(N)."
+    assert after(LATE + asking).printed == ["timeout", "0"]
+
+
+def test_an_answer_that_is_not_waited_for_becomes_a_belief() -> None:
+    asking = "+!ask <- .send(self, askOne, late(X)); .wait(1000); ?late(Y)[source(S)]; .print(Y, S)."
+    assert after(LATE + asking).printed == ["3self"]

@@ -98,7 +98,8 @@ class _Question:
     def forget(self) -> None:
         """Nobody waits for the answers any more."""
         for message_id in self.ids:
-            self.ctx.agent.pending_asks.pop(message_id, None)
+            if self.ctx.agent.pending_asks.pop(message_id, None) is not None:
+                self.ctx.agent.abandoned_asks.add(message_id)
         if self.timer is not None:
             self.timer.cancel()
 
