@@ -262,7 +262,7 @@ def external_change(
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:
-    """``.abolish``: delete all matches, each with its own sources unless the pattern names one."""
+    """``.abolish``: delete all matches, each with all its sources, whichever of them the pattern names."""
     symbol, arguments, annotations = parts(pattern)
     tables = list(agent.beliefs.items()) if symbol is None else [(symbol, agent.beliefs[symbol])]
     for functor_, table in tables:
@@ -287,10 +287,9 @@ def _abolish_entry(
     matches = (arguments is None or unify_rows(arguments, row, trail)) and unify_annotations(
         annotations, None, held, None, trail
     )
-    taken = tuple(resolve(a) for a in annotations) if annotations else held
     undo(trail, mark)
-    if matches and take_away(table, entry, held, taken):
-        external_change(agent, "-", symbol, row, taken)
+    if matches and take_away(table, entry, held, held):
+        external_change(agent, "-", symbol, row, held)
 
 
 def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:

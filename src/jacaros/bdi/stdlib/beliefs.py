@@ -19,7 +19,7 @@ from jacaros.terms.values import FALSE, TRUE, Term, bare, functor_of, make_list
 
 @internal_action(".abolish", arity=1)
 def abolish(ctx: Context, pattern: Term) -> None:
-    """``.abolish(P)``: delete all matching beliefs, whatever their source unless the pattern names one."""
+    """``.abolish(P)``: delete all beliefs that match, with all their sources."""
     belief_update.abolish(ctx.agent, pattern)
 
 
