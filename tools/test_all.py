@@ -202,6 +202,8 @@ class Run:
 
     def _call(self, part: Part, log: Path) -> int:
         environment = {**os.environ, "PYTHON": PYTHON, "PYTHONUNBUFFERED": "1"}
+        # Hundreds of processes start; none of them should have to compile the package again.
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
         with log.open("wb") as output:
             try:
                 child = subprocess.Popen(

@@ -18,13 +18,11 @@ from jacaros.mas.deployment import (
     ProjectError,
     WorkspaceSpec,
 )
-from jacaros.mas.jcm import read_jcm
-from jacaros.mas.mas2j import read_mas2j
 from jacaros.mas.programs import TEST_LIBRARY, library_file
 from jacaros.mas.project_cursor import ProjectCursor
 from jacaros.mas.project_parts import AgentPart, FocusPart, ProjectPart, WorkspacePart, Written
 
-_READERS: Final = {".mas2j": read_mas2j, ".jcm": read_jcm}
+_PROJECTS: Final = (".mas2j", ".jcm")
 _USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
 
 
@@ -37,7 +35,7 @@ def load_deployment(path: str | Path) -> Deployment:
     path = Path(path)
     if path.suffix == ".asl":
         return _lone_agent(path)
-    if path.suffix not in _READERS:
+    if path.suffix not in _PROJECTS:
         raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm or .asl file")])
     deployment, diagnostics = read_project(path)
     if any(diagnostic.severity == "error" for diagnostic in diagnostics):
@@ -75,7 +73,7 @@ def _read(path: Path, diagnostics: list[Diagnostic], using: list[Path]) -> Proje
     except (OSError, UnicodeError) as error:
         raise ProjectError([Diagnostic("error", f"{path} cannot be read: {error}")]) from error
     cursor = ProjectCursor(SourceFile(str(path), text), diagnostics)
-    part = _READERS[path.suffix](cursor)
+    part = _read_part(path.suffix, cursor)
     for file, span in part.uses:
         used = path.parent / file
         if used.suffix != ".jcm" or not used.is_file():
@@ -85,6 +83,17 @@ def _read(path: Path, diagnostics: list[Diagnostic], using: list[Path]) -> Proje
         else:
             _import(part, _read(used, diagnostics, [*using, path.resolve()]))
     return part
+
+
+def _read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
+    # Imported here: a lone program starts sooner without them.
+    if suffix == ".jcm":
+        from jacaros.mas.jcm import read_jcm
+
+        return read_jcm(cursor)
+    from jacaros.mas.mas2j import read_mas2j
+
+    return read_mas2j(cursor)
 
 
 def _import(part: ProjectPart, used: ProjectPart) -> None:
