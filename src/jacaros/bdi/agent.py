@@ -33,7 +33,7 @@ from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
-from jacaros.bdi.waiting import ACTION, Waiting, is_action
+from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
@@ -284,7 +284,7 @@ class Agent(Circumstance):
         assert frame is not None
         if waiting.failure is None:
             frame[0] = waiting.next_step
-            if self.meta:
+            if self.meta and waiting.reason is not OWN_SUSPENSION:
                 meta_events.top_goal_state(self, intention, "executing")
             if cycle.pop_finished(self, intention):
                 self.make_ready(intention)

@@ -43,8 +43,8 @@ class Circumstance:
         tasks: housekeeping for the beginning of the next cycle.
         suspended_events: goal events whose goal was suspended before it became an intention.
         delayed_events: timers of the events that ``.at`` is to post.
-        event_waits: waits for an event, with the pattern.
-        condition_waits: waits for a condition.
+        event_waits: waits for an event, with the pattern; the last item has `resume`.
+        condition_waits: waits for a condition; the last item has `resume`, `fail` and `ended`.
         pending_acts: external actions under way, by number.
         pending_asks: questions whose answer is awaited, by message id.
         abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
@@ -104,8 +104,8 @@ class Circumstance:
         self.tasks: deque[Callable[[], None]] = deque()
         self.suspended_events: list[Event] = []
         self.delayed_events: dict[Timer, None] = {}
-        self.event_waits: list[tuple[Trigger | None, Term, Waiting]] = []
-        self.condition_waits: list[tuple[Any, Waiting]] = []
+        self.event_waits: list[tuple[Trigger | None, Term, Any]] = []
+        self.condition_waits: list[tuple[Any, Any]] = []
         self.pending_acts: dict[int, Waiting] = {}
         self.pending_asks: dict[str, Any] = {}
         self.abandoned_asks: set[str | None] = set()

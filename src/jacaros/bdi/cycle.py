@@ -15,7 +15,7 @@ from jacaros.bdi.forks import branch_failed
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
 from jacaros.bdi.internal_action import Crashed
 from jacaros.bdi.stack import achieve, remove_event
-from jacaros.bdi.waiting import Waiting
+from jacaros.bdi.waiting import OWN_SUSPENSION, Waiting
 from jacaros.compiler.runtime import SUSPENDED, Fail
 from jacaros.errors import InternalError
 from jacaros.terms.text import text
@@ -150,6 +150,12 @@ def _end_achieved_goals(agent: Circumstance) -> None:
                 if not queued:
                     agent.make_ready(intention)
                 break
+
+
+def _tell_waiting(agent: Circumstance, intention: Intention) -> None:
+    waiting = intention.waiting
+    if waiting is not None and waiting.reason is not OWN_SUSPENSION:
+        meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)
 
 
 def _check_conditions(agent: Circumstance) -> None:
@@ -505,8 +511,8 @@ def _execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # no
                 agent.make_ready(intention)
                 break
         elif goal is SUSPENDED:
-            if agent.meta and intention.waiting is not None:
-                meta_events.top_goal_state(agent, intention, "waiting", intention.waiting.reason)
+            if agent.meta:
+                _tell_waiting(agent, intention)
             break
         else:
             annotations: Any = BY_SELF

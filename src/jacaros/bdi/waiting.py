@@ -4,10 +4,13 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.bdi.intention import Frame, Intention
-from jacaros.terms.values import Term, functor
+from jacaros.terms.values import Term, atom, functor
 
 ACTION = functor("action", 1)
 """Functor of the reason of those who wait for the end of an external action."""
+
+OWN_SUSPENSION = atom("suspended")
+"""Reason of the steps by which an intention suspends itself: its goals are suspended, they do not wait."""
 
 
 def is_action(reason: Term) -> bool:

@@ -53,7 +53,11 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
         elif path == _STANDARD_INPUT:
             click.echo(after, nl=False)
         elif before != after:
-            path.write_text(after, encoding="utf-8", newline="\n")
+            try:
+                path.write_text(after, encoding="utf-8", newline="\n")
+            except OSError as fault:
+                click.echo(f"{path} cannot be written: {fault.strerror}", err=True)
+                code = 1
     if _STANDARD_INPUT not in files:
         click.echo(_summary(changed, len(programs), only_check or only_show), err=True)
     return 1 if only_check and changed else code

@@ -15,6 +15,7 @@ from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.suppression import wanted
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_code import PythonCode
+from jacaros.mas.source_text import source_text
 
 NEVER_SELECTED = "plan-never-selected"
 """What is told of plans behind those that are always taken first: agents of a class of their own may take them."""
@@ -155,7 +156,7 @@ class Programs:
             if name in TEST_LIBRARY:
                 return _of_library(name)
             raise
-        return str(file), file.read_text(encoding="utf-8")
+        return str(file), source_text(file)
 
 
 def _concerns_author(warning: Diagnostic, path: Path) -> bool:
@@ -186,7 +187,7 @@ def text_of(path: Path) -> str:
         AslError: it is not there, or no text.
     """
     try:
-        return path.read_text(encoding="utf-8")
+        return source_text(path)
     except FileNotFoundError:
         raise AslError([_unreadable(f"{path} is not found")]) from None
     except (OSError, UnicodeError) as error:

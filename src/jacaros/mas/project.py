@@ -21,6 +21,7 @@ from jacaros.mas.deployment import (
 from jacaros.mas.programs import TEST_LIBRARY, library_file
 from jacaros.mas.project_cursor import ProjectCursor
 from jacaros.mas.project_parts import AgentPart, FocusPart, ProjectPart, WorkspacePart, Written
+from jacaros.mas.source_text import source_text
 
 _PROJECTS: Final = (".mas2j", ".jcm")
 _USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
@@ -67,7 +68,7 @@ def _lone_agent(path: Path) -> Deployment:
 def _read(path: Path, diagnostics: list[Diagnostic], using: list[Path]) -> ProjectPart:
     """The declarations of one file and, before its own, of the files it uses."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = source_text(path)
     except FileNotFoundError:
         raise ProjectError([Diagnostic("error", f"{path} is not found")]) from None
     except (OSError, UnicodeError) as error:

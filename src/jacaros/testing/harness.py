@@ -31,6 +31,7 @@ from jacaros.clock import Timer
 from jacaros.compiler.lowering import Names, lower_value
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
+from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
@@ -96,7 +97,7 @@ class AgentHarness:
         self._by_number: dict[int, RecordedAct] = {}
         self._asked = 0
         file = program if isinstance(program, Path) else Path(f"{name}.asl")
-        written = program.read_text(encoding="utf-8") if isinstance(program, Path) else program
+        written = source_text(program) if isinstance(program, Path) else program
         code = PythonCode(ProjectModules(file.parent, *folders))
         programs = Programs((file.parent, *folders), lambda told: self.logs.append(f"warning: {told}"), code)
         self._port = HarnessPort(self, seed, programs, file)

@@ -31,6 +31,7 @@ from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.programs import Programs, library_file
 from jacaros.mas.project import load_deployment
 from jacaros.mas.python_code import PythonCode
+from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules
 
 LIBRARY: Final = "tester_agent.asl"
@@ -155,7 +156,7 @@ def is_test_file(path: Path) -> bool:
     if path.suffix != ".asl":
         return False
     try:
-        text = path.read_text(encoding="utf-8")
+        text = source_text(path)
     except (OSError, UnicodeError):
         return bool(_NAMED_TEST.fullmatch(path.stem))
     if _LABELLED.search(_COMMENT.sub("", text)):

@@ -107,3 +107,29 @@ def test_dropping_all_intentions_takes_back_what_is_to_come(action: str, lines: 
     )
     host.run()
     assert host.printed == lines
+
+
+def test_a_condition_that_comes_true_tells_how_long_it_took() -> None:
+    host = mind(
+        '!begin. !later. +!begin <- .wait(p(X), 5000, T); .print(X, " ", T). +!later <- .wait(300); +p(1).'
+    )
+    host.run(seconds=1)
+    assert host.printed == ["1 300"]
+
+
+@pytest.mark.parametrize("action", [".suspend", ".suspend(own)"])
+def test_a_goal_that_suspends_itself_at_its_end_is_not_over(action: str) -> None:
+    host = mind(
+        f"!caller. +!caller <- !own; .print(after). +!own <- {action}."
+        " !resume. +!resume <- .wait(100); .print(before); .resume(own)."
+    )
+    host.run(seconds=1)
+    assert host.printed == ["before", "after"]
+
+
+def test_a_goal_that_suspends_itself_goes_on_with_its_next_step() -> None:
+    host = mind(
+        "!own. +!own <- .suspend; .print(on). !resume. +!resume <- .wait(100); .print(before); .resume(own)."
+    )
+    host.run(seconds=1)
+    assert host.printed == ["before", "on"]

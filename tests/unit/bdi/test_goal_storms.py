@@ -147,8 +147,8 @@ class Storm:
         assert len(ended) == len(set(ended))
         assert sorted(self.agent.pending_acts) == sorted(self.under_way())
         agent = self.agent
-        waits = [*agent.pending_acts.values(), *(entry[1] for entry in agent.condition_waits)]
-        waits += [entry[2].wait.waiting for entry in agent.event_waits]
+        waits = [*agent.pending_acts.values(), *(entry[1].waiting for entry in agent.condition_waits)]
+        waits += [entry[2].waiting for entry in agent.event_waits]
         assert not any(waiting.intention.dropped for waiting in waits)
         ready = [intention for intention in agent.intentions if not intention.dropped]
         assert len(ready) == len(set(ready))

@@ -12,6 +12,7 @@ from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.plan_terms import bindings_of, variables_of
 from jacaros.bdi.stack import achieve
+from jacaros.bdi.waiting import OWN_SUSPENSION, Waiting
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
@@ -203,10 +204,16 @@ def suspend(ctx: Context, goal: Term = None) -> Any:
     current = ctx.intention
     if goal is None:
         assert current is not None
-        goals.suspend_intention(ctx.agent, current, atom("suspended"))
+        goals.suspend_intention(ctx.agent, current, OWN_SUSPENSION)
     else:
         reason = structure("suspended", rename(goal))
         _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted, reason))
+    if current is None or current.suspended is None:
+        return None
+    # The step lasts until the intention is resumed: a last step does not end its goal before.
+    held = Waiting(ctx.agent, current, OWN_SUSPENSION)
+    held.on_resume = held.resume
+    return held
 
 
 @internal_action(".resume", arity=1, suspends=True)

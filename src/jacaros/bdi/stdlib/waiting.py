@@ -56,18 +56,28 @@ class _Wait:
     def limit(self, milliseconds: float, fails: bool) -> None:
         """End after so many milliseconds."""
         self.timer = self.ctx.architecture.set_timer(
-            milliseconds / 1000.0, self.timed_out if fails else self.over
+            milliseconds / 1000.0, self.timed_out if fails else self.resume
         )
 
     def timed_out(self) -> None:
         """The awaited thing did not come in time."""
         self.forget()
         if self.elapsed is not None:
-            self.over()
+            self.resume()
         else:
             self.waiting.fail("the wait is over without what it waited for", (ERROR, atom("wait_timeout")))
 
-    def over(self) -> None:
+    @property
+    def ended(self) -> bool:
+        """Whether the intention goes on already, or is gone."""
+        return self.waiting.ended
+
+    def fail(self, message: str) -> None:
+        """What is waited for cannot be evaluated."""
+        self.forget()
+        self.waiting.fail(message)
+
+    def resume(self) -> None:
         """The wait ends well."""
         self.forget()
         if self.elapsed is not None:
@@ -83,14 +93,6 @@ class _Wait:
             self.timer.cancel()
         for waits in (agent.event_waits, agent.condition_waits):
             waits[:] = [entry for entry in waits if entry is not self.entry]
-
-
-class _EventWait:
-    """Stands for the wait in the list of awaited events: the end of the wait is its own."""
-
-    def __init__(self, wait: _Wait) -> None:
-        self.wait = wait
-        self.resume = wait.over
 
 
 @internal_action(".wait", arity=(1, 3), suspends=True)
@@ -110,7 +112,7 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     if found is None:
         return _wait_for_condition(ctx, what, limit, elapsed)
     waited = _Wait(ctx, elapsed)
-    waited.entry = (found[0], found[1], _EventWait(waited))
+    waited.entry = (found[0], found[1], waited)
     ctx.agent.event_waits.append(waited.entry)
     if limit is not None:
         waited.limit(limit, fails=True)
@@ -128,7 +130,7 @@ def _wait_for_condition(ctx: Context, formula: Term, limit: Term, elapsed: Term)
             return True
         return False
 
-    waited.entry = (holds, waited.waiting)
+    waited.entry = (holds, waited)
     ctx.agent.condition_waits.append(waited.entry)
     if limit is not None:
         waited.limit(limit, fails=True)
