@@ -129,7 +129,7 @@ class LiteralParser(Cursor, ABC):
         token = self.token
         if token.kind == "::":
             self.advance()
-            return None
+            return self.namespaces.current
         if self.peek().kind != "::" or token.kind not in ("atom", "variable"):
             return _UNSET
         self.advance()
@@ -152,13 +152,28 @@ class LiteralParser(Cursor, ABC):
             )
             self.advance()
             return ()
-        self.enter()
+        outside = self._enter_term()
         arguments = [self.expression()]
         while self.accept(","):
             arguments.append(self.expression())
-        self.leave()
+        self._leave_term(outside)
         self.close(opener)
         return tuple(arguments)
+
+    def _enter_term(self) -> bool:
+        """What follows is part of a term; returns whether that was so before."""
+        self.enter()
+        outside, self.namespaces.in_term = self.namespaces.in_term, True
+        return outside
+
+    def _leave_term(self, outside: bool) -> None:
+        self.leave()
+        self.namespaces.in_term = outside
+
+    def begin_clause(self) -> None:
+        """A clause begins here, at the outermost level."""
+        super().begin_clause()
+        self.namespaces.in_term = False
 
     # lists and annotations
 
@@ -195,7 +210,7 @@ class LiteralParser(Cursor, ABC):
         opener = self.advance()
         items: list[nodes.Term] = []
         tail: nodes.Term | None = None
-        self.enter()
+        outside = self._enter_term()
         if self.token.kind not in ("]", "|"):
             items.append(self.element())
             while self.accept(","):
@@ -205,6 +220,6 @@ class LiteralParser(Cursor, ABC):
             if isinstance(tail, nodes.ListTerm):
                 items.extend(tail.items)
                 tail = tail.tail
-        self.leave()
+        self._leave_term(outside)
         self.close(opener)
         return items, tail

@@ -23,10 +23,16 @@ KEYWORDS: Final = frozenset(
 
 @dataclass
 class Namespaces:
-    """The namespace in force (None: the default one) and the private names of local namespaces."""
+    """The namespace in force (None: the default one) and the private names of local namespaces.
+
+    Attributes:
+        in_term: what is read is the argument of something; its literals, also those of plans in braces, stay in the
+            default namespace.
+    """
 
     current: str | None = None
     local: dict[str, str] = field(default_factory=dict)
+    in_term: bool = False
 
     def resolve(self, written: str) -> str | None:
         """The namespace that *written* means here (``default`` and ``this_ns`` have their meaning)."""
@@ -38,4 +44,4 @@ class Namespaces:
 
     def of_literal(self, functor: str) -> str | None:
         """The namespace of a belief, goal or condition that is written without one."""
-        return None if functor in KEYWORDS else self.current
+        return None if self.in_term or functor in KEYWORDS else self.current

@@ -88,8 +88,8 @@ class Plan:
         return Annotated(self.label, annotation_set((*self.annotations, *told_by, *place)))
 
     def has_variable_trigger(self) -> bool:
-        """Whether the plan reacts to any literal."""
-        return isinstance(self.node.trigger.literal, nodes.Variable)
+        """Whether the plan is a candidate for all literals: its trigger is a variable, or the namespace of it is."""
+        return self.trigger_functor() is None
 
     def trigger_functor(self) -> Term:
         """Functor of the trigger; None when it is a variable or its namespace is."""

@@ -271,6 +271,11 @@ def literal_of(goal: tuple[Any, ...], annotations: Any) -> Term:
     return Annotated(term, found) if found else term
 
 
+def namespace_of(symbol: Functor) -> Term:
+    """The name of a functor's namespace, as programs see it."""
+    return atom(symbol.namespace or "default")
+
+
 def annotations_of_event(annotations: Any) -> tuple[Term, ...]:
     """The annotations of an event; those of failure events are made when first asked for."""
     found: tuple[Term, ...] = annotations if annotations.__class__ is tuple else annotations.annotations()
@@ -446,6 +451,7 @@ _FUNCTIONS = (
     literal_of,
     make_list,
     namespace_name,
+    namespace_of,
     negate,
     own_annotations,
     positive,

@@ -68,6 +68,24 @@ class SelectCompiler:
         if isinstance(literal, nodes.Variable):
             self._variable_trigger(fn, plan, literal)
             return
+        if isinstance(literal.namespace, nodes.Variable):
+            self._variable_namespace(fn, plan, literal, literal.namespace)
+            return
+        self._arguments(fn, plan, literal)
+
+    def _variable_namespace(
+        self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal, namespace: nodes.Variable
+    ) -> None:
+        """A trigger ``+!N::g(X)``: the event may be of any namespace."""
+        name, arity, negated = literal.functor, len(literal.arguments), literal.negated
+        symbol = "goal[0].functor"
+        same = f"{symbol}.name == {name!r} and {symbol}.arity == {arity} and {symbol}.negated is {negated}"
+        with fn.writer.block(f"if {same}:"):
+            if not namespace.unnamed:
+                fn.bind(namespace.name, f"namespace_of({symbol})")
+            self._arguments(fn, plan, literal)
+
+    def _arguments(self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal) -> None:
         parts = [fn.local("a") for _ in literal.arguments]
         used = [not (isinstance(a, nodes.Variable) and a.unnamed) for a in literal.arguments]
         if any(used):

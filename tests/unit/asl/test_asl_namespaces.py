@@ -40,7 +40,7 @@ def test_operands_of_relations_stay_in_the_default_namespace():
 
 def test_the_default_namespace_is_reached_by_name():
     assert plan_texts(block("+!g : default::a & ::b & this_ns::c <- !other::d.")) == [
-        "+!m::g : a & (b & m::c) <- !other::d."
+        "+!m::g : a & (m::b & m::c) <- !other::d."
     ]
 
 

@@ -24,7 +24,12 @@ def test_only_plans_for_the_goal_are_changed():
     assert expanded("dg(at(_))", "+!at(X,Y) <- b. +!other <- b. -!at(X) <- b.")[1:-1] == [
         "+!at(X,Y) <- b.",
         "+!other <- b.",
-        "-!at(X) <- b.",
+        "-!at(X) <- b; ?at(X).",
+    ]
+    assert expanded("dg(at(home))", "+!at(work) <- b. +!at(Y) <- b. -!P <- b.")[1:-1] == [
+        "+!at(work) <- b.",
+        "+!at(Y) <- b; ?at(Y).",
+        "-!P <- b.",
     ]
 
 
@@ -76,7 +81,11 @@ def test_relativised_and_open_minded_commitment_end_with_the_motivation():
 def test_a_maintenance_goal_is_believed_at_first_and_pursued_when_lost():
     text = "{ begin mg(charged) } +!charged <- charge. { end }"
     assert belief_texts(text) == ["charged"]
-    assert plan_texts(text) == ["+!charged <- charge.", "-charged <- !charged."]
+    committed = plan_texts("{ begin bc(charged) } +!charged <- charge. { end }")
+    assert plan_texts(text) == [*committed, "-charged <- !charged."]
+    single_minded = plan_texts("{ begin smc(charged, broken) } +!charged <- charge. { end }")
+    text = "{ begin mg(charged, smc(charged, broken)) } +!charged <- charge. { end }"
+    assert plan_texts(text) == [*single_minded, "-charged <- !charged."]
     assert belief_texts("{ begin mg(level(X)) } { end }") == []
     assert "?charged" in plan_texts("{ begin mg(charged, bdg) } +!charged <- charge. { end }")[1]
 
@@ -99,9 +108,8 @@ def test_patterns_respect_the_namespace_of_their_block():
 
 
 def test_patterns_can_be_nested():
-    plans = expanded("mg(home)", "{ begin bdg(home) } +!home <- go. { end }")
-    assert plans[-1] == "-home <- !home."
-    assert len(plans) == 5
+    plans = expanded('sga("+order", "true", home)', "{ begin bdg(home) } +!home <- go. { end }")
+    assert plans[:4] == expanded("bdg(home)", "+!home <- go.")
 
 
 def test_wrong_patterns_are_refused_at_their_line():
@@ -111,7 +119,7 @@ def test_wrong_patterns_are_refused_at_their_line():
     assert messages("dg(X)") == [(2, "argument 1 of 'dg' is the goal, which is a literal")]
     assert messages("dg") == [(2, "'dg' needs the goal as argument 1")]
     assert messages("dg(a,b)") == [(2, "'dg' has at most 1 argument")]
-    assert messages("bc(g,foo)") == [(2, "'foo' is no pattern for declarative goals")]
+    assert messages("bc(g,foo)") == [(2, "there is no pattern 'foo'")]
     assert messages("smc(g)") == [(2, "'smc' needs the belief that the goal is impossible as argument 2")]
     assert messages('sga("order", "true", g)')[0][1].startswith("'order' is no trigger: ")
     assert messages('sga("+order", "a &", g)')[0][1].startswith("'a &' is no condition: ")

@@ -17,12 +17,17 @@ def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> I
     Programs with plans for any goal (``+!G``) and programs that add plans are left alone.
     """
     handled: set[_Signature] = set()
+    everywhere: set[tuple[str, int]] = set()
     posted: list[nodes.Literal] = list(program.goals)
     for node in found:
         if isinstance(node, nodes.Trigger) and node.kind == "!":
             if isinstance(node.literal, nodes.Variable):
                 return
-            handled.add(_signature(node.literal))
+            signature = _signature(node.literal)
+            if isinstance(node.literal.namespace, nodes.Variable):
+                everywhere.add(signature[1:])
+            else:
+                handled.add(signature)
         elif isinstance(node, nodes.Achieve) and isinstance(node.goal, nodes.Literal):
             posted.append(node.goal)
         elif isinstance(node, nodes.InternalAction) and node.name in _ADDING_PLANS:
@@ -31,6 +36,8 @@ def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> I
     for goal in posted:
         signature = _signature(goal)
         if signature in handled or signature in reported or isinstance(goal.namespace, nodes.Variable):
+            continue
+        if signature[1:] in everywhere:
             continue
         reported.add(signature)
         yield Diagnostic(

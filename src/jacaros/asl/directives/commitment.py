@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from jacaros.asl import nodes
-from jacaros.asl.directives.goal_patterns import backtracking, nested
+from jacaros.asl.directives.goal_patterns import backtracking
 from jacaros.asl.directives.pattern import PatternCall, on, with_plans
 from jacaros.asl.section import Section
 
@@ -17,7 +17,7 @@ def blind(call: PatternCall, section: Section) -> Section:
     call.at_most(2)
     if len(call.arguments) < 2:
         return _committed(call, section)
-    return _with_last_plan(call, nested(call, section, 1))
+    return _with_last_plan(call, call.nested(section, 1))
 
 
 def single_minded(call: PatternCall, section: Section) -> Section:

@@ -3,21 +3,22 @@
 from dataclasses import replace
 
 from jacaros.asl import nodes
-from jacaros.asl.directives.pattern import PatternCall, PatternError, achieves, on, with_plans
+from jacaros.asl.directives.pattern import PatternCall, achieves, is_about, on, with_plans
 from jacaros.asl.section import Section
 
 
 def declarative(call: PatternCall, section: Section) -> Section:
     """``dg(g)``: the goal is achieved when, and only when, *g* is believed.
 
-    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g, and ``+g <- .succeed_goal(g)``.  The
+    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g (its ``-!g`` plans among them), and
+    ``+g <- .succeed_goal(g)``.  The
     reference also takes a goal that is already intended for achieved, which makes the retry of ``bdg`` and
     ``bc`` end at once; ours does not.
     """
     call.at_most(1)
     goal = call.literal(0, "the goal")
     believed = call.plan(on("+!", goal), context=goal)
-    plans = [_tested(plan, call) if achieves(plan, goal) else plan for plan in section.plans]
+    plans = [_tested(plan, call) if is_about(plan, goal) else plan for plan in section.plans]
     succeed = call.plan(on("+", goal), call.internal(".succeed_goal", goal))
     return with_plans(section, [believed], plans, [succeed])
 
@@ -58,24 +59,14 @@ def exclusive(call: PatternCall, section: Section) -> Section:
 def maintenance(call: PatternCall, section: Section) -> Section:
     """``mg(g)`` or ``mg(g, pattern)``: *g*, which holds at first, is pursued again whenever it is lost.
 
-    With a second argument the plans for g are treated by that pattern.
+    The plans for g are treated by *pattern*, blind commitment (``bc``) if none is named.
     """
     call.at_most(2)
     goal = call.literal(0, "the goal")
-    inner = section
-    if len(call.arguments) > 1:
-        inner = nested(call, section, 1)
+    named = len(call.arguments) > 1
+    inner = call.nested(section, 1) if named else call.apply(replace(call, name="bc"), section)
     pursue = call.plan(on("-", goal), call.achieve(goal))
     return replace(with_plans(inner, [], inner.plans, [pursue]), beliefs=[*_initial(goal), *inner.beliefs])
-
-
-def nested(call: PatternCall, section: Section, index: int) -> Section:
-    """Apply the pattern that argument *index* names to the plans for the goal."""
-    name = call.literal(index, "the name of a pattern").functor
-    pattern = {"dg": declarative, "bdg": backtracking, "ebdg": exclusive}.get(name)
-    if pattern is None:
-        raise PatternError(f"'{name}' is no pattern for declarative goals", "use dg, bdg or ebdg")
-    return pattern(replace(call, name=name, arguments=call.arguments[:1]), section)
 
 
 def _initial(goal: nodes.Literal) -> list[nodes.Literal]:

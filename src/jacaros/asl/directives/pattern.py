@@ -29,13 +29,15 @@ class PatternCall:
 
     ``arguments`` belong to the namespace of the block, and their unnamed variables have got names, so that
     one argument may be put into several places of one plan.  ``number`` differs for each use in a program;
-    ``parse_trigger`` and ``parse_formula`` read arguments given as text.
+    ``parse_trigger`` and ``parse_formula`` read arguments given as text;
+    ``apply`` carries out another pattern, which its name tells.
     """
 
     name: str
     arguments: tuple[nodes.Term, ...]
     span: Span | None
     number: int
+    apply: "Callable[[PatternCall, Section], Section]"
     parse_trigger: Callable[[str], nodes.Trigger]
     parse_formula: Callable[[str], nodes.Term]
 
@@ -47,6 +49,12 @@ class PatternCall:
         if not isinstance(argument, nodes.Literal):
             raise PatternError(f"argument {index + 1} of '{self.name}' is {what}, which is a literal")
         return argument
+
+    def nested(self, section: Section, index: int) -> Section:
+        """Apply the pattern that argument *index* names, which is for the same goal if it names none."""
+        written = self.literal(index, "a pattern")
+        arguments = written.arguments or self.arguments[:1]
+        return self.apply(replace(self, name=written.functor, arguments=arguments), section)
 
     def at_most(self, count: int) -> None:
         """Refuse more than *count* arguments."""
@@ -89,21 +97,35 @@ def on(event: str, literal: nodes.Literal) -> nodes.Trigger:
     return nodes.Trigger(event[0], event[1:], literal, span=literal.span)
 
 
-def same_goal(literal: nodes.Literal | nodes.Variable, goal: nodes.Literal) -> bool:
-    """Whether a plan's trigger *literal* is about *goal*: name, number of arguments, sign and namespace."""
-    return (
-        isinstance(literal, nodes.Literal)
-        and literal.functor == goal.functor
-        and len(literal.arguments) == len(goal.arguments)
-        and literal.negated == goal.negated
-        and literal.namespace == goal.namespace
-    )
+def is_about(plan: nodes.Plan, goal: nodes.Literal) -> bool:
+    """Whether *plan* is one for the achievement of *goal*, or for its failure: both literals may unify."""
+    literal = plan.trigger.literal
+    return plan.trigger.kind == "!" and isinstance(literal, nodes.Literal) and _may_unify(literal, goal)
 
 
 def achieves(plan: nodes.Plan, goal: nodes.Literal) -> bool:
     """Whether *plan* is one for ``+!goal``."""
-    trigger = plan.trigger
-    return trigger.operator == "+" and trigger.kind == "!" and same_goal(trigger.literal, goal)
+    return plan.trigger.operator == "+" and is_about(plan, goal)
+
+
+def _may_unify(left: nodes.Term, right: nodes.Term) -> bool:
+    """Whether two terms unify as far as one can see without following variables."""
+    if isinstance(left, nodes.Variable) or isinstance(right, nodes.Variable):
+        return True
+    if isinstance(left, nodes.Literal) and isinstance(right, nodes.Literal):
+        return (
+            left.functor == right.functor
+            and len(left.arguments) == len(right.arguments)
+            and left.negated == right.negated
+            and (left.namespace == right.namespace or isinstance(left.namespace, nodes.Variable))
+            and all(map(_may_unify, left.arguments, right.arguments))
+        )
+    if isinstance(left, nodes.Number) and isinstance(right, nodes.Number):
+        return left.value == right.value
+    if isinstance(left, nodes.String) and isinstance(right, nodes.String):
+        return left.value == right.value
+    # Lists and expressions may turn out to be equal; a list and a number do not.
+    return type(left) is type(right) or not isinstance(left, nodes.Number | nodes.String | nodes.Literal)
 
 
 def with_plans(

@@ -246,13 +246,23 @@ class DirectiveProcessor:
             for argument in directive.arguments
         )
         number = next(self._pattern_numbers)
-        return PatternCall(directive.functor, arguments, directive.span, number, parse_trigger, parse_formula)
+        return PatternCall(
+            directive.functor, arguments, directive.span, number, _apply_pattern, parse_trigger, parse_formula
+        )
 
     def _placed(self, namespaces: Namespaces, argument: nodes.Term) -> nodes.Term:
         """A goal or belief given to a pattern belongs to the namespace of the block."""
         if isinstance(argument, nodes.Literal) and argument.namespace is None:
             return replace(argument, namespace=namespaces.of_literal(argument.functor))
         return argument
+
+
+def _apply_pattern(call: PatternCall, section: Section) -> Section:
+    """What the pattern of that name makes of *section*."""
+    pattern = PATTERNS.get(call.name)
+    if pattern is None:
+        raise PatternError(f"there is no pattern '{call.name}'", f"use one of {', '.join(PATTERNS)}")
+    return pattern(call, section)
 
 
 def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name: str) -> None:
