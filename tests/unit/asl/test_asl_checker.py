@@ -84,6 +84,13 @@ def test_goals_in_another_namespace_are_other_goals():
     assert (warning.message, warning.hint) == ("no plan for !m::g/0", "did you mean !g?")
 
 
+def test_a_goal_of_a_local_namespace_is_shown_as_written_and_not_proposed_elsewhere():
+    local = "{ begin namespace(own, local) } +!show. !own::shw. { end }"
+    inside, outside = warnings(f"{local} !m::show.")
+    assert (inside.message, inside.hint) == ("no plan for !own::shw/0", "did you mean !own::show?")
+    assert (outside.message, outside.hint) == ("no plan for !m::show/0", "write a plan for it: +!m::show")
+
+
 def test_a_handler_or_a_plan_inside_a_plan_counts_as_a_plan():
     assert messages("!g. -!g.") == []
     assert messages("+!g <- !h. { +!h. }") == []

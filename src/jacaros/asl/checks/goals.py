@@ -8,7 +8,7 @@ from jacaros.asl import nodes
 from jacaros.asl.diagnostics import Diagnostic
 
 _ADDING_PLANS: Final = frozenset({".add_plan", ".include"})
-_Signature = tuple[object, str, int]
+_Signature = tuple[str | nodes.Variable | None, str, int]
 
 
 def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
@@ -56,15 +56,22 @@ def _signature(literal: nodes.Literal) -> _Signature:
 
 def _goal_text(signature: _Signature) -> str:
     namespace, functor, arity = signature
-    return f"!{f'{namespace}::' if namespace is not None else ''}{functor}/{arity}"
+    written = "" if namespace is None else f"{str(namespace).partition('#')[0]}::"
+    return f"!{written}{functor}/{arity}"
 
 
 def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
     """The goal with a plan that is most like *wanted*: of the same name or of a like one."""
-    texts = sorted(_goal_text(signature) for signature in handled)
-    same_name = [_goal_text(signature) for signature in handled if signature[1] == wanted[1]]
+    within = [signature for signature in handled if _is_reachable(signature[0], wanted[0])]
+    texts = sorted(_goal_text(signature) for signature in within)
+    same_name = [_goal_text(signature) for signature in within if signature[1] == wanted[1]]
     close = sorted(same_name) or get_close_matches(_goal_text(wanted), texts, 1)
     if not close:
         return f"write a plan for it: +{_goal_text(wanted).rpartition('/')[0]}"
     name, _, arity = close[0].rpartition("/")
     return f"did you mean {name if arity == str(wanted[2]) else close[0]}?"
+
+
+def _is_reachable(namespace: str | nodes.Variable | None, own: str | nodes.Variable | None) -> bool:
+    """Whether a program can write the namespace: local ones have a name with '#' that no other file can."""
+    return not isinstance(namespace, str) or "#" not in namespace or namespace == own
