@@ -183,6 +183,14 @@ def test_an_unknown_operation(project: Project) -> None:
     )
 
 
+def test_an_unknown_internal_action(project: Project) -> None:
+    project.write("robot.asl", "!start.\n+!start\n  <- .nosuchaction(3).\n")
+    assert project.run_file("robot.asl")[2].endswith(
+        "action_failed, no artifact of workspace /main has an operation .nosuchaction/1; there is no internal action "
+        ".nosuchaction (robot.asl:3)\n"
+    )
+
+
 def test_an_argument_of_the_wrong_type(project: Project) -> None:
     project.write("artifacts.py", COUNTER)
     project.write("robot.asl", '!start.\n+!start\n  <- makeArtifact("c", "Counter");\n     check("many").\n')

@@ -115,6 +115,8 @@ class Selection:
                 operations = workspace.interface(artifact).operations
                 for key in operations.keys():  # noqa: SIM118 - it is no dictionary
                     offers.setdefault(key, f" of '{artifact.name}'")
+        if call.name.startswith("."):
+            return _internal_action_hint(call.name)
         near = [key for key in offers if key.rpartition("/")[0] == call.name]
         if not near:
             if f".{call.name}" in STANDARD:
@@ -124,6 +126,11 @@ class Selection:
             nothing = not any(a.creator is not None for w in places for a in w.artifacts())
             return "; no artifact has been made there yet (makeArtifact)" if nothing else ""
         return f"; did you mean {' or '.join(key + offers[key] for key in near[:3])}?"
+
+
+def _internal_action_hint(name: str) -> str:
+    near = difflib.get_close_matches(name, STANDARD, n=1)
+    return f"; there is no internal action {name}" + (f", did you mean {near[0]}?" if near else "")
 
 
 def _is_exact(workspace: Workspace, artifact: ArtifactId, call: Call) -> bool:

@@ -10,7 +10,7 @@ import click
 
 from jacaros.asl.diagnostics import Diagnostic, Severity
 from jacaros.asl.kinds import KINDS
-from jacaros.cli.files import existing
+from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
 from jacaros.errors import UsageError
 from jacaros.mas.checking import Findings, check_files
@@ -47,6 +47,8 @@ def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str
     if unknown:
         raise UsageError(f"there is no code {unknown[0]}")
     findings = check_files([existing(file) for file in files])
+    if not findings.files and not findings.diagnostics:
+        raise no_programs(files)
     findings.diagnostics = [
         each for each in findings.diagnostics if each.severity == "error" or each.code not in ignore
     ]

@@ -1,11 +1,17 @@
 """Files and folders that a command line names."""
 
 import difflib
+from collections.abc import Iterable
 from pathlib import Path
 
 from jacaros.errors import UsageError
 
 _KINDS = (".asl", ".mas2j", ".jcm")
+
+
+def no_programs(named: Iterable[Path]) -> UsageError:
+    """The error of folders in which nothing is found: to look at nothing and be content would hide a wrong path."""
+    return UsageError(f"there are no agent programs in {', '.join(map(str, named))}")
 
 
 def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:

@@ -1,15 +1,17 @@
 """``jacaros fmt FILE|FOLDER...``."""
 
 import difflib
+import shutil
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 import click
 
 from jacaros.asl.errors import AslError
 from jacaros.asl.formatting import format_program
-from jacaros.cli.files import existing
+from jacaros.cli.files import existing, no_programs
 from jacaros.errors import InternalError, UsageError
 from jacaros.mas.checking import files_below
 from jacaros.mas.programs import text_of
@@ -35,6 +37,8 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
     code = 0
     changed = 0
     programs = list(_programs(files))
+    if not programs:
+        raise no_programs(files)
     for path in programs:
         try:
             before = sys.stdin.read() if path == _STANDARD_INPUT else text_of(path)
@@ -54,13 +58,27 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
             click.echo(after, nl=False)
         elif before != after:
             try:
-                path.write_text(after, encoding="utf-8", newline="\n")
+                _replace(path, after)
             except OSError as fault:
                 click.echo(f"{path} cannot be written: {fault.strerror}", err=True)
                 code = 1
     if _STANDARD_INPUT not in files:
         click.echo(_summary(changed, len(programs), only_check or only_show), err=True)
     return 1 if only_check and changed else code
+
+
+def _replace(path: Path, text: str) -> None:
+    """Write a program anew; whatever happens meanwhile, the old or the new one is there whole."""
+    path = path.resolve()
+    with NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", newline="\n", delete=False) as file:
+        beside = Path(file.name)
+        try:
+            file.write(text)
+            shutil.copymode(path, beside)
+        except BaseException:
+            beside.unlink()
+            raise
+    beside.replace(path)
 
 
 def _programs(files: Sequence[Path]) -> Iterator[Path]:

@@ -99,3 +99,20 @@ def test_the_programs_of_the_project_are_laid_out(capsys: pytest.CaptureFixture[
     folders = ("examples", "tests/compatibility", "tests/integration", "benchmarks/latency", "src")
     code, output, _ = outcome(capsys, "--check", *(str(ROOT / folder) for folder in folders))
     assert (code, output) == (0, "")
+
+
+@pytest.mark.parametrize("command", ["fmt", "check"])
+def test_a_folder_without_programs_is_wrong_usage(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call([command, str(tmp_path)]) == 2
+    assert capsys.readouterr().err == f"jacaros: there are no agent programs in {tmp_path}\n"
+
+
+def test_the_mode_of_a_file_stays_and_nothing_lies_beside_it(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "a.asl").chmod(0o640)
+    assert outcome(capsys, "a.asl")[0] == 0
+    assert (folder / "a.asl").stat().st_mode & 0o777 == 0o640
+    assert sorted(path.name for path in folder.iterdir()) == ["a.asl", "inner"]
