@@ -129,7 +129,7 @@ class Selection:
 
 
 def _internal_action_hint(name: str) -> str:
-    near = difflib.get_close_matches(name, STANDARD, n=1)
+    near = difflib.get_close_matches(name, STANDARD, n=1, cutoff=0.75)
     return f"; there is no internal action {name}" + (f", did you mean {near[0]}?" if near else "")
 
 
