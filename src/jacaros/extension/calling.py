@@ -170,21 +170,32 @@ class _Call:
         """Unify what the function gave; False when it does not fit, or when the function says so.
 
         Raises:
-            ActionError: the function gave a value and does not declare one.
+            ActionError: the function gave a value and does not declare one, or one that is no term.
         """
+        try:
+            pairs = self._pairs(value)
+        except ActionError:
+            raise
+        except FAULTS as error:
+            # Such as a list that contains itself.
+            raise action_fault(self._callee.name, self._callee.function, error) from error
+        return pairs is not None and self._ctx.unify_all(*pairs)
+
+    def _pairs(self, value: object) -> list[tuple[Term, Term]] | None:
+        """The arguments with the terms for them; None when the function says that it failed."""
         pairs: list[tuple[Term, Term]] = []
         if self._callee.gives_value:
             if value is None:
-                return False
+                return None
             pairs.append((self._last, term_of(value)))
         elif value is False:
-            return False
+            return None
         elif value is not None and value is not True:
             raise self._undeclared(value)
         for target, out in (*self._results, *self._outputs):
             if out.is_set:
                 pairs.append((target, term_of(out.value)))
-        return self._ctx.unify_all(*pairs)
+        return pairs
 
     def _undeclared(self, value: object) -> ActionError:
         callee = self._callee

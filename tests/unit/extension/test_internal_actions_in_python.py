@@ -463,3 +463,30 @@ def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path: Path
     (tmp_path / "src" / "asl" / "bob.asl").write_text("!go. +!go <- my.one(X); .print(X).")
     result = run_project(tmp_path / "sys.mas2j", until_idle=True)
     assert (result.lines, result.errors) == (["[bob] 1"], [])
+
+
+def test_a_result_that_contains_itself_fails_the_step(tmp_path: Path) -> None:
+    python = (
+        HEAD
+        + """
+def endless():
+    found = []
+    found.append(found)
+    return found
+
+@internal_action
+def now() -> list:
+    return endless()
+
+@internal_action
+async def later() -> list:
+    return endless()
+"""
+    )
+    program = """
+    !a. !b.
+    +!a <- my.now(X). -!a[error(E)] <- .print("a: ", E).
+    +!b <- my.later(X). -!b[error(E)] <- .print("b: ", E).
+    """
+    result = run(tmp_path, program, python)
+    assert sorted(result.of("t")) == ["a: internal_action", "b: internal_action"]
