@@ -23,7 +23,7 @@ from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from
 from jacaros.extension.views import Event, Intention, Message, Option, Percept
 from jacaros.terms.text import text
-from jacaros.terms.unifier import undo
+from jacaros.terms.unifier import bind, undo
 from jacaros.terms.values import BY_SELF, Functor, Term, Var
 
 Item = TypeVar("Item")
@@ -199,18 +199,23 @@ class ChoosingSelects(Selects):
         return select
 
     def _selected(self, agent: CustomMind, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
-        found = [Option(frame[PLAN], frame) for frame in options(agent, goal, annotations)]
+        # The context is asked once: what it drew or did may come out otherwise the next time.
+        held: list[tuple[Frame, list[tuple[Var, Term]]]] = []
+        found: list[Option] = []
+        for frame in options(agent, goal, annotations):
+            found.append(Option(frame[PLAN], frame))
+            held.append(([*frame], [(variable, variable.ref) for variable in agent.trail]))
         undo(agent.trail, 0)
         if not found:
             return None
         candidates: list[Option | None] = [*found, None]
         first: Option | None = found[0]
         chosen = ask(agent, self._choose, _one_of(candidates), first, tuple(found))
-        # The bindings of an option are gone when the next one is looked for: the chosen one is looked for again.
-        for option, frame in zip(found, options(agent, goal, annotations), strict=True):
+        for option, (frame, bindings) in zip(found, held, strict=True):
             if option is chosen:
+                for variable, value in bindings:
+                    bind(variable, value, agent.trail)
                 return frame
-        undo(agent.trail, 0)
         return None
 
 

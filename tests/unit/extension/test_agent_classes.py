@@ -347,3 +347,21 @@ def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> Non
         ("warning", "the internal action my.one cannot have 2 arguments"),
         ("warning", "there is no internal action my.oen"),
     ]
+
+
+def test_the_contexts_of_options_are_asked_once(tmp_path: Path) -> None:
+    python = """
+class Mine(Agent):
+    def select_option(self, options):
+        return options[0]
+
+@internal_action
+def once(agent: Agent) -> int:
+    agent.print("asked")
+    if agent.believes("used"):
+        return None
+    agent.add_belief("used")
+    return 7
+"""
+    program = "!go. +!go : my.once(X) & Y = X + 1 <- .print(X, Y). +!go <- .print(second)."
+    assert said(tmp_path, program, python) == ["asked", "78"]
