@@ -59,7 +59,7 @@ class AgentCoroutine:
         self._ended, self._activity, self._over = ended, activity, over
         self._wanted = True
         activity.begin()
-        self.task = asyncio.get_running_loop().create_task(_without_exit(coroutine))
+        self.task = asyncio.get_running_loop().create_task(without_exit(coroutine))
         self.task.add_done_callback(self._done)
 
     def cancel(self) -> None:
@@ -79,7 +79,7 @@ class AgentCoroutine:
         self._ended(None if error is not None else task.result(), error)
 
 
-async def _without_exit(work: Coroutine[Any, Any, Any]) -> Any:
+async def without_exit(work: Coroutine[Any, Any, Any]) -> Any:
     """Do the work of a coroutine; its ``sys.exit`` would end the loop, and is made an error of its own."""
     try:
         return await work

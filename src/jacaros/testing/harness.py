@@ -96,6 +96,7 @@ class AgentHarness:
         self._actions = dict(actions or {})
         self._by_number: dict[int, RecordedAct] = {}
         self._asked = 0
+        self._wrong: Exception | None = None
         file = program if isinstance(program, Path) else Path(f"{name}.asl")
         written = source_text(program) if isinstance(program, Path) else program
         code = PythonCode(ProjectModules(file.parent, *folders))
@@ -157,8 +158,15 @@ class AgentHarness:
     # ---- letting it reason
 
     def step(self, cycles: int = 1) -> bool:
-        """Let it make at most so many reasoning cycles; no time passes.  Whether there is more to do."""
-        return not self._stopped and self.mind.run(cycles)
+        """Let it make at most so many reasoning cycles; no time passes.  Whether there is more to do.
+
+        What a function that answers actions raises, such as a failed ``assert``, is raised here and by `run`.
+        """
+        more = not self._stopped and self.mind.run(cycles)
+        if self._wrong is not None:
+            wrong, self._wrong = self._wrong, None
+            raise wrong
+        return more
 
     def run(self, seconds: float | None = None, cycles: int = 100_000) -> None:
         """Let it reason.
@@ -186,7 +194,7 @@ class AgentHarness:
 
     def _reason(self, cycles: int) -> int:
         __tracebackhide__ = True
-        while not self._stopped and self.mind.run(_QUANTUM):
+        while self.step(_QUANTUM):
             cycles -= _QUANTUM
             if cycles <= 0:
                 self._complain("it made very many reasoning cycles without an end: an endless loop?")
@@ -217,7 +225,11 @@ class AgentHarness:
         self._by_number[act.id] = recorded
         function = self._actions.get(recorded.name)
         if function is not None:
-            recorded.answer(function)
+            try:
+                recorded.answer(function)
+            except Exception as wrong:
+                # A mistake of the test: for the agent it would be one more failed step.
+                self._wrong = self._wrong or wrong
 
     def send(self, message: SpeechAct) -> bool:
         """It sends a message; False when there is no such agent."""

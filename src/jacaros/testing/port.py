@@ -1,5 +1,6 @@
 """The port of an agent under test to its harness."""
 
+from asyncio import CancelledError
 from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
 from pathlib import Path
 from random import Random
@@ -9,7 +10,7 @@ from jacaros.bdi.act import Act
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Timer, VirtualClock, run
-from jacaros.mas.coroutines import Ended
+from jacaros.mas.coroutines import Ended, without_exit
 from jacaros.mas.programs import Programs
 from jacaros.testing.recorded import RecordedAct
 
@@ -61,8 +62,8 @@ class HarnessPort:
         result: object = None
         error: BaseException | None = None
         try:
-            result = run(lambda: coroutine, VirtualClock())
-        except Exception as wrong:
+            result = run(lambda: without_exit(coroutine), VirtualClock())
+        except (Exception, CancelledError) as wrong:
             error = wrong
         return self.clock.call_later(0.0, lambda: ended(result, error))
 

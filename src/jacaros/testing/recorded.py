@@ -90,6 +90,7 @@ class RecordedAct:
         """Let a function decide: it is called with the arguments that have values, and gives the outputs.
 
         One output is what it returns, several are a tuple; without outputs False means that the action fails.
+        What it raises beside `ActionFailed` is a mistake of the test, and is raised by `AgentHarness.run`.
         """
         values = [
             a

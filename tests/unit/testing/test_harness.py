@@ -273,3 +273,26 @@ def test_a_wrong_reason_is_told() -> None:
     agent.run()
     with pytest.raises(AssertionError, match=r"another reason than error\(b\): !go \(failed: error\(a\)"):
         agent.assert_failed(goal, "error(b)")
+
+
+def test_what_an_answering_function_raises_reaches_the_test() -> None:
+    def see(thing: object) -> None:
+        assert thing == Atom("dog"), "no dog"
+
+    agent = AgentHarness("!go. +!go <- see(cat). -!go <- .print(caught).", actions={"see": see})
+    with pytest.raises(AssertionError, match="no dog"):
+        agent.run()
+    stepped = AgentHarness("!go. +!go <- see(cat).", actions={"see": see})
+    with pytest.raises(AssertionError, match="no dog"):
+        stepped.step(10)
+
+
+def test_sys_exit_in_a_coroutine_fails_the_step(tmp_path: Path) -> None:
+    (tmp_path / "my.py").write_text(
+        "import sys\nfrom jacaros import internal_action\n\n@internal_action\nasync def leave():\n    sys.exit(3)\n"
+    )
+    program = tmp_path / "t.asl"
+    program.write_text("!go. +!go <- my.leave. -!go[error(E)] <- .print(E).")
+    agent = AgentHarness(program)
+    agent.run()
+    agent.assert_printed("internal_action")
