@@ -1,6 +1,7 @@
 """The belief bases that Jason has names for."""
 
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -49,6 +50,8 @@ class TextPersistentBB(BeliefBase):
         self._file.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=self._file.parent, prefix=f".{self._file.name}.")
         try:
+            # A temporary file is the user's alone; what takes its place is for those who could read it before.
+            Path(name).chmod(_mode(self._file))
             with os.fdopen(handle, "w", encoding="utf-8") as file:
                 file.write(text)
                 file.flush()
@@ -170,6 +173,15 @@ STANDARD_BASES: dict[str, type[BeliefBase]] = {
     "IndexedBB": IndexedBB,
 }
 """By the names behind ``jason.bb.``; ``ChainBB`` is made from its links."""
+
+
+def _mode(file: Path) -> int:
+    """The permissions of a file, or those that a new one gets."""
+    if file.exists():
+        return stat.S_IMODE(file.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
 
 
 def _is_file(argument: object) -> bool:

@@ -146,6 +146,17 @@ def test_all_beliefs_are_kept_in_the_file_that_is_named(tmp_path: Path) -> None:
     assert said(tmp_path, 'jason.bb.TextPersistentBB("memory/all.bb")', again) == ["a bxyme"]
 
 
+def test_the_file_may_be_read_by_those_who_could_read_it_before(tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    other.touch()
+    said(tmp_path, "jason.bb.TextPersistentBB", COUNT)
+    kept = tmp_path / "bob.bb"
+    assert kept.stat().st_mode == other.stat().st_mode
+    kept.chmod(0o640)
+    said(tmp_path, "jason.bb.TextPersistentBB", COUNT)
+    assert kept.stat().st_mode & 0o777 == 0o640
+
+
 def test_a_file_that_is_broken_is_told_and_left_alone(tmp_path: Path) -> None:
     (tmp_path / "bob.bb").write_text("count(3\n")
     result = run(tmp_path, "jason.bb.TextPersistentBB", COUNT)
