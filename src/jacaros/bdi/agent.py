@@ -111,10 +111,11 @@ class Agent(Circumstance):
 
     def adopt(self, goals: Iterable[nodes.Literal]) -> None:
         """Take up the goals of a program."""
-        for goal in goals:
-            term = self._initial_value(goal)
-            if term is not None:
-                self.post_goal(term)
+        with functions.evaluating(self):
+            for goal in goals:
+                term = self._initial_value(goal)
+                if term is not None:
+                    self.post_goal(term)
 
     def _initial_value(self, node: nodes.Literal) -> Term:
         """The term of an initial belief or goal; None when it holds an expression without a value."""

@@ -60,6 +60,7 @@ class Circumstance:
         namespace_properties: properties that programs give to namespaces.
         functions: arithmetic functions that its program registers, by name.
         project_functions: those of the project, with their least and greatest numbers of arguments.
+        evaluators: what computes them, by name; None stands for a value that is not known yet.
         cycles: number of steps made.
         next_look: number of the cycle in which percepts and messages are looked at next.
         blamed: plans whose goal condition cannot be evaluated, as people have been told.
@@ -118,6 +119,7 @@ class Circumstance:
         self.namespace_properties: dict[str, dict[Term, Term]] = {}
         self.functions: dict[str, Any] = {}
         self.project_functions: Mapping[str, tuple[int, int | None]] = {}
+        self.evaluators: Mapping[str, Callable[..., Term]] = {}
         self.context: Any = None
         self.cycles = 0
         self.blamed: set[Any] = set()

@@ -52,6 +52,9 @@ def call_own(agent: Circumstance, term: Term) -> Term:
         return float(round(agent.architecture.now() * 1000))
     if name == "math.random":
         return _random(agent, term)
+    evaluator = agent.evaluators.get(name)
+    if evaluator is not None:
+        return evaluator(*term[1:])
     function = agent.functions.get(name)
     return None if function is None else _call_registered(agent, function, term)
 

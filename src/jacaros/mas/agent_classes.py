@@ -76,7 +76,7 @@ class AgentClasses:
             return self._custom(spec, program, run, random, options, code, plans, objects)
         host = AgentHost(spec.name, run, random)
         mind = Agent(spec.name, program, host, options, code.actions, plans)
-        mind.project_functions = code.functions
+        code.serve(mind)
         host.mind = mind
         return host
 
@@ -99,7 +99,7 @@ class AgentClasses:
         face, base, architectures = objects
         host = CustomHost(spec.name, run, random)
         mind = CustomMind(spec.name, program, host, options, code.actions, plans)
-        mind.project_functions = code.functions
+        code.serve(mind)
         host.mind = mind
         try:
             if face is not None:

@@ -139,7 +139,6 @@ def _check_program(
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
     known = KnownActions(code.actions, code.hint)
     own = [*diagnostics, *check(_with_additions(program, agent), known, errors)]
-    code.close()
     for source in sources:
         own += Suppressions(source).unknown
     if agent is not None and agent.agent_class is not None:

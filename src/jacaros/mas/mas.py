@@ -237,7 +237,6 @@ class Mas:
         if self._surroundings is not None:
             await self._surroundings.environment.close()
         await self.ros.close()
-        self._code.close()
 
     def _when_idle(self) -> None:
         if self._watches_idle and not self._ending:

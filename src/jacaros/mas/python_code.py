@@ -1,12 +1,13 @@
 """The Python code of a project, read when a program or the project file first names it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.internal_action import STANDARD, InternalAction
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
-from jacaros.terms import arithmetic
+from jacaros.terms.values import Term
 
 if TYPE_CHECKING:
     from jacaros.extension.collecting import Additions, Limits
@@ -27,6 +28,7 @@ class PythonCode:
         actions: the internal actions of the language and of the modules read so far; shared by all agents.
         functions: arithmetic functions by name, with their least and greatest numbers of arguments; to be handed
             to the parser.
+        evaluators: what computes them.
     """
 
     def __init__(self, modules: ProjectModules) -> None:
@@ -36,7 +38,7 @@ class PythonCode:
         self._additions: Additions | None = None
         self._read: dict[str, ModuleUnreadable | None] = {}
         self._met: dict[str, None] = {}
-        self._replaced: dict[str, Any] = {}
+        self.evaluators: dict[str, Callable[..., Term]] = {}
 
     def name_met(self, name: str) -> None:
         """A program uses a name with a dot: import the module that it names, if there is one."""
@@ -61,10 +63,7 @@ class PythonCode:
         except ModuleUnreadable as wrong:
             self._read[module] = wrong
         self.actions.update(self._additions.actions)
-        for name, evaluator in self._additions.functions.items():
-            if arithmetic.functions.get(name) is not evaluator:
-                self._replaced.setdefault(name, arithmetic.functions.get(name))
-                arithmetic.functions[name] = evaluator
+        self.evaluators.update(self._additions.functions)
 
     def take_errors(self) -> list[Diagnostic]:
         """What is wrong with the modules that programs named since the last call."""
@@ -83,14 +82,10 @@ class PythonCode:
             return f"{file} has no such function with @internal_action"
         return f"write it in Python: a function {function} with @internal_action in {file} beside the project"
 
-    def close(self) -> None:
-        """Take the arithmetic functions of this project back."""
-        for name, before in self._replaced.items():
-            if before is None:
-                arithmetic.functions.pop(name, None)
-            else:
-                arithmetic.functions[name] = before
-        self._replaced.clear()
+    def serve(self, agent: Circumstance) -> None:
+        """Let an agent evaluate the functions of the project, also in what it reads at run time."""
+        agent.project_functions = self.functions
+        agent.evaluators = self.evaluators
 
 
 class _Functions(dict[str, Any]):

@@ -107,6 +107,7 @@ class AgentHarness:
         if wrong:
             raise AslError(wrong)
         self.mind = Agent(name, tree, self._port, Options(), code.actions)
+        code.serve(self.mind)
         self.mind.start()
 
     # ---- giving

@@ -238,10 +238,7 @@ def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes
         AslError: with the errors of all of them.
     """
     code = PythonCode(ProjectModules(deployment.base_path, *deployment.source_paths))
-    try:
-        return Programs(deployment.source_paths, warn, code, with_assertions).load_all(deployment.agents)
-    finally:
-        code.close()
+    return Programs(deployment.source_paths, warn, code, with_assertions).load_all(deployment.agents)
 
 
 def _lone(path: Path) -> Deployment:

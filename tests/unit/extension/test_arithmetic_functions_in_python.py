@@ -5,6 +5,7 @@ from pathlib import Path
 from extension_lab import run, said
 
 from jacaros.terms import arithmetic
+from jacaros.testing import AgentHarness
 
 SQ = """
 from jacaros import arithmetic_function
@@ -84,3 +85,25 @@ def test_a_function_with_another_number_of_arguments_is_told(tmp_path: Path) -> 
 def test_the_functions_of_a_project_are_gone_after_its_run(tmp_path: Path) -> None:
     said(tmp_path, "!go. +!go <- .print(my.sq(3)).", SQ)
     assert "my.sq" not in arithmetic.functions
+
+
+def test_two_projects_have_functions_of_one_name_at_the_same_time(tmp_path: Path) -> None:
+    module = (
+        "from jacaros import arithmetic_function\n@arithmetic_function\ndef size(x):\n    return {result}\n"
+    )
+    agents = []
+    for name, result in (("one", 1), ("two", 2)):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "my.py").write_text(module.format(result=result), encoding="utf-8")
+        file = folder / "agent.asl"
+        file.write_text(
+            'first(my.size(0)). +!g <- ?first(F); .term2string(T, "my.size(0) + 10"); .print(F, my.size(0), T + 0).',
+            encoding="utf-8",
+        )
+        agents.append(AgentHarness(file))
+    for agent in agents:
+        agent.achieve("g")
+        agent.run()
+    assert [agent.prints for agent in agents] == [["1111"], ["2212"]]
+    assert "my.size" not in arithmetic.functions
