@@ -406,7 +406,6 @@ class Agent(Circumstance):
 
     # --- plans ---------------------------------------------------------------------------------------------
 
-    add_plans = plan_changes.add_plans
     add_plan = plan_changes.add_plan
     remove_plan = plan_changes.remove_plan
     change_plans = plan_changes.change_plans

@@ -20,7 +20,7 @@ from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import Functor, String, Term, Var, atom, bare, functor, functor_of
+from jacaros.terms.values import Functor, String, Term, Var, atom, functor, functor_of
 
 ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
@@ -373,12 +373,6 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
             return True
         index -= 1
     return False
-
-
-def is_error(term: Term, error: str) -> bool:
-    """Whether a failure annotation is ``error(Id)``."""
-    inner = bare(term)
-    return inner.__class__ is tuple and inner[0] is ERROR and inner[1] is atom(error)
 
 
 def nowhere(*terms: Term) -> FailureReason:

@@ -196,11 +196,6 @@ def collect_formula(agent: Circumstance, name: str, arguments: tuple[Term, ...],
     return unify(target, make_list(items), trail)
 
 
-def first_answer(agent: Circumstance, formula: Term) -> bool:
-    """Whether a formula holds; its first answer stays bound on the agent's trail."""
-    return any(True for _ in run(solve_formula(agent, formula, agent.trail), agent.rule_depth))
-
-
 COUNT = functor(".count", 1)
 
 

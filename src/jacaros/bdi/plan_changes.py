@@ -36,17 +36,6 @@ def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
     ) == shape((right.trigger, right.context, right.body, right.goal_condition, right.subplans))
 
 
-def add_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
-    """Take in plans of a program, behind those held."""
-    plans = []
-    for node in plan_nodes:
-        agent.plans_made += 1
-        plan = Plan(node, label_of(node, agent.plans_made))
-        plans.append(with_subplans(plan, agent.plans_made))
-    agent.library.extend(plans)
-    look_at_plans(agent)
-
-
 def look_at_plans(agent: Circumstance) -> None:
     """What the mind needs to know of its plans as a whole."""
     agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()

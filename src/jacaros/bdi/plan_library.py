@@ -41,13 +41,6 @@ class PlanLibrary:
         self._every.clear()
         self.selects.forget(plan)
 
-    def extend(self, plans: list[Plan]) -> None:
-        """Add many plans at the end."""
-        self.plans.extend(plans)
-        self.own.extend(plans)
-        self._every.clear()
-        self.selects.clear()
-
     def remove(self, plan: Plan) -> None:
         """Take a plan out."""
         self.plans.remove(plan)

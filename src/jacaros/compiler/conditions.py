@@ -11,7 +11,7 @@ Predicates with rules are searched by generators.  Two ways of running them:
   it run and is sent its next answer, so that rules of any depth need no Python recursion.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 
 from jacaros.asl import nodes
@@ -502,8 +502,3 @@ _WRITERS: dict[type, Callable[..., None]] = {
     nodes.RuleTerm: _dynamic,
     nodes.BodyTerm: _dynamic,
 }
-
-
-def special_names() -> Iterable[str]:
-    """Names of the internal actions that are compiled in place."""
-    return dict.fromkeys(name for name, _ in _SPECIAL)

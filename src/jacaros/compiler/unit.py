@@ -1,6 +1,5 @@
 """A unit of generated code: the functions of one event kind or rule, made real."""
 
-import linecache
 from collections.abc import Callable, Mapping, Sequence
 from types import FunctionType
 from typing import Any
@@ -114,8 +113,3 @@ def compile_rule_function(rule: nodes.Rule, actions: Mapping[str, ActionInfo]) -
     unit.execute()
     function: FunctionType = unit.globals[name]
     return function
-
-
-def register_source(name: str, text: str) -> None:
-    """Let tracebacks show the lines of a program that is no file."""
-    linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)

@@ -99,17 +99,3 @@ class _Functions(dict[str, Any]):
         self._code.name_met(name)
         additions = self._code._additions
         return default if additions is None else additions.arities.get(name, default)
-
-
-def names_of(modules: ProjectModules, *names: str) -> tuple[set[str], set[str]]:
-    """The names of the internal actions and of the arithmetic functions that modules of a project define.
-
-    Raises:
-        ModuleUnreadable: a module cannot be imported.
-    """
-    from jacaros.extension.collecting import Additions
-
-    additions = Additions()
-    for name in names:
-        additions.collect(modules, name)
-    return set(additions.actions), set(additions.functions)

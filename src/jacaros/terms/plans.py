@@ -95,8 +95,3 @@ def plan_text_parts(term: Term) -> tuple[Term, str, Term, Term, Term]:
 def is_body(term: Term) -> bool:
     """Whether a term is a plan body."""
     return term is BODY_END or (term.__class__ is tuple and term[0] in BODIES)
-
-
-def is_plan_piece(symbol: Functor) -> bool:
-    """Whether a functor belongs to plans as terms."""
-    return symbol.kind == KIND
