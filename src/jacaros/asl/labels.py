@@ -1,7 +1,5 @@
 """Labels of plans: two different plans cannot share one."""
 
-from dataclasses import fields, is_dataclass
-
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import Diagnostic
 
@@ -54,7 +52,6 @@ def shape(node: object, names: dict[str, int] | None = None) -> object:
         return (number, shape(node.annotations, names), shape(node.namespace, names), node.negated)
     if isinstance(node, tuple):
         return tuple([shape(part, names) for part in node])
-    if is_dataclass(node):
-        parts = [shape(getattr(node, part.name), names) for part in fields(node) if part.name != "span"]
-        return (type(node).__name__, *parts)
+    if isinstance(node, nodes.Node):
+        return (type(node).__name__, *[shape(part, names) for part in node.parts()])
     return node

@@ -1,6 +1,5 @@
 """Plans, triggers, rules, and the terms in braces that hold them."""
 
-from dataclasses import replace
 from typing import Final
 
 from jacaros.asl import nodes
@@ -154,7 +153,7 @@ class PlanParser(BodyParser):
             self.accept(".")
         self.leave()
         self.close(opener)
-        return replace(term, span=self.span_from(opener))
+        return nodes.replace(term, span=self.span_from(opener))
 
     def _in_braces(self) -> nodes.Term:
         kind, following = self.token.kind, self.peek().kind

@@ -1,7 +1,6 @@
 """Whole files: beliefs, rules, initial goals, plans and directives, with recovery after errors."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
@@ -157,12 +156,12 @@ class ProgramParser(PlanParser):
         _check_context(self, plan.context)
         if self._at_subplans() or (self.token.kind == "{" and self.peek().kind == "}"):
             # Sub-plans may also stand in place of the final '.'.
-            plan = replace(plan, subplans=self._subplans())
+            plan = nodes.replace(plan, subplans=self._subplans())
             self.accept(".")
             return plan
         self._finish("plan")
         if self._at_subplans() or (self.token.kind == "{" and self.peek().kind == "}"):
-            plan = replace(plan, subplans=self._subplans())
+            plan = nodes.replace(plan, subplans=self._subplans())
         return plan
 
     def _subplans(self) -> tuple[nodes.Plan, ...]:
@@ -247,7 +246,7 @@ class ProgramParser(PlanParser):
             self.fail("unknown-directive", "this is no directive", directive.span)
         self.accept(".")
         self.close(opener)
-        directive = replace(directive, span=self.span_from(opener))
+        directive = nodes.replace(directive, span=self.span_from(opener))
         if begins:
             self.directives.apply_to_block(self, directive, section)
         else:

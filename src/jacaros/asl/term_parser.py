@@ -1,7 +1,6 @@
 """Terms and conditions: expressions with their operators."""
 
 from abc import abstractmethod
-from dataclasses import replace
 from difflib import get_close_matches
 from typing import Final
 
@@ -177,7 +176,7 @@ class TermParser(LiteralParser):
                 "join two of them with &, as in 1 < X & X < 5",
             )
         elif left is self._placed and isinstance(left, nodes.Literal | nodes.Variable):
-            left = replace(left, namespace=None)
+            left = nodes.replace(left, namespace=None)
         right = self.expression(_SUM)
         return nodes.Relation(operator.kind, left, right, span=_across(left, right))
 

@@ -1,7 +1,6 @@
 """Beliefs and rules, indexed by functor and, where programs ask for it, by arguments."""
 
 from collections.abc import Generator, Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
 from jacaros.asl import nodes
@@ -74,8 +73,8 @@ def _with_source(rule: nodes.Rule) -> nodes.Rule:
         return rule
     if any(isinstance(item, nodes.Literal) and item.functor == "source" for item in annotations.items):
         return rule
-    more = replace(annotations, items=(*annotations.items, _SOURCE_SELF))
-    return replace(rule, head=replace(rule.head, annotations=more))
+    more = nodes.replace(annotations, items=(*annotations.items, _SOURCE_SELF))
+    return nodes.replace(rule, head=nodes.replace(rule.head, annotations=more))
 
 
 class OpenFact:

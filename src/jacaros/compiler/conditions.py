@@ -12,7 +12,6 @@ Predicates with rules are searched by generators.  Two ways of running them:
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from jacaros.asl import nodes
 from jacaros.compiler.building import (
@@ -153,7 +152,7 @@ def _deconstruction_in_namespace(
     """``ns::X =.. L`` and ``NS::X =.. L``: the literal that is made may be of that namespace."""
     namespace = variable.namespace
     place = build(fn, namespace) if isinstance(namespace, nodes.Variable) else repr(namespace)
-    left, right = build(fn, replace(variable, namespace=None)), build(fn, node.right)
+    left, right = build(fn, nodes.replace(variable, namespace=None)), build(fn, node.right)
     _undoing(fn, f"deconstruct_in({place}, {left}, {right}, t)", [], then)
 
 

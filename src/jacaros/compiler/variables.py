@@ -1,7 +1,6 @@
 """Which variables a piece of syntax mentions."""
 
 from collections.abc import Iterator
-from dataclasses import fields
 from typing import TypeVar
 
 from jacaros.asl import nodes
@@ -16,9 +15,8 @@ def variables_in(node: object) -> Iterator[nodes.Variable]:
         if node.annotations is not None:
             yield from variables_in(node.annotations)
     elif isinstance(node, nodes.Node):
-        for field in fields(node):
-            if field.name != "span":
-                yield from variables_in(getattr(node, field.name))
+        for part in node.parts():
+            yield from variables_in(part)
     elif isinstance(node, tuple):
         for item in node:
             yield from variables_in(item)
@@ -52,9 +50,8 @@ def nodes_in(kind: type[Kind], node: object) -> Iterator[Kind]:
     if isinstance(node, kind):
         yield node
     if isinstance(node, nodes.Node):
-        for field in fields(node):
-            if field.name != "span":
-                yield from nodes_in(kind, getattr(node, field.name))
+        for part in node.parts():
+            yield from nodes_in(kind, part)
     elif isinstance(node, tuple):
         for item in node:
             yield from nodes_in(kind, item)

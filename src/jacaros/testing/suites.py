@@ -291,7 +291,7 @@ def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> It
                 )
             )
             continue
-        goal = replace(literal, annotations=None)
+        goal = nodes.replace(literal, annotations=None)
         signature = _signature(goal)
         first = known.setdefault(signature, plan)
         if first is not plan:
@@ -338,7 +338,7 @@ def _signature(goal: nodes.Literal) -> str:
         if isinstance(term, nodes.Variable):
             return nodes.Variable("_")
         return (
-            replace(term, arguments=tuple(map(plain, term.arguments)))
+            nodes.replace(term, arguments=tuple(map(plain, term.arguments)))
             if isinstance(term, nodes.Literal)
             else term
         )

@@ -44,7 +44,7 @@ def exclusive(call: PatternCall, section: Section) -> Section:
     inner = declarative(call, replace(section, plans=plans))
     forget = call.internal(".abolish", _tried(nodes.Variable("_", unnamed=True, span=call.span), goal))
     no_plan = nodes.Literal("error", (nodes.Literal("no_applicable"),), span=call.span)
-    exhausted = replace(goal, annotations=nodes.Annotations((no_plan,)))
+    exhausted = nodes.replace(goal, annotations=nodes.Annotations((no_plan,)))
     message = nodes.Literal(
         "error_msg", (nodes.String("all plans for the goal have been tried"),), span=call.span
     )
@@ -52,7 +52,7 @@ def exclusive(call: PatternCall, section: Section) -> Section:
     retry = call.plan(on("-!", goal), call.achieve(goal))
     *others, succeed = inner.plans
     assert isinstance(succeed.body, nodes.Body)
-    succeed = replace(succeed, body=replace(succeed.body, steps=(forget, *succeed.body.steps)))
+    succeed = nodes.replace(succeed, body=nodes.replace(succeed.body, steps=(forget, *succeed.body.steps)))
     return with_plans(inner, others, [succeed], [give_up, retry])
 
 
@@ -87,7 +87,7 @@ def _tested(plan: nodes.Plan, call: PatternCall) -> nodes.Plan:
     """*plan* with a last step that tests its own goal."""
     assert isinstance(plan.body, nodes.Body)
     test = nodes.Test(_own_goal(plan), span=call.span)
-    return replace(plan, body=replace(plan.body, steps=(*plan.body.steps, test)))
+    return nodes.replace(plan, body=nodes.replace(plan.body, steps=(*plan.body.steps, test)))
 
 
 def _tried_once(plan: nodes.Plan, index: int, call: PatternCall) -> nodes.Plan:
@@ -97,13 +97,13 @@ def _tried_once(plan: nodes.Plan, index: int, call: PatternCall) -> nodes.Plan:
     untried: nodes.Term = nodes.Not(mark, span=call.span)
     context = untried if plan.context is None else nodes.And(untried, plan.context, span=plan.context.span)
     steps = (call.change("+", mark), *plan.body.steps)
-    return replace(plan, context=context, body=replace(plan.body, steps=steps))
+    return nodes.replace(plan, context=context, body=nodes.replace(plan.body, steps=steps))
 
 
 def _own_goal(plan: nodes.Plan) -> nodes.Literal:
     """The goal of a plan with the plan's own variables, without annotations."""
     assert isinstance(plan.trigger.literal, nodes.Literal)
-    return replace(plan.trigger.literal, annotations=None)
+    return nodes.replace(plan.trigger.literal, annotations=None)
 
 
 def _tried(index: nodes.Term, goal: nodes.Literal) -> nodes.Literal:

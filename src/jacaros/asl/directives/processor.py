@@ -1,7 +1,6 @@
 """Carries out the directives of a program: includes, namespaces, functions and goal patterns."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from difflib import get_close_matches
 from itertools import count
 from typing import Final, TypeVar
@@ -253,7 +252,7 @@ class DirectiveProcessor:
     def _placed(self, namespaces: Namespaces, argument: nodes.Term) -> nodes.Term:
         """A goal or belief given to a pattern belongs to the namespace of the block."""
         if isinstance(argument, nodes.Literal) and argument.namespace is None:
-            return replace(argument, namespace=namespaces.of_literal(argument.functor))
+            return nodes.replace(argument, namespace=namespaces.of_literal(argument.functor))
         return argument
 
 
@@ -293,12 +292,12 @@ def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _
 def _with_named_variables(term: nodes.Term) -> nodes.Term:
     """*term* with its unnamed variables made ordinary, so that it is the same in several places of a plan."""
     if isinstance(term, nodes.Variable) and term.unnamed:
-        return replace(term, unnamed=False)
+        return nodes.replace(term, unnamed=False)
     if isinstance(term, nodes.Literal):
-        return replace(term, arguments=tuple(map(_with_named_variables, term.arguments)))
+        return nodes.replace(term, arguments=tuple(map(_with_named_variables, term.arguments)))
     if isinstance(term, nodes.ListTerm):
         tail = None if term.tail is None else _with_named_variables(term.tail)
-        return replace(term, items=tuple(map(_with_named_variables, term.items)), tail=tail)
+        return nodes.replace(term, items=tuple(map(_with_named_variables, term.items)), tail=tail)
     return term
 
 
