@@ -11,9 +11,9 @@ from types import ModuleType
 
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
-from jacaros.mas.project import load_deployment
 from jacaros.sim import Event, GroundTruth, Sample
 from jacaros.testing import RunResult, run_project
 

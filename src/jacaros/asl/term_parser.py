@@ -1,7 +1,6 @@
 """Terms and conditions: expressions with their operators."""
 
 from abc import abstractmethod
-from difflib import get_close_matches
 from typing import Final
 
 from jacaros.asl import nodes
@@ -9,6 +8,7 @@ from jacaros.asl.functions import ARITIES
 from jacaros.asl.lexer import Token
 from jacaros.asl.literal_parser import LiteralParser
 from jacaros.asl.source import Span
+from jacaros.asl.spelling import close_matches
 
 _OR, _AND, _NOT, _RELATION, _SUM, _POWER = 1, 2, 3, 4, 5, 7
 _LEVELS: Final = {
@@ -150,7 +150,7 @@ class TermParser(LiteralParser):
         hint = None
         if isinstance(operand, nodes.InternalAction):
             what = f"'{operand.name}' with {len(operand.arguments)} arguments is not a function"
-            close = get_close_matches(operand.name, [*ARITIES, *self.names.functions], 1)
+            close = close_matches(operand.name, [*ARITIES, *self.names.functions])
             if close and close[0] != operand.name:
                 hint = f"did you mean {close[0]}?"
             elif close:

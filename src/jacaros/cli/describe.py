@@ -11,7 +11,7 @@ from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.interface import OperationTable
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import Deployment
-from jacaros.mas.project import load_deployment
+from jacaros.mas.loading import load_deployment
 
 
 @click.command("describe", short_help="Tell what an artifact type or a project offers.")

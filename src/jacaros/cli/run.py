@@ -1,6 +1,5 @@
 """``jacaros run FILE``."""
 
-import difflib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -110,6 +109,8 @@ def check_file(file: Path) -> None:
     if file.is_dir():
         raise UsageError(f"{file} is a folder; give a .asl, .mas2j or .jcm file in it")
     beside = [each.name for each in file.parent.glob("*.*") if each.suffix in (".asl", ".mas2j", ".jcm")]
+    import difflib  # here: only for a file that is not there
+
     near = difflib.get_close_matches(file.name, beside, n=2)
     hint = f"; did you mean {' or '.join(str(file.parent / name) for name in near)}?" if near else ""
     raise UsageError(f"there is no file {file}{hint}")

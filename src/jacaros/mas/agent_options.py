@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from difflib import get_close_matches
 from typing import Final
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import Span
+from jacaros.asl.spelling import close_matches
 from jacaros.bdi.options import Options
 
 _TRUTH: Final = ("true", "false")
@@ -45,7 +45,7 @@ def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
     """What is wrong with an option, or that it has no effect here; None for the others, the user's own as well."""
     choices = _CHOICES.get(name)
     if choices is not None and value not in choices:
-        close = get_close_matches(value, choices, 1)
+        close = close_matches(value, choices)
         hint = f"did you mean {close[0]}?" if close else None
         return Diagnostic("error", f"{name} is one of {', '.join(choices)}, not '{value}'", span, hint)
     if name in _NUMBERS and not (value.isdigit() and int(value) > 0):

@@ -13,9 +13,9 @@ from typing import Any
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
-from jacaros.mas.project import load_deployment
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 GARBAGE_THRESHOLD = 100_000

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from errno import ENOTDIR
-from importlib import resources
 from pathlib import Path
 
+from jacaros import asl
 from jacaros.asl import nodes
 from jacaros.asl.checker import check_for_run
 from jacaros.asl.checks.actions import KnownActions
@@ -173,7 +173,7 @@ def _concerns_author(warning: Diagnostic, path: Path) -> bool:
 
 def library_file(name: str) -> Path:
     """The path of a program that comes with the package; it need not be there."""
-    return Path(str(resources.files("jacaros.asl").joinpath("library", name)))
+    return Path(asl.__file__).parent / "library" / name
 
 
 def _of_library(name: str) -> tuple[str, str]:

@@ -1,7 +1,6 @@
 """Project files: from a `.mas2j`, `.jcm` or `.asl` file to what is to be run."""
 
 from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
@@ -9,6 +8,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import parse_literals
 from jacaros.asl.source import SourceFile, Span
+from jacaros.asl.spelling import close_matches
 from jacaros.mas.agent_options import check_option
 from jacaros.mas.deployment import (
     CARTAGO_ENVIRONMENTS,
@@ -23,25 +23,7 @@ from jacaros.mas.project_cursor import ProjectCursor
 from jacaros.mas.project_parts import AgentPart, FocusPart, ProjectPart, WorkspacePart, Written
 from jacaros.mas.source_text import source_text
 
-_PROJECTS: Final = (".mas2j", ".jcm")
 _USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
-
-
-def load_deployment(path: str | Path) -> Deployment:
-    """What the project file *path* declares; a lone `.asl` file is a system of one agent of its name.
-
-    Raises:
-        ProjectError: with all errors of the file, also when a program of an agent is not found.
-    """
-    path = Path(path)
-    if path.suffix == ".asl":
-        return _lone_agent(path)
-    if path.suffix not in _PROJECTS:
-        raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm or .asl file")])
-    deployment, diagnostics = read_project(path)
-    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
-        raise ProjectError(diagnostics)
-    return replace(deployment, ignored=tuple(diagnostics))
 
 
 def read_project(path: Path) -> tuple[Deployment, list[Diagnostic]]:
@@ -55,14 +37,6 @@ def read_project(path: Path) -> tuple[Deployment, list[Diagnostic]]:
     deployment = _Resolver(path, part, diagnostics).deployment()
     diagnostics.sort(key=_place)
     return deployment, diagnostics
-
-
-def _lone_agent(path: Path) -> Deployment:
-    if not path.is_file():
-        raise ProjectError([Diagnostic("error", f"{path} is not found")])
-    agent = AgentSpec(path.stem, path, path.stem)
-    base = path.parent
-    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=(base,))
 
 
 def _read(path: Path, diagnostics: list[Diagnostic], using: list[Path]) -> ProjectPart:
@@ -318,5 +292,5 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int, int]:
 
 
 def _meant(name: str, known: set[str]) -> str | None:
-    close = get_close_matches(name, sorted(known), 1)
+    close = close_matches(name, sorted(known))
     return f"did you mean '{close[0]}'?" if close else None

@@ -28,8 +28,8 @@ from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.source import Span
 from jacaros.errors import JacarosError, UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import Programs, library_file
-from jacaros.mas.project import load_deployment
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules

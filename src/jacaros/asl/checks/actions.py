@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import conditions, parts_of
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.functions import ARITIES
-from jacaros.asl.spelling import is_slip_of
+from jacaros.asl.spelling import close_matches, is_slip_of
 
 _PERFORMATIVES: Final = (
     *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
@@ -78,7 +77,7 @@ def unknown_actions(
 
 
 def _meant_action(name: str, known: KnownActions) -> str | None:
-    close = get_close_matches(name, known.signatures, 1)
+    close = close_matches(name, known.signatures)
     return known.hint(name) or (f"did you mean {close[0]}?" if close else None)
 
 

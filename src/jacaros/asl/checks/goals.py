@@ -1,11 +1,11 @@
 """Goals that are posted and that no plan is for."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from difflib import get_close_matches
 from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.spelling import close_matches
 
 _ADDING_PLANS: Final = frozenset({".add_plan", ".include"})
 _Signature = tuple[str | nodes.Variable | None, str, int]
@@ -65,7 +65,7 @@ def _meant_goal(wanted: _Signature, handled: Iterable[_Signature]) -> str:
     within = [signature for signature in handled if _is_reachable(signature[0], wanted[0])]
     texts = sorted(_goal_text(signature) for signature in within)
     same_name = [_goal_text(signature) for signature in within if signature[1] == wanted[1]]
-    close = sorted(same_name) or get_close_matches(_goal_text(wanted), texts, 1)
+    close = sorted(same_name) or close_matches(_goal_text(wanted), texts)
     if not close:
         return f"write a plan for it: +{_goal_text(wanted).rpartition('/')[0]}"
     name, _, arity = close[0].rpartition("/")

@@ -3,12 +3,12 @@
 import re
 from collections import Counter
 from collections.abc import Iterator
-from difflib import get_close_matches
 from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import Clause, in_order
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.spelling import close_matches
 from jacaros.asl.walk import walk
 
 _WORD: Final = re.compile(r"\b[A-Z]\w*")
@@ -69,7 +69,7 @@ def _in_head(clause: Clause) -> set[str]:
 
 
 def _meant_variable(name: str, occurrences: Counter[str]) -> str:
-    close = get_close_matches(name, (other for other in occurrences if other != name), 1, 0.7)
+    close = close_matches(name, (other for other in occurrences if other != name), 0.7)
     return f"did you mean {close[0]}? Otherwise write _{name}" if close else f"if that is meant write _{name}"
 
 

@@ -1,7 +1,6 @@
 """Carries out the directives of a program: includes, namespaces, functions and goal patterns."""
 
 from collections.abc import Callable
-from difflib import get_close_matches
 from itertools import count
 from typing import Final, TypeVar
 
@@ -18,6 +17,7 @@ from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.program_parser import ProgramParser
 from jacaros.asl.section import Section
 from jacaros.asl.source import SourceFile, Span
+from jacaros.asl.spelling import close_matches
 
 Read = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError."""
@@ -302,7 +302,7 @@ def _with_named_variables(term: nodes.Term) -> nodes.Term:
 
 
 def _meant(name: str) -> str | None:
-    close = get_close_matches(name, [*_SIMPLE, *PATTERNS], 1)
+    close = close_matches(name, [*_SIMPLE, *PATTERNS])
     return f"did you mean '{close[0]}'?" if close else None
 
 

@@ -7,7 +7,6 @@ from jacaros.bdi.context import Context
 from jacaros.bdi.intention import PLAN
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import characters, string, whole
-from jacaros.bdi.stdlib.java_format import java_format
 from jacaros.errors import JacarosError
 from jacaros.terms.text import display, text
 from jacaros.terms.unifier import resolve
@@ -43,6 +42,8 @@ def printf(ctx: Context, template: Term, *arguments: Term) -> None:
         WrongArguments: *template* is no string.
         ActionError: the format is wrong or does not fit the arguments.
     """
+    from jacaros.bdi.stdlib.java_format import java_format  # here: few programs use it, and it needs decimal
+
     pattern = string(template, "the first argument of .printf")
     try:
         shown = java_format(pattern, [_value(argument) for argument in arguments])

@@ -3,11 +3,14 @@
 Local time is not used: programs behave the same everywhere, and on a virtual clock.
 """
 
-from datetime import UTC, datetime
+from typing import TYPE_CHECKING
 
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import internal_action
 from jacaros.terms.values import Term, make_list
+
+if TYPE_CHECKING:
+    from datetime import datetime
 
 
 @internal_action(".time", arity=(3, 4))
@@ -34,5 +37,7 @@ def nano_time(ctx: Context, nanoseconds: Term) -> bool:
     return ctx.unify(nanoseconds, float(round(ctx.architecture.now() * 1e9)))
 
 
-def _now(ctx: Context) -> datetime:
+def _now(ctx: Context) -> "datetime":
+    from datetime import UTC, datetime  # here: few programs ask for the time
+
     return datetime.fromtimestamp(ctx.architecture.now(), UTC)

@@ -1,0 +1,37 @@
+"""From a file to what is to be run."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
+
+_PROJECTS: Final = (".mas2j", ".jcm")
+
+
+def load_deployment(path: str | Path) -> Deployment:
+    """What the project file *path* declares; a lone `.asl` file is a system of one agent of its name.
+
+    Raises:
+        ProjectError: with all errors of the file, also when a program of an agent is not found.
+    """
+    path = Path(path)
+    if path.suffix == ".asl":
+        return _lone_agent(path)
+    if path.suffix not in _PROJECTS:
+        raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm or .asl file")])
+    from jacaros.mas.project import read_project  # here: a lone program starts sooner without it
+
+    deployment, diagnostics = read_project(path)
+    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
+        raise ProjectError(diagnostics)
+    return replace(deployment, ignored=tuple(diagnostics))
+
+
+def _lone_agent(path: Path) -> Deployment:
+    if not path.is_file():
+        raise ProjectError([Diagnostic("error", f"{path} is not found")])
+    agent = AgentSpec(path.stem, path, path.stem)
+    base = path.parent
+    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=(base,))
