@@ -25,6 +25,7 @@ from jacaros.terms.values import (
 Row = tuple[Term, ...]
 _ONE = ((),)
 _NONE: tuple[Row, ...] = ()
+_NOTHING: tuple[tuple[Row, tuple[Term, ...]], ...] = ()
 _FLAT = frozenset({float, Functor})
 
 
@@ -122,6 +123,18 @@ class Table:
     def exact(self, row: Row) -> Iterable[tuple[()]]:
         """One empty answer when the row is held."""
         return _ONE if row in self.rows else _NONE
+
+    def exact_item(self, row: Row) -> Iterable[tuple[Row, tuple[Term, ...]]]:
+        """The row with its annotations when it is held."""
+        held = self.rows.get(row)
+        return _NOTHING if held is None else ((row, held),)
+
+    def find_items(
+        self, positions: tuple[int, ...], key: Any
+    ) -> Iterable[tuple[Row, tuple[Term, ...]]]:
+        """What `find` finds, each row with its annotations."""
+        rows = self.rows
+        return [(row, rows[row]) for row in self.find(positions, key)]
 
     def find(self, positions: tuple[int, ...], key: Any) -> Iterable[Row]:
         """The rows whose arguments at *positions* are *key* (one value, or a tuple), newest first."""

@@ -14,6 +14,7 @@ Predicates with rules are searched by generators.  Two ways of running them:
 from collections.abc import Callable
 
 from jacaros.asl import nodes
+from jacaros.compiler.annotations import each_match, patterns_in_order
 from jacaros.compiler.building import (
     annotation_parts,
     as_name,
@@ -315,6 +316,16 @@ class _Arguments:
         key = keys[0] if len(keys) == 1 else tuple_of(keys)
         return self._lasting(table, f"{table}.find({positions}, {key})")
 
+    def rows_and_annotations(self, table: str) -> str:
+        """An expression for the rows of a table that holds only facts, each with its annotations."""
+        if not self.known:
+            return f"reversed({table}.rows.items())"
+        keys = [self.terms[i] for i in self.known]
+        if len(keys) == len(self.terms):
+            return f"{table}.exact_item({tuple_of(keys)})"
+        positions = self.fn.constant(tuple(self.known))
+        return f"{table}.find_items({positions}, {keys[0] if len(keys) == 1 else tuple_of(keys)})"
+
     def _lasting(self, table: str, rows: str) -> str:
         """Rows that may be read while beliefs change: where answers are taken in between two steps."""
         if self.fn.trampoline:
@@ -335,15 +346,34 @@ class _Arguments:
 
 def _annotated_literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
     """A query that asks for annotations: every way to find them in those of a belief is an answer."""
+    assert node.annotations is not None
     table = fn.local("b")
     symbol = fn.constant(functor_of_literal(node))
     fn.line(f"{table} = agent.beliefs[{symbol}]")
+    patterns = patterns_in_order(node.annotations)
+    if patterns is not None and not (fn.trampoline or fn.snapshot):
+        _rows_with_annotations(fn, node, table, patterns, then)
+        return
     names = names_in(node)
     arguments = tuple_of([build(fn, a) for a in node.arguments]) if node.arguments else "()"
-    assert node.annotations is not None
     items, tail = annotation_parts(fn, node.annotations)
     call = f"solve_annotated(agent, {table}, {arguments}, {items}, {tail}, t)"
     _loop_binding(fn, call, names, then)
+
+
+def _rows_with_annotations(
+    fn: FunctionBuilder, node: nodes.Literal, table: str, patterns: list[nodes.Term], then: Then
+) -> None:
+    """A loop over the rows of a predicate and their annotations, and among these for those that are asked for."""
+    arguments = _Arguments(fn, node.arguments)
+    held = fn.local("h")
+    general = f"solve_held(agent, {table}, {tuple_of(arguments.terms) if arguments.terms else '()'}, t)"
+    test = " and ".join([f"{table}.plain", *arguments.tests])
+    rows = arguments.rows_and_annotations(table)
+    with fn.writer.block(
+        f"for {arguments.target}, {held} in ({rows} if {test} else run({general}, agent.rule_depth)):"
+    ):
+        arguments.match_rest(lambda: each_match(fn, patterns, held, then))
 
 
 def _in_namespaces(fn: FunctionBuilder, node: nodes.Literal, namespace: nodes.Variable, then: Then) -> None:

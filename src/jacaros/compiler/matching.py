@@ -6,6 +6,7 @@ variable, annotations, arithmetic) goes to `unify`.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from jacaros.asl import nodes
 from jacaros.compiler.building import build, functor_of_literal, is_static, tuple_of
@@ -14,6 +15,7 @@ from jacaros.compiler.variables import names_in
 from jacaros.terms.values import CONS
 
 Then = Callable[[], None]
+_SHORT_LIST = 4
 MAX_DEPTH = 50
 """Levels of indentation after which code goes on in another way."""
 
@@ -26,24 +28,48 @@ def match(
         _match_variable(fn, pattern, value, then)
     elif isinstance(pattern, nodes.Number):
         number = build(fn, pattern)  # infinite ones are no Python literals
-        _test(fn, f"{value} == {number} if {value}.__class__ is float else unify({number}, {value}, t)", then)
+        _test(fn, f"{value} == {number} if {value}.__class__ is float else {_open(number, value)}", then)
     elif isinstance(pattern, nodes.String):
         text = build(fn, pattern)
-        _test(fn, f"{value} == {text} if {value}.__class__ is String else unify({text}, {value}, t)", then)
-    elif isinstance(pattern, nodes.Literal) and not pattern.arguments and _is_plain(pattern):
+        _test(fn, f"{value} == {text} if {value}.__class__ is String else {_open(text, value)}", then)
+    elif _is_atom(pattern):
         symbol = build(fn, pattern)
-        _test(
-            fn,
-            f"{value} is {symbol} or ({value}.__class__ is not Functor and unify({symbol}, {value}, t))",
-            then,
-        )
-    elif isinstance(pattern, nodes.Literal) and _is_plain(pattern) and not is_static(pattern):
+        _test(fn, f"{value} is {symbol} or ({_open(symbol, value)})", then)
+    elif isinstance(pattern, nodes.Literal) and _is_plain(pattern) and _is_taken_apart(pattern):
         symbol = fn.constant(functor_of_literal(pattern))
         _match_structure(fn, pattern, symbol, pattern.arguments, value, then)
-    elif isinstance(pattern, nodes.ListTerm) and len(pattern.items) == 1 and pattern.tail is not None:
-        _match_structure(fn, pattern, fn.constant(CONS), (pattern.items[0], pattern.tail), value, then)
+    elif isinstance(pattern, nodes.ListTerm) and _is_taken_apart_list(pattern):
+        items, tail = pattern.items, pattern.tail
+        rest = tail if len(items) == 1 else replace(pattern, items=items[1:])
+        first_and_rest = (items[0], rest or nodes.ListTerm(()))
+        _match_structure(fn, pattern, fn.constant(CONS), first_and_rest, value, then)
     else:
         _match_any(fn, pattern, value, then, pattern_left)
+
+
+def _open(expected: str, value: str) -> str:
+    """Unification of an atom, number or string with what is none of these; structures are passed over at once."""
+    closed = f"{value}.__class__ not in CLOSED and ({value}.__class__ is not tuple or {value}[0].kind)"
+    return f"{closed} and unify({expected}, {value}, t)"
+
+
+def _is_atom(pattern: nodes.Node) -> bool:
+    if isinstance(pattern, nodes.ListTerm):
+        return not pattern.items and pattern.tail is None
+    return isinstance(pattern, nodes.Literal) and not pattern.arguments and _is_plain(pattern)
+
+
+def _is_taken_apart(pattern: nodes.Literal) -> bool:
+    """Whether the arguments are matched one by one; large constants are better compared as a whole."""
+    return not is_static(pattern) or all(
+        isinstance(a, nodes.Number | nodes.String) or _is_atom(a) for a in pattern.arguments
+    )
+
+
+def _is_taken_apart_list(pattern: nodes.ListTerm) -> bool:
+    if not pattern.items or is_static(pattern):
+        return False
+    return len(pattern.items) == 1 or len(pattern.items) <= _SHORT_LIST
 
 
 def _is_plain(pattern: nodes.Variable | nodes.Literal) -> bool:

@@ -165,6 +165,20 @@ def solve_annotated(
         undo(trail, mark)
 
 
+def solve_held(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
+    """Answers of a predicate as `solve` has them, each as a pair with the annotations that go with it."""
+    for entry, annotations in table.candidates(arguments):
+        mark = len(trail)
+        if entry.__class__ is tuple:
+            if unify_rows(arguments, entry, trail):
+                yield arguments, annotations
+        else:
+            search = entry.search(agent, arguments, trail)
+            while (answer := (yield search)) is not None:
+                yield arguments, (answer[0] if answer else annotations)
+        undo(trail, mark)
+
+
 def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) -> bool:
     """Unify arguments pairwise."""
     return all(a is b or unify(a, b, trail) for a, b in zip(left, right, strict=True))
@@ -466,6 +480,7 @@ _FUNCTIONS = (
     run,
     solve,
     solve_annotated,
+    solve_held,
     still_held,
     undo,
     unify,

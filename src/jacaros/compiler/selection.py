@@ -7,16 +7,19 @@ its new frame; None means that no plan is applicable (rules RelPl, ApplPl and Se
 from collections.abc import Sequence
 
 from jacaros.asl import nodes
+from jacaros.compiler.annotations import first_match, patterns_in_order
 from jacaros.compiler.bodies import BodyCompiler
-from jacaros.compiler.building import annotation_parts, tuple_of
+from jacaros.compiler.building import annotation_parts, functor_of_literal, tuple_of
 from jacaros.compiler.conditions import condition
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.matching import match_all, settle_fresh
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.variables import names_in, nodes_in, occurrences
-from jacaros.terms.values import atom
+from jacaros.terms.values import CONS, NIL, String, Term, atom
 
 ALL_UNIFIERS = atom("all_unifs")
+_WORTH_A_TABLE = 6
+"""So many different first arguments make a look-up cheaper than trying one plan after the other."""
 _BY_NAME = (".term2string", ".puts", ".print_unifier")
 """Internal actions that reach variables by their names: all variables of the plan are kept for them."""
 
@@ -39,6 +42,43 @@ class SelectCompiler:
 
     def select(self, plans: Sequence[Plan], outer: Plan | None = None) -> str:
         """Write the function; returns its name.  Sub-plans see the variables of their *outer* plan's frame."""
+        if outer is None and not self.every and self.arity:
+            groups = grouped(plans)
+            if groups is not None:
+                return self._dispatch(groups, plans[0])
+        return self._in_turn(plans, outer)
+
+    def _dispatch(self, groups: list[tuple[Term, list[Plan]]], first: Plan) -> str:
+        """Write a function that tries only the plans whose first argument may be that of the event."""
+        functions = [(key, self._in_turn(plans, None)) for key, plans in groups]
+        keys = list(dict.fromkeys(key for key, _ in functions if key is not None))
+        name, table = self.unit.fresh_function("select"), self.unit.fresh_function("plans")
+        fn = FunctionBuilder(self.unit)
+        fn.at(first.node)
+
+        def parts(key: Term) -> str:
+            return tuple_of([part for own, part in functions if own is None or own is key or own == key])
+
+        entries = ", ".join(f"{fn.constant(key)}: {parts(key)}" for key in keys)
+        fn.line(f"{table} = {{{entries}}}")
+        others = [part for key, part in functions if key is None]
+        fn.line(f"{table}_others = {tuple_of(others) if others else '()'}")
+        fn.line(f"{table}_all = {tuple_of([part for _, part in functions])}")
+        with fn.writer.block(f"def {name}(agent, goal, annotations):"):
+            fn.line("key = goal[1]")
+            with fn.writer.block("if key.__class__ is tuple:"):
+                fn.line("key = None if key[0].kind else key[0]")
+            with fn.writer.block(
+                f"for part in ({table}.get(key, {table}_others) if key.__class__ in ATOMIC else {table}_all):"
+            ):
+                fn.line("frame = part(agent, goal, annotations)")
+                fn.line("if frame is not None: return frame")
+            fn.line("return None")
+        self.unit.add(fn.writer)
+        return name
+
+    def _in_turn(self, plans: Sequence[Plan], outer: Plan | None) -> str:
+        """Write a function that tries plans one after the other."""
         name = self.unit.fresh_function("select")
         fn = FunctionBuilder(self.unit)
         fn.at(plans[0].node)
@@ -46,12 +86,15 @@ class SelectCompiler:
             fn.line("t = agent.trail")
             if outer is not None:
                 _read_outer(fn, outer, plans)
+            parts = [fn.local("a") for _ in range(self.arity)]
+            if any(map(_looks_at_arguments, plans)):
+                fn.line(f"_, {', '.join(parts)} = goal")
             for index, plan in enumerate(plans):
                 fn.at(plan.node)
                 if index:
                     fn.line("if t: undo(t, 0)")
                 with fn.branch(), fn.writer.block("try:"):
-                    self._plan(fn, plan)
+                    self._plan(fn, plan, parts)
                 fn.line("except InternalError: raise")
                 if self.every:
                     fn.line("except NextPlan: pass")
@@ -63,33 +106,39 @@ class SelectCompiler:
         self.unit.add(fn.writer)
         return name
 
-    def _plan(self, fn: FunctionBuilder, plan: Plan) -> None:
+    def _plan(self, fn: FunctionBuilder, plan: Plan, parts: list[str]) -> None:
         literal = plan.node.trigger.literal
         if isinstance(literal, nodes.Variable):
             self._variable_trigger(fn, plan, literal)
             return
         if isinstance(literal.namespace, nodes.Variable):
-            self._variable_namespace(fn, plan, literal, literal.namespace)
+            self._variable_namespace(fn, plan, literal, literal.namespace, parts)
             return
-        self._arguments(fn, plan, literal)
+        self._arguments(fn, plan, literal, parts)
 
     def _variable_namespace(
-        self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal, namespace: nodes.Variable
+        self,
+        fn: FunctionBuilder,
+        plan: Plan,
+        literal: nodes.Literal,
+        namespace: nodes.Variable,
+        parts: list[str],
     ) -> None:
         """A trigger ``+!N::g(X)``: the event may be of any namespace."""
         name, arity, negated = literal.functor, len(literal.arguments), literal.negated
+        if arity != self.arity:
+            fn.line("pass")
+            return
         symbol = "goal[0].functor"
-        same = f"{symbol}.name == {name!r} and {symbol}.arity == {arity} and {symbol}.negated is {negated}"
+        same = f"{symbol}.name == {name!r} and {symbol}.negated is {negated}"
         with fn.writer.block(f"if {same}:"):
             if not namespace.unnamed:
                 fn.bind(namespace.name, f"namespace_of({symbol})")
-            self._arguments(fn, plan, literal)
+            self._arguments(fn, plan, literal, parts)
 
-    def _arguments(self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal) -> None:
-        parts = [fn.local("a") for _ in literal.arguments]
-        used = [not (isinstance(a, nodes.Variable) and a.unnamed) for a in literal.arguments]
-        if any(used):
-            fn.line(f"_, {', '.join(parts)} = goal")
+    def _arguments(
+        self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal, parts: list[str]
+    ) -> None:
         match_all(
             fn, list(literal.arguments), parts, lambda: self._annotations(fn, plan, literal.annotations)
         )
@@ -111,6 +160,14 @@ class SelectCompiler:
     def _annotations(self, fn: FunctionBuilder, plan: Plan, annotations: nodes.Annotations | None) -> None:
         if annotations is None:
             self._context(fn, plan)
+            return
+        patterns = patterns_in_order(annotations)
+        if patterns is not None:
+            held = fn.local("h")
+            fn.line(
+                f"{held} = annotations if annotations.__class__ is tuple else annotations_of_event(annotations)"
+            )
+            first_match(fn, patterns, held, lambda: self._context(fn, plan))
             return
         items, tail = annotation_parts(fn, annotations)
         with fn.writer.block(
@@ -156,6 +213,47 @@ class SelectCompiler:
         fn.line(f"yield {made}")
         if ALL_UNIFIERS not in plan.annotations:
             fn.line("raise NextPlan")
+
+
+def grouped(plans: Sequence[Plan]) -> list[tuple[Term, list[Plan]]] | None:
+    """The plans in their order, neighbours with the same first argument together; None when that is not worth while.
+
+    The first argument is told by a key: the atom, number or string itself, of a structure or list its functor.  None
+    stands for plans that may be relevant whatever it is.
+    """
+    groups: list[tuple[Term, list[Plan]]] = []
+    for plan in plans:
+        key = _first_argument(plan)
+        if groups and groups[-1][0] == key and groups[-1][0].__class__ is key.__class__:
+            groups[-1][1].append(plan)
+        else:
+            groups.append((key, [plan]))
+    keys = [key for key, _ in groups if key is not None]
+    return groups if len(set(keys)) >= _WORTH_A_TABLE and len(groups) <= 2 * len(keys) else None
+
+
+def _first_argument(plan: Plan) -> Term:
+    literal = plan.node.trigger.literal
+    if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
+        return None
+    argument = literal.arguments[0]
+    if isinstance(argument, nodes.Number):
+        return argument.value
+    if isinstance(argument, nodes.String):
+        return String(argument.value)
+    if isinstance(argument, nodes.ListTerm):
+        return CONS if argument.items else NIL if argument.tail is None else None
+    if isinstance(argument, nodes.Literal) and argument.annotations is None:
+        if not isinstance(argument.namespace, nodes.Variable):
+            return functor_of_literal(argument)
+    return None
+
+
+def _looks_at_arguments(plan: Plan) -> bool:
+    literal = plan.node.trigger.literal
+    return isinstance(literal, nodes.Literal) and any(
+        not (isinstance(a, nodes.Variable) and a.unnamed) for a in literal.arguments
+    )
 
 
 def _read_outer(fn: FunctionBuilder, outer: Plan, plans: Sequence[Plan]) -> None:

@@ -70,6 +70,20 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:
 
     On failure bindings may be left on the trail: the caller takes them back.
     """
+    kind = left.__class__
+    if kind in ATOMIC:  # the most frequent cases, written out
+        if right.__class__ in ATOMIC:
+            return kind is right.__class__ and bool(left == right)
+        if right.__class__ is Var and right.ref is None:
+            right.ref = left
+            right.at = trail.serial
+            trail.append(right)
+            return True
+    elif kind is Var and left.ref is None and right.__class__ in ATOMIC:
+        left.ref = right
+        left.at = trail.serial
+        trail.append(left)
+        return True
     turns = 0
     try:
         while turns < MANY_TURNS:

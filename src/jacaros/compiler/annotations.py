@@ -1,0 +1,69 @@
+"""Code that finds annotations among those of a belief or an event.
+
+The annotations of a pattern are looked for in their order, each among those that are held, from the first to the last:
+nested loops, as `jacaros.terms.unifier.each_annotation_match` has them.  Tails, and patterns whose order depends on the
+values of variables, are left to that function.
+"""
+
+from jacaros.asl import nodes
+from jacaros.compiler.function import FunctionBuilder
+from jacaros.compiler.matching import Then, match
+
+_MOST = 4
+
+
+def patterns_in_order(annotations: nodes.Annotations) -> list[nodes.Term] | None:
+    """The annotations in the order in which they are looked for; None when it is not known before they have values."""
+    items = annotations.items
+    if annotations.tail is not None or not 0 < len(items) <= _MOST:
+        return None
+    if len(items) == 1:
+        return list(items) if isinstance(items[0], nodes.Literal | nodes.Variable) else None
+    by_name: dict[tuple[str, str, bool], nodes.Term] = {}
+    for item in items:
+        if not isinstance(item, nodes.Literal) or isinstance(item.namespace, nodes.Variable):
+            return None
+        by_name[item.namespace or "", item.functor, item.negated] = item
+    # Of two with the same name the arguments decide; `annotation_set` compares them when they are known.
+    return [by_name[name] for name in sorted(by_name)] if len(by_name) == len(items) else None
+
+
+def each_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then: Then) -> None:
+    """Write a search for the patterns among the annotations *held*, with *then* once for every way to find them."""
+    if not patterns:
+        then()
+        return
+    candidate, mark = fn.local("c"), fn.local("n")
+    with fn.writer.block(f"for {candidate} in {held}:"):
+        fn.line(f"{mark} = len(t)")
+        match(fn, patterns[0], candidate, lambda: each_match(fn, patterns[1:], held, then))
+        fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+
+def first_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then: Then) -> None:
+    """Write a search for the first way to find the patterns among the annotations *held*, and *then* behind it."""
+    found = fn.local("f")
+    known: dict[str, str] = {}
+    fn.line(f"{found} = False")
+
+    def one(index: int) -> None:
+        candidate, mark = fn.local("c"), fn.local("n")
+
+        def matched() -> None:
+            if index + 1 < len(patterns):
+                one(index + 1)
+                fn.line(f"if {found}: break")
+            else:
+                fn.line(f"{found} = True")
+                fn.line("break")
+                known.update(fn.values)
+
+        with fn.writer.block(f"for {candidate} in {held}:"):
+            fn.line(f"{mark} = len(t)")
+            match(fn, patterns[index], candidate, matched)
+            fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+    one(0)
+    with fn.writer.block(f"if {found}:"):
+        fn.values = known
+        then()
