@@ -129,9 +129,7 @@ class Table:
         held = self.rows.get(row)
         return _NOTHING if held is None else ((row, held),)
 
-    def find_items(
-        self, positions: tuple[int, ...], key: Any
-    ) -> Iterable[tuple[Row, tuple[Term, ...]]]:
+    def find_items(self, positions: tuple[int, ...], key: Any) -> Iterable[tuple[Row, tuple[Term, ...]]]:
         """What `find` finds, each row with its annotations."""
         rows = self.rows
         return [(row, rows[row]) for row in self.find(positions, key)]

@@ -6,8 +6,18 @@ values of variables, are left to that function.
 """
 
 from jacaros.asl import nodes
+from jacaros.compiler.building import (
+    annotation_parts,
+    build,
+    constant_value,
+    functor_of_literal,
+    is_static,
+    resolved,
+    tuple_of,
+)
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.matching import Then, match
+from jacaros.terms.values import SOURCE
 
 _MOST = 4
 
@@ -26,6 +36,49 @@ def patterns_in_order(annotations: nodes.Annotations) -> list[nodes.Term] | None
         by_name[item.namespace or "", item.functor, item.negated] = item
     # Of two with the same name the arguments decide; `annotation_set` compares them when they are known.
     return [by_name[name] for name in sorted(by_name)] if len(by_name) == len(items) else None
+
+
+_SOURCE_SELF = nodes.Literal("source", (nodes.Literal("self"),))
+
+
+def own_annotations(fn: FunctionBuilder, annotations: nodes.Annotations) -> str:
+    """An expression for the annotations of a belief of one's own, ``source(self)`` among them when no source is named.
+
+    They are sorted while the plan is compiled, unless their order depends on values.
+    """
+    known = _own_in_order(fn, annotations)
+    if known is not None:
+        return known
+    items, tail = annotation_parts(fn, annotations)
+    return f"own_annotations({items}, {tail})"
+
+
+def _own_in_order(fn: FunctionBuilder, annotations: nodes.Annotations) -> str | None:
+    items = annotations.items
+    if not any(_is_source(item) for item in items):
+        items = (*items, _SOURCE_SELF)
+    patterns = patterns_in_order(nodes.Annotations(items, annotations.tail))
+    if patterns is None:
+        return None
+    literals = [item for item in patterns if isinstance(item, nodes.Literal) and item.annotations is None]
+    if len(literals) < len(patterns):
+        return None
+    if all(map(is_static, literals)):
+        return fn.constant(tuple(map(constant_value, literals)))
+    return tuple_of([_resolved_literal(fn, literal) for literal in literals])
+
+
+def _is_source(item: nodes.Term) -> bool:
+    if not isinstance(item, nodes.Literal) or isinstance(item.namespace, nodes.Variable):
+        return False
+    return functor_of_literal(item) is SOURCE
+
+
+def _resolved_literal(fn: FunctionBuilder, literal: nodes.Literal) -> str:
+    if is_static(literal):
+        return build(fn, literal)
+    arguments = [resolved(fn, build(fn, a)) for a in literal.arguments]
+    return tuple_of([fn.constant(functor_of_literal(literal)), *arguments])
 
 
 def each_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then: Then) -> None:

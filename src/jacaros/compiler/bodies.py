@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.compiler.building import annotation_parts, build, functor_of_literal, tuple_of
-from jacaros.compiler.conditions import accepts, condition, question, resolved
+from jacaros.compiler.annotations import own_annotations
+from jacaros.compiler.building import annotation_parts, build, functor_of_literal, resolved, tuple_of
+from jacaros.compiler.conditions import accepts, condition, question
 from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.triggers import trigger
@@ -242,8 +243,7 @@ def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) 
     symbol = fn.constant(functor_of_literal(operand))
     annotations = "BY_SELF"
     if operand.annotations is not None:
-        items, tail = annotation_parts(fn, operand.annotations)
-        annotations = f"own_annotations({items}, {tail})"
+        annotations = own_annotations(fn, operand.annotations)
     if operator in ("-", "--", "-+", "-++"):
         if operator.startswith("-+"):
             fn.line(f"agent.delete_any({symbol}{'' if annotations == 'BY_SELF' else ', ' + annotations})")

@@ -10,7 +10,7 @@ from jacaros.compiler.variables import variables_in
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, BODY_TERM, NO_LABEL, PLAN, RULE, TRIGGER
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, Functor, atom, functor
+from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, Functor, Term, atom, functor
 from jacaros.terms.values import PLAN as PLAN_KIND
 
 _STATIC = (nodes.Literal, nodes.ListTerm, nodes.String)
@@ -58,7 +58,12 @@ def _has_calls(node: object) -> bool:
 
 
 def _const(fn: FunctionBuilder, node: nodes.Node) -> str:
-    return fn.constant(resolve(lower(node, _no_variable)))
+    return fn.constant(constant_value(node))
+
+
+def constant_value(node: nodes.Node) -> Term:
+    """The value of a term that is the same at every evaluation."""
+    return resolve(lower(node, _no_variable))
 
 
 def _no_variable(name: str) -> object:
@@ -102,7 +107,7 @@ def annotation_parts(fn: FunctionBuilder, annotations: nodes.Annotations) -> tup
     """Expressions for the sorted annotations and for the tail."""
     tail = "None" if annotations.tail is None else build(fn, annotations.tail)
     if all(is_static(item) for item in annotations.items):
-        from_terms = tuple(resolve(lower(item, _no_variable)) for item in annotations.items)
+        from_terms = tuple(map(constant_value, annotations.items))
         return fn.constant(annotation_set(from_terms)), tail
     items = tuple_of([build(fn, item) for item in annotations.items])
     return (f"annotation_set({items})" if len(annotations.items) > 1 else items), tail
@@ -172,6 +177,14 @@ def as_name(fn: FunctionBuilder, expression: str) -> str:
     name = fn.local()
     fn.line(f"{name} = {expression}")
     return name
+
+
+def resolved(fn: FunctionBuilder, expression: str) -> str:
+    """The expression with all bindings applied."""
+    if is_number(expression):
+        return expression
+    name = as_name(fn, expression)
+    return f"{name} if {name}.__class__ in ATOMIC else resolve({name})"
 
 
 def _function(fn: FunctionBuilder, node: nodes.FunctionCall) -> str:

@@ -22,6 +22,7 @@ from jacaros.compiler.building import (
     functor_of_literal,
     is_number,
     is_static,
+    resolved,
     tuple_of,
 )
 from jacaros.compiler.constant import Constant
@@ -438,14 +439,6 @@ def accepts(action: object, count: int) -> bool:
     """Whether an internal action takes so many arguments."""
     maximum = getattr(action, "maximum", None)
     return bool(getattr(action, "minimum", 0) <= count and (maximum is None or count <= maximum))
-
-
-def resolved(fn: FunctionBuilder, expression: str) -> str:
-    """The expression with all bindings applied."""
-    if is_number(expression):
-        return expression
-    name = as_name(fn, expression)
-    return f"{name} if {name}.__class__ in ATOMIC else resolve({name})"
 
 
 def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> str:

@@ -6,7 +6,6 @@ variable, annotations, arithmetic) goes to `unify`.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 from jacaros.asl import nodes
 from jacaros.compiler.building import build, functor_of_literal, is_static, tuple_of
@@ -40,7 +39,7 @@ def match(
         _match_structure(fn, pattern, symbol, pattern.arguments, value, then)
     elif isinstance(pattern, nodes.ListTerm) and _is_taken_apart_list(pattern):
         items, tail = pattern.items, pattern.tail
-        rest = tail if len(items) == 1 else replace(pattern, items=items[1:])
+        rest = tail if len(items) == 1 else nodes.replace(pattern, items=items[1:])
         first_and_rest = (items[0], rest or nodes.ListTerm(()))
         _match_structure(fn, pattern, fn.constant(CONS), first_and_rest, value, then)
     else:
@@ -117,8 +116,9 @@ def _match_structure(
     with fn.writer.block(f"elif {value}.__class__ in CLOSED:"):
         fn.line(f"{found} = False")
     with fn.writer.block("else:"):
-        for part in parts:
-            fn.line(f"{part} = Var()")
+        for part, argument in zip(parts, arguments, strict=True):
+            name = argument.name if isinstance(argument, nodes.Variable) and not argument.unnamed else "_"
+            fn.line(f"{part} = Var({name!r})")
         fn.line(f"{found} = unify({tuple_of([symbol, *parts])}, {value}, t)")
     with fn.writer.block(f"if {found}:"):
         match_all(fn, list(arguments), parts, then)

@@ -136,9 +136,7 @@ class SelectCompiler:
                 fn.bind(namespace.name, f"namespace_of({symbol})")
             self._arguments(fn, plan, literal, parts)
 
-    def _arguments(
-        self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal, parts: list[str]
-    ) -> None:
+    def _arguments(self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal, parts: list[str]) -> None:
         match_all(
             fn, list(literal.arguments), parts, lambda: self._annotations(fn, plan, literal.annotations)
         )
@@ -243,10 +241,9 @@ def _first_argument(plan: Plan) -> Term:
         return String(argument.value)
     if isinstance(argument, nodes.ListTerm):
         return CONS if argument.items else NIL if argument.tail is None else None
-    if isinstance(argument, nodes.Literal) and argument.annotations is None:
-        if not isinstance(argument.namespace, nodes.Variable):
-            return functor_of_literal(argument)
-    return None
+    if not isinstance(argument, nodes.Literal) or isinstance(argument.namespace, nodes.Variable):
+        return None
+    return None if argument.annotations is not None else functor_of_literal(argument)
 
 
 def _looks_at_arguments(plan: Plan) -> bool:

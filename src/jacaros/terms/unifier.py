@@ -65,7 +65,7 @@ def undo(trail: Trail, mark: int) -> None:
         trail.pop().ref = None
 
 
-def unify(left: Term, right: Term, trail: Trail) -> bool:
+def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the inner loop of every search
     """Make two terms equal by binding variables; the annotations of *left* must be among those of *right*.
 
     On failure bindings may be left on the trail: the caller takes them back.
