@@ -26,8 +26,10 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.belief_base import OpenFact, Rule, parts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.context import Context
-from jacaros.bdi.event import Event, Posted
+from jacaros.bdi.event import Posted
 from jacaros.bdi.failure import error_terms, step_failure
+from jacaros.bdi.finishing import pop_finished
+from jacaros.bdi.goal_failure import fail_intention
 from jacaros.bdi.intention import Frame
 from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
@@ -181,7 +183,7 @@ class Agent(Circumstance):
         if symbol is None:
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
-        event = Event((kind, *arguments), None, own_annotations(annotations), goal_cause)
+        event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
         meta_events.post_new_goal(self, event)
         self.architecture.ready()
 
@@ -287,7 +289,7 @@ class Agent(Circumstance):
             frame[0] = waiting.next_step
             if self.meta and waiting.reason is not OWN_SUSPENSION:
                 meta_events.top_goal_state(self, intention, "executing")
-            if cycle.pop_finished(self, intention):
+            if pop_finished(self, intention):
                 self.make_ready(intention)
             return
         message, annotations = waiting.failure
@@ -297,9 +299,9 @@ class Agent(Circumstance):
         )
         annotations = (*(term for term in defaults if term[0] not in given), *annotations)
         reason = step_failure(frame, Failure(*annotations))
-        posted = cycle.fail_intention(self, intention, reason)
+        posted = fail_intention(self, intention, reason)
         if posted is not None:
-            self.post(Event(posted.goal, intention, posted.annotations))
+            self.post((posted.goal, intention, posted.annotations, None))
 
     # --- called by generated code --------------------------------------------------------------------------
 
@@ -359,7 +361,7 @@ class Agent(Circumstance):
         names: dict[Any, Any] = {}
         arguments = tuple(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:])
         current = self.current
-        event = Event((goal[0], *arguments), None, annotations, current.cause if current else None)
+        event = ((goal[0], *arguments), None, annotations, current.cause if current else None)
         meta_events.post_new_goal(self, event)
 
     def begin_act(

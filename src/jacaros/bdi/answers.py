@@ -2,7 +2,6 @@
 
 from jacaros.asl import nodes
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event
 from jacaros.bdi.intention import Frame
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.speech_acts import answer
@@ -30,7 +29,7 @@ class AnswerByPlan:
         intention.on_failed = self.failed
         frame: Frame = [self._answered, (_ANSWER,), BY_SELF, agent.trail.serial, _answer_plan()]
         intention.frames.append(frame)
-        agent.post(Event(self.goal, intention, BY_SELF))
+        agent.post((self.goal, intention, BY_SELF, None))
 
     def _answered(self, agent: Circumstance, frame: Frame) -> None:
         symbol = self.goal[0].functor

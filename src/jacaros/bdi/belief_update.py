@@ -8,7 +8,7 @@ from typing import Any
 from jacaros.bdi.act import Percept
 from jacaros.bdi.belief_base import OpenFact, Row, Rule, Table, literal, parts, with_source
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event, Posted
+from jacaros.bdi.event import Posted
 from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
 from jacaros.compiler.triggers import Trigger, trigger
 from jacaros.errors import InternalError
@@ -49,7 +49,7 @@ def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations,
     if apart or agent.options.new_focus:
         if unplanned and not agent.event_waits:
             return None
-        agent.post(Event(_apart(goal), None, annotations))
+        agent.post((_apart(goal), None, annotations, None))
         return None
     if unplanned and not (agent.events or agent.intentions or agent.event_waits):
         # Nothing comes in between: the event would only be taken up and passed over.
@@ -256,7 +256,7 @@ def external_change(
     """Raise the external event of a belief change, if anybody cares."""
     kind = trigger(operator, "", symbol)
     if _is_kept(agent, kind) or agent.event_waits:
-        agent.post(Event((kind, *row), None, annotations, cause))
+        agent.post(((kind, *row), None, annotations, cause))
     if agent.condition_waits:
         agent.tasks.append(_nothing)
 

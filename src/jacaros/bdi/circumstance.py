@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.bdi.act import Percept
 from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.belief_base import BeliefBase
-from jacaros.bdi.event import Event
+from jacaros.bdi.event import EVENT_GOAL, Event, event_literal
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.internal_action import InternalAction
 from jacaros.bdi.options import Options
@@ -16,7 +16,6 @@ from jacaros.bdi.probe import Probe
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
-from jacaros.compiler.runtime import literal_of
 from jacaros.compiler.triggers import Trigger
 from jacaros.terms.unifier import Trail, rename, unify
 from jacaros.terms.values import Term, functor
@@ -177,10 +176,10 @@ class Circumstance:
         """Resume the intentions that wait for this event."""
         for entry in list(self.event_waits):
             trigger, pattern, waiting = entry
-            if trigger is not None and trigger is not event.goal[0]:
+            if trigger is not None and trigger is not event[EVENT_GOAL][0]:
                 continue
             mark = len(self.trail)
-            found = unify(pattern, rename(_event_literal(event)), self.trail)
+            found = unify(pattern, rename(event_literal(event)), self.trail)
             if found:
                 # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
                 del self.trail[mark:]
@@ -193,7 +192,3 @@ class Circumstance:
     def is_idle(self) -> bool:
         """Whether there is nothing to do until something comes from outside or a timer ends."""
         return not (self.events or self.intentions or self.inbox or self.percepts or self.tasks)
-
-
-def _event_literal(event: Event) -> Term:
-    return literal_of(event.goal, event.annotations)

@@ -3,7 +3,6 @@
 from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event
 from jacaros.bdi.forks import copied
 from jacaros.bdi.intention import GOAL, Intention
 from jacaros.bdi.plan_changes import look_at_plans
@@ -31,14 +30,12 @@ def copy_mind(original: Circumstance, clone: Circumstance) -> None:
     clone.plans_made = original.plans_made
     clone.library.take_over(original.library)
     look_at_plans(clone)
-    for event in original.events:
-        if event.intention is None:
-            clone.events.append(Event(_copied_goal(event.goal, copies), None, event.annotations, event.cause))
-        elif _can_be_copied(original, event.intention):
-            owner = _copied_intention(clone, event.intention, copies)
-            clone.events.append(
-                Event(_copied_goal(event.goal, copies), owner, event.annotations, event.cause)
-            )
+    for goal, intention, annotations, cause in original.events:
+        if intention is None:
+            clone.events.append((_copied_goal(goal, copies), None, annotations, cause))
+        elif _can_be_copied(original, intention):
+            owner = _copied_intention(clone, intention, copies)
+            clone.events.append((_copied_goal(goal, copies), owner, annotations, cause))
     for intention in original.intentions:
         if _can_be_copied(original, intention):
             clone.intentions.append(_copied_intention(clone, intention, copies))

@@ -4,7 +4,6 @@ They are raised only when there are plans for them.
 """
 
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.values import BY_SELF, functor
 
@@ -22,7 +21,7 @@ def fall_asleep(agent: Circumstance) -> bool:
     if not agent.may_handle(SLEEPING):
         return False
     agent.asleep = False
-    agent.post(Event((SLEEPING,), None, BY_SELF))
+    agent.post(((SLEEPING,), None, BY_SELF, None))
     return True
 
 
@@ -31,11 +30,11 @@ def awake(agent: Circumstance) -> None:
     if agent.asleep and not agent.is_idle():
         agent.asleep = agent.drowsy = False
         if agent.may_handle(AWAKING):
-            agent.post(Event((AWAKING,), None, BY_SELF))
+            agent.post(((AWAKING,), None, BY_SELF, None))
 
 
 def shutting_down(agent: Circumstance, milliseconds: float) -> None:
     """The agent will be ended after so many milliseconds: ``+jag_shutting_down(Ms)``."""
     if agent.may_handle(SHUTTING_DOWN):
-        agent.post(Event((SHUTTING_DOWN, milliseconds), None, BY_SELF))
+        agent.post(((SHUTTING_DOWN, milliseconds), None, BY_SELF, None))
         agent.architecture.ready()

@@ -1,33 +1,27 @@
 """Events: what happened to goals and beliefs and may need a plan."""
 
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from jacaros.bdi.intention import Intention
-from jacaros.compiler.triggers import Trigger
+from jacaros.compiler.runtime import literal_of
 from jacaros.terms.values import Term
 from jacaros.trace import Cause
 
+Event = tuple[tuple[Any, ...], Intention | None, Any, Cause | None]
+"""``(goal, intention, annotations, cause)``: an entry of the event queue.
 
-class Event(NamedTuple):
-    """An entry of the event queue.
+goal: a tuple that begins with its `Trigger`, then the arguments.
+intention: the one that posted it, None for an external event.
+annotations: a tuple, or a `FailureReason`.
+cause: why it came, for external events.
 
-    Attributes:
-        goal: a tuple that begins with its `Trigger`, then the arguments.
-        intention: the one that posted it, None for an external event.
-        annotations: a tuple, or a `FailureReason`.
-        cause: why it came, for external events.
-    """
+A plain tuple: with several intentions nearly every cycle makes one, and an object with names costs five times as much.
+"""
 
-    goal: tuple[Any, ...]
-    intention: Intention | None
-    annotations: Any
-    cause: Cause | None = None
-
-    @property
-    def trigger(self) -> Trigger:
-        """The kind of the event."""
-        trigger: Trigger = self.goal[0]
-        return trigger
+EVENT_GOAL: Final = 0
+EVENT_INTENTION: Final = 1
+EVENT_ANNOTATIONS: Final = 2
+EVENT_CAUSE: Final = 3
 
 
 class Posted(NamedTuple):
@@ -38,3 +32,8 @@ class Posted(NamedTuple):
 
 
 Annotations = tuple[Term, ...]
+
+
+def event_literal(event: Event) -> Term:
+    """The belief or goal of an event, with its annotations."""
+    return literal_of(event[EVENT_GOAL], event[EVENT_ANNOTATIONS])

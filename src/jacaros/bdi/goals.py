@@ -3,10 +3,19 @@
 from collections.abc import Iterator
 from typing import Any
 
-from jacaros.bdi import cycle, meta_events
+from jacaros.bdi import goal_failure, meta_events
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event, Posted
+from jacaros.bdi.event import (
+    EVENT_ANNOTATIONS,
+    EVENT_CAUSE,
+    EVENT_GOAL,
+    EVENT_INTENTION,
+    Event,
+    Posted,
+    event_literal,
+)
 from jacaros.bdi.failure import FailureReason, nowhere, release_bindings
+from jacaros.bdi.finishing import pop_finished
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.stack import achieve, cut, pending_event, remove_event
 from jacaros.compiler.runtime import literal_of
@@ -53,11 +62,7 @@ def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
             found.append(intention)
             continue
         event = pending_event(agent, intention)
-        if (
-            event is not None
-            and _is_goal(event)
-            and matches(agent, goal, literal_of(event.goal, event.annotations))
-        ):
+        if event is not None and _is_goal(event) and matches(agent, goal, event_literal(event)):
             found.append(intention)
     return found
 
@@ -71,7 +76,7 @@ def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | Non
     event = pending_event(agent, intention)
     if event is None or not _is_goal(event):
         return None
-    literal = literal_of(event.goal, event.annotations)
+    literal = event_literal(event)
     return literal if matches(agent, goal, literal) else None
 
 
@@ -82,12 +87,12 @@ def first_match(agent: Circumstance, goal: Term) -> Term | None:
         if found is not None:
             return rename(found)
     for event in goal_events(agent, goal):
-        return rename(literal_of(event.goal, event.annotations))
+        return rename(event_literal(event))
     return None
 
 
 def _is_goal(event: Event) -> bool:
-    return bool(event.goal[0].kind == "!" and event.goal[0].operator == "+")
+    return bool(event[EVENT_GOAL][0].kind == "!" and event[EVENT_GOAL][0].operator == "+")
 
 
 def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
@@ -95,7 +100,7 @@ def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
     return [
         e
         for e in (*agent.events, *agent.suspended_events)
-        if e.intention is None and _is_goal(e) and matches(agent, goal, literal_of(e.goal, e.annotations))
+        if e[EVENT_INTENTION] is None and _is_goal(e) and matches(agent, goal, event_literal(e))
     ]
 
 
@@ -103,7 +108,8 @@ def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
     """All goals: of pending events and of intentions, with the id of the intention."""
     for event in (*agent.events, *agent.suspended_events):
         if _is_goal(event):
-            yield literal_of(event.goal, event.annotations), event.intention.id if event.intention else None
+            owner = event[EVENT_INTENTION]
+            yield event_literal(event), owner.id if owner else None
     yield from intended(agent, include_suspended=True)
 
 
@@ -136,12 +142,12 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
         remove_event(agent, event)
     for event in list(agent.events):
         if (
-            event.intention is not None
+            event[EVENT_INTENTION] is not None
             and _is_goal(event)
-            and matches(agent, goal, literal_of(event.goal, event.annotations))
+            and matches(agent, goal, event_literal(event))
         ):
             remove_event(agent, event)
-            drop_intention(agent, event.intention)
+            drop_intention(agent, event[EVENT_INTENTION])
 
 
 def drop_goal(agent: Circumstance, goal: Term) -> None:
@@ -171,15 +177,15 @@ def drop_all_goal_events(agent: Circumstance) -> None:
     for event in (*agent.events, *agent.suspended_events):
         if _is_goal(event):
             remove_event(agent, event)
-            if event.intention is not None:
-                drop_intention(agent, event.intention)
+            if event[EVENT_INTENTION] is not None:
+                drop_intention(agent, event[EVENT_INTENTION])
 
 
 def drop_all_events(agent: Circumstance) -> None:
     """All pending events; intentions that posted them vanish."""
     for event in list(agent.events):
-        if event.intention is not None:
-            drop_intention(agent, event.intention)
+        if event[EVENT_INTENTION] is not None:
+            drop_intention(agent, event[EVENT_INTENTION])
     agent.events.clear()
     agent.requeued.clear()
     agent.suspended_events.clear()
@@ -217,7 +223,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
 def resume_goal(agent: Circumstance, goal: Term) -> None:
     """The reverse of `suspend_goal`."""
     for event in list(agent.suspended_events):
-        if event.intention is None and matches(agent, goal, literal_of(event.goal, event.annotations)):
+        if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
             agent.suspended_events.remove(event)
             agent.events.append(event)
             agent.architecture.ready()
@@ -233,7 +239,7 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     if agent.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "resumed")
-    held = next((e for e in agent.suspended_events if e.intention is intention), None)
+    held = next((e for e in agent.suspended_events if e[EVENT_INTENTION] is intention), None)
     if held is not None:
         agent.suspended_events.remove(held)
         agent.events.append(held)
@@ -274,7 +280,7 @@ def goes_on(agent: Circumstance, intention: Intention) -> bool:
     if not intention.frames:
         agent.finish(intention)
         return False
-    return cycle.pop_finished(agent, intention)
+    return pop_finished(agent, intention)
 
 
 def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = None) -> bool:
@@ -295,11 +301,19 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         cut(agent, intention, index)
         if intention in agent.intentions:
             agent.intentions.remove(intention)
-        _post(agent, intention, cycle.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], reason))
+        _post(
+            agent,
+            intention,
+            goal_failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], reason),
+        )
     for event in goal_events(agent, goal):
         remove_event(agent, event)
-        intention = agent.new_intention(event.cause)
-        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, reason))
+        intention = agent.new_intention(event[EVENT_CAUSE])
+        _post(
+            agent,
+            intention,
+            goal_failure.fail_goal(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], reason),
+        )
     return own
 
 
@@ -308,12 +322,16 @@ def _fail_pending(agent: Circumstance, intention: Intention, reason: FailureReas
     event = pending_event(agent, intention)
     if event is not None:
         remove_event(agent, event)
-        _post(agent, intention, cycle.fail_goal(agent, intention, event.goal, event.annotations, reason))
+        _post(
+            agent,
+            intention,
+            goal_failure.fail_goal(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], reason),
+        )
 
 
 def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:
     if posted is not None:
-        agent.post(Event(posted.goal, intention, posted.annotations))
+        agent.post((posted.goal, intention, posted.annotations, None))
         agent.architecture.ready()
 
 

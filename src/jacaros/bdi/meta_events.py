@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event
+from jacaros.bdi.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
 from jacaros.compiler.runtime import annotations_of_event, literal_of
 from jacaros.compiler.triggers import trigger
@@ -28,14 +28,14 @@ def goal_state(
     if agent.selects[meta] is None:
         return
     told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
-    event = Event((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))))
+    event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
     agent.tasks.append(lambda: _insert(agent, event))
 
 
 def post_new_goal(agent: Circumstance, event: Event) -> None:
     """Queue the event of a new goal; it is pending from now on."""
     if agent.meta:
-        goal_state(agent, event.goal, event.annotations, "pending")
+        goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "pending")
     agent.post(event)
 
 
@@ -51,7 +51,7 @@ def _insert(agent: Circumstance, event: Event) -> None:
     """Put a meta event before the ordinary ones, behind those that came earlier."""
     place = 0
     for queued in agent.events:
-        if queued.goal[0].operator != "^":
+        if queued[EVENT_GOAL][0].operator != "^":
             break
         place += 1
     agent.events.insert(place, event)

@@ -37,10 +37,10 @@ def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
 
 
 def look_at_plans(agent: Circumstance) -> None:
-    """What the mind needs to know of its plans as a whole."""
+    """What the mind needs to know of its plans as a whole, those included that have been removed: they may still run."""
     agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
-    agent.subplans = agent.library.has_subplans()
-    agent.goal_conditions = agent.library.has_goal_conditions()
+    agent.subplans = agent.subplans or agent.library.has_subplans()
+    agent.goal_conditions = agent.goal_conditions or agent.library.has_goal_conditions()
 
 
 def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:

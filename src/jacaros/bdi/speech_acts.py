@@ -8,7 +8,6 @@ from jacaros.asl.loader import parse_plans
 from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event
 from jacaros.bdi.formulas import solve_formula
 from jacaros.bdi.meta_events import post_new_goal
 from jacaros.bdi.speech_act import SpeechAct
@@ -82,7 +81,7 @@ def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
     undo(agent.trail, 0)
     if frame is None:
         return False
-    agent.post(Event(goal, None, BY_SELF))
+    agent.post((goal, None, BY_SELF, None))
     return True
 
 
@@ -144,7 +143,7 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
         if symbol is None:
             _refuse(agent, message)
         else:
-            post_new_goal(agent, Event((trigger("+", "!", symbol), *arguments), None, annotations))
+            post_new_goal(agent, ((trigger("+", "!", symbol), *arguments), None, annotations, None))
 
 
 def _unachieve(agent: Circumstance, message: SpeechAct) -> None:

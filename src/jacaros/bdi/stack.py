@@ -2,13 +2,15 @@
 
 from jacaros.bdi import meta_events
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event
+from jacaros.bdi.event import EVENT_INTENTION, Event
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
 
 
 def pending_event(agent: Circumstance, intention: Intention) -> Event | None:
     """The event of the queue that an intention waits for, if any."""
-    return next((e for e in (*agent.events, *agent.suspended_events) if e.intention is intention), None)
+    return next(
+        (e for e in (*agent.events, *agent.suspended_events) if e[EVENT_INTENTION] is intention), None
+    )
 
 
 def remove_event(agent: Circumstance, event: Event) -> None:

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from jacaros.asl import nodes
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event
 from jacaros.bdi.failure import FailureReason
 from jacaros.bdi.intention import GOAL, Frame, Intention
 from jacaros.bdi.internal_action import ActionError
@@ -53,7 +52,7 @@ class WatchedGoal:
         intention.on_failed = self._ended_in_failure
         frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _bottom_plan()]
         intention.frames.append(frame)
-        agent.post(Event(self._goal, intention, own_annotations(annotations)))
+        agent.post((self._goal, intention, own_annotations(annotations), None))
         agent.architecture.ready()
 
     @property

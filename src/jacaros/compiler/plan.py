@@ -37,6 +37,8 @@ class Plan:
         first: the first step function, None for an empty body; set when the plan is compiled.
         steps: what is known of each step function, by its name.
         scope: the plan that this one is a sub-plan of, or None.
+        replaceable: nothing is left to do once its last formula has called a goal: it has neither goal condition nor
+            sub-plans.
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
         subplans: plans for what happens while this one is pursued.
         subselects: their select functions by event kind, made at the first event.
@@ -49,6 +51,7 @@ class Plan:
         "goal_condition",
         "label",
         "node",
+        "replaceable",
         "scope",
         "size",
         "slots",
@@ -62,6 +65,7 @@ class Plan:
         self.label = bare(label)
         self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
         self.atomic = ATOMIC_LABEL in self.annotations
+        self.replaceable = node.goal_condition is None and not node.subplans
         self.slots: dict[str, int] = {}
         self.size = 0
         self.first: Callable[[Any, list[Any]], Any] | None = None

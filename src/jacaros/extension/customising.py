@@ -179,7 +179,8 @@ class ChoiceQueue(deque[Item], Generic[Item, Seen]):
 
 
 def _is_open(raised: event.Event) -> bool:
-    return raised.intention is None or not raised.intention.dropped
+    intention = raised[event.EVENT_INTENTION]
+    return intention is None or not intention.dropped
 
 
 def _can_run(intention: Any) -> bool:

@@ -53,15 +53,16 @@ class Event:
     """
 
     def __init__(self, raw: event.Event) -> None:
-        kind = raw.goal[0]
+        goal, intention, _, _ = raw
+        kind = goal[0]
         self.trigger: str = kind.operator + kind.kind
-        self.intention = raw.intention.id if raw.intention is not None else None
+        self.intention = intention.id if intention is not None else None
         self._raw = raw
 
     @property
     def literal(self) -> Literal:
         """The belief or goal, with its annotations."""
-        return _literal(self._raw.goal, self._raw.annotations)
+        return _literal(self._raw[event.EVENT_GOAL], self._raw[event.EVENT_ANNOTATIONS])
 
     def __str__(self) -> str:
         return f"{self.trigger}{self.literal}"

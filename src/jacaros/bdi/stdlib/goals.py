@@ -8,6 +8,7 @@ from jacaros.asl.walk import walk
 from jacaros.bdi import goals
 from jacaros.bdi.body_terms import is_body_frame
 from jacaros.bdi.context import Context
+from jacaros.bdi.event import EVENT_GOAL
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.plan_terms import bindings_of, variables_of
@@ -242,8 +243,9 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
 
 
 def _event(event: Any) -> Term:
-    symbol = event.goal[0].functor
-    return (symbol, *event.goal[1:]) if len(event.goal) > 1 else symbol
+    goal = event[EVENT_GOAL]
+    symbol = goal[0].functor
+    return (symbol, *goal[1:]) if len(goal) > 1 else symbol
 
 
 @internal_action(".succeed_goal", arity=1, suspends=True)

@@ -6,7 +6,6 @@ from typing import Any
 from jacaros.asl.loader import parse_trigger
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.context import Context
-from jacaros.bdi.event import Event
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.lowering import fresh_names, lower_trigger
@@ -173,7 +172,7 @@ def at(ctx: Context, moment: Term, event: Term) -> None:
 def post_event(ctx: Context, kind: Trigger, literal: Term) -> None:
     """Post an external event."""
     _, arguments, annotations = parts(rename(literal))
-    ctx.agent.post(Event((kind, *arguments), None, own_annotations(annotations)))
+    ctx.agent.post(((kind, *arguments), None, own_annotations(annotations), None))
     ctx.architecture.ready()
 
 

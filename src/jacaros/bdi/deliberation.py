@@ -1,0 +1,189 @@
+"""The second part of a reasoning cycle: an event is taken up, and a plan for it becomes part of an intention."""
+
+from typing import Any
+
+from jacaros.bdi import meta_events, option_selection, rescue, subplans
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import EVENT_INTENTION, Event
+from jacaros.bdi.goal_failure import has_room, too_deep, unplanned
+from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.stack import remove_event
+from jacaros.errors import InternalError
+
+
+def handle_event(agent: Circumstance) -> None:
+    """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
+    while agent.events:
+        event = agent.events.popleft()
+        try:
+            if _take_up(agent, event):
+                return
+        except InternalError:
+            raise
+        except Exception as fault:
+            _pass_over(agent, event, fault)
+
+
+def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
+    """An atomic intention's own event comes before all others, which wait."""
+    event = next((e for e in agent.events if e[EVENT_INTENTION] is intention), None)
+    if event is not None:
+        remove_event(agent, event)
+        try:
+            _take_up(agent, event)
+        except InternalError:
+            raise
+        except Exception as fault:
+            _pass_over(agent, event, fault)
+
+
+def _pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
+    rescue.passed_over(agent, "an event", fault)
+    intention = event[EVENT_INTENTION]
+    if intention is not None:
+        rescue.give_up(agent, intention, fault)
+
+
+def _take_up(agent: Circumstance, event: Event) -> bool:
+    """Handle one event; False when it is passed over and the next one may have its turn in the same cycle."""
+    goal, intention, annotations, _ = event
+    if intention is None:
+        return _external(agent, event)
+    if intention.dropped:
+        return False
+    if push(agent, intention, goal, annotations):
+        agent.make_ready(intention)
+    return True
+
+
+def _external(agent: Circumstance, event: Event) -> bool:
+    """Begin an intention for an external event; False when it has no plan and is dropped silently."""
+    goal, _, annotations, cause = event
+    trigger = goal[0]
+    reacted = agent.subplans and trigger.kind == "" and _react(agent, event)
+    frame = select_plan(agent, goal, annotations)
+    if frame is None:
+        if trigger.kind == "" or trigger.operator == "^":
+            if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
+                agent.requeued.append(event)
+            return reacted
+        intention = agent.new_intention(cause)
+        posted = unplanned(agent, intention, goal, annotations)
+        if posted is not None:
+            agent.post((posted.goal, intention, posted.annotations, None))
+        return True
+    intention = agent.new_intention(cause)
+    intention.frames.append(frame)
+    if trigger.failing:
+        intention.handlers.append(0)
+    if frame[PLAN].atomic:
+        agent.atomic, agent.atomic_over = intention, False
+    if agent.meta:
+        meta_events.goal_state(agent, goal, annotations, "executing")
+    agent.make_ready(intention)
+    return True
+
+
+def _react(agent: Circumstance, event: Event) -> bool:
+    """Every intention whose plans have a sub-plan for an external event reacts to it."""
+    goal, _, annotations, cause = event
+    reactions = subplans.react(agent, goal, annotations)
+    for owner, outer, frame in reactions:
+        intention = agent.new_intention(cause)
+        intention.frames.append(frame)
+        intention.outer = (owner, outer)
+        agent.make_ready(intention)
+    return bool(reactions)
+
+
+def select_plan(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, intention: Intention | None = None
+) -> Frame | None:
+    """Rules RelPl, ApplPl and SelAppl: the frame of the first applicable plan, sub-plans of *intention* first."""
+    trail = agent.trail
+    trail.serial += 1
+    select = agent.selects[goal[0]]
+    if agent.subplans and intention is not None:
+        inner = subplans.select_in_scope(agent, intention, goal, annotations)
+        if inner is not None:
+            trail.clear()
+            return inner
+    if select is None:
+        return None
+    if agent.option_filter.rows:
+        return option_selection.first_option(agent, goal, annotations, intention)
+    frame = select(agent, goal, annotations)
+    if trail:
+        trail.clear()
+    return frame
+
+
+def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> bool:
+    """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
+    frame = select_plan(agent, goal, annotations, intention)
+    if frame is not None and add_frame(agent, intention, frame):
+        return True
+    return go_without(agent, intention, goal, annotations, frame)
+
+
+def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
+    """Put the frame of a plan on the stack, in the place of its caller if that has nothing left to do (tail call).
+
+    False when it is one too many; it is on the stack then nevertheless.
+    """
+    frames = intention.frames
+    plan, trigger = frame[PLAN], frame[GOAL][0]
+    if (
+        frames
+        and (caller := frames[-1])[STEP] is None
+        and caller[GOAL][0] is trigger
+        and trigger.on_fail is not None
+        and agent.options.tail_calls
+        and caller[PLAN].replaceable
+    ):
+        frames[-1] = frame
+        if agent.atomic is intention and not intention.is_atomic():
+            agent.atomic_over = True
+    else:
+        frames.append(frame)
+    if plan.atomic:
+        agent.atomic, agent.atomic_over = intention, False
+    if agent.meta and trigger.kind and not trigger.failing:
+        meta_events.goal_state(agent, frame[GOAL], frame[2], "executing")
+    return len(frames) <= agent.goal_depth or has_room(agent, intention)
+
+
+def go_without(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any, frame: Frame | None
+) -> bool:
+    """A goal or event has no plan, or (then *frame* is given, and on the stack) no room for it.
+
+    False when the intention goes no further now.
+    """
+    if frame is None and goal[0].kind == "":
+        return True
+    posted = unplanned(agent, intention, goal, annotations) if frame is None else too_deep(agent, intention)
+    if posted is None:
+        return False
+    event: Event = (posted.goal, intention, posted.annotations, None)
+    if not is_alone(agent):
+        agent.post(event)
+        return False
+    if agent.event_waits:
+        agent.notify_event_waits(event)
+    return push(agent, intention, posted.goal, posted.annotations)
+
+
+def is_alone(agent: Circumstance) -> bool:
+    """Whether nothing else wants the next cycle."""
+    if agent.atomic is not None:
+        return not agent.goal_conditions
+    return not (
+        agent.events
+        or agent.intentions
+        or agent.inbox
+        or agent.tasks
+        or agent.percepts
+        or agent.condition_waits
+        or agent.goal_conditions
+    )

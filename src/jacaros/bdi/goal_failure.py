@@ -1,0 +1,123 @@
+"""What becomes of a goal that failed: its own handler, that of a goal further down, or the end of the intention."""
+
+from typing import Any
+
+from jacaros.bdi import failure, meta_events, subplans
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import Posted
+from jacaros.bdi.failure import FailureReason
+from jacaros.bdi.forks import branch_failed
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
+from jacaros.terms.values import atom
+
+_HAS_FAILURE_PLAN = atom("has_failure_plan")
+
+
+def unplanned(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+) -> Posted | None:
+    """A goal has no plan: its own handler, or one further down, or the end of the intention."""
+    trigger = goal[0]
+    if trigger.failing:
+        _lost_in_handler(agent, intention, goal, annotations)
+        return None
+    caller = intention.frames[-1] if intention.frames else None
+    reason = failure.no_plan(agent, goal, annotations, caller)
+    return fail_goal(agent, intention, goal, annotations, reason)
+
+
+def has_room(agent: Circumstance, intention: Intention) -> bool:
+    """Whether the plan just put on a full stack may stay: handlers have some room of their own, to deal with that."""
+    depth = agent.goal_depth
+    is_handler = intention.frames[-1][GOAL][0].failing
+    return is_handler and len(intention.frames) <= depth + depth // 10 + 100
+
+
+def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
+    """The plan just put on a full stack fails before its first step."""
+    frame = intention.frames.pop()
+    goal, annotations = frame[GOAL], frame[ANNOTATIONS]
+    failure.release_bindings(goal, frame[SERIAL])
+    reason = failure.too_deep(goal, annotations, intention.frames[-1], agent.goal_depth)
+    if goal[0].failing:
+        # Handlers of handlers without end: nobody is left who could deal with it.
+        intention.handlers.clear()
+        del intention.frames[1:]
+    return fail_goal(agent, intention, goal, annotations, reason)
+
+
+def fail_goal(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any, reason: FailureReason
+) -> Posted | None:
+    """A goal that has no frame failed: post its handler, or look further down."""
+    trigger = goal[0]
+    if agent.meta:
+        meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
+    if trigger.on_fail is not None and subplans.handles(
+        agent, intention, len(intention.frames), trigger.on_fail
+    ):
+        intention.handlers.append(len(intention.frames))
+        if agent.meta:
+            meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
+        return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
+    return fail_intention(agent, intention, reason)
+
+
+def fail_intention(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:
+    """The nearest handler down the stack takes over; without one the intention ends with a warning."""
+    while intention.forks and not failure.has_handler(agent, intention, intention.forks[-1][0].depth):
+        if not branch_failed(agent, intention):
+            agent.finish(intention)
+            return None
+    posted = failure.handler_event(agent, intention, reason)
+    if posted is not None:
+        if agent.meta:
+            failed = intention.frames[intention.handlers[-1]]
+            meta_events.goal_state(agent, failed[GOAL], failed[2], "failed", atom(reason.error()))
+            meta_events.goal_state(agent, failed[GOAL], failed[2], "executing", _HAS_FAILURE_PLAN)
+        return posted
+    if intention.on_failed is not None:
+        intention.on_failed(reason)
+    else:
+        _warn_lost(agent, intention, reason)
+    if agent.meta:
+        _tell_failed(agent, intention, reason)
+    agent.finish(intention)
+    return None
+
+
+def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+    """All goals of an intention that nobody saved have failed, and are over."""
+    for frame in reversed(intention.frames):
+        if not frame[GOAL][0].failing:
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "failed", atom(reason.error()))
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
+
+
+def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+    bottom = next((frame[GOAL] for frame in intention.frames if frame[GOAL][0].kind), None)
+    what = "an intention" if bottom is None else f"the goal !{failure.goal_text(bottom)}"
+    where = reason.where()
+    place = f" ({where})" if where else ""
+    told = f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
+    agent.architecture.log("warning", told)
+    if agent.probe is not None:
+        agent.probe.lost(told, reason.span())
+
+
+def _lost_in_handler(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+) -> None:
+    if intention.on_failed is not None:
+        intention.on_failed(annotations if isinstance(annotations, FailureReason) else None)
+        agent.finish(intention)
+        return
+    shown = f"-{goal[0].kind}{failure.goal_text(goal)}"
+    told = (
+        f": {annotations.error()}, {annotations.message()}" if isinstance(annotations, FailureReason) else ""
+    )
+    lost = f"no applicable plan for the failure event {shown}; the intention is dropped{told}"
+    agent.architecture.log("warning", lost)
+    if agent.probe is not None:
+        agent.probe.lost(lost, annotations.span() if isinstance(annotations, FailureReason) else None)
+    agent.finish(intention)

@@ -1,0 +1,77 @@
+"""The first part of a reasoning cycle: what came in since the last one."""
+
+from jacaros.bdi import rescue, speech_acts
+from jacaros.bdi.belief_update import apply_percepts
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.errors import InternalError
+from jacaros.terms.unifier import undo
+
+
+def looks_around(agent: Circumstance, cycle: int) -> bool:
+    """Whether an agent that does not look at percepts and messages in every cycle (``nrcbp``) does in this one."""
+    if cycle < agent.next_look and (agent.events or agent.intentions or agent.tasks):
+        return False
+    agent.next_look = cycle + agent.options.percept_interval
+    return True
+
+
+def housekeeping(agent: Circumstance, looks: bool = True) -> None:
+    """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
+    while agent.percepts and looks:
+        percepts = agent.percepts.popleft()
+        try:
+            apply_percepts(agent, percepts)
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "what was perceived", fault)
+    _do_tasks(agent)
+    if agent.condition_waits:
+        _check_conditions(agent)
+
+
+def _do_tasks(agent: Circumstance) -> None:
+    """The housekeeping that is due."""
+    while agent.tasks:
+        task = agent.tasks.popleft()
+        try:
+            task()
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "a delayed change of an intention", fault)
+
+
+def _check_conditions(agent: Circumstance) -> None:
+    """Resume the intentions whose awaited condition holds now."""
+    for entry in list(agent.condition_waits):
+        holds, waiting = entry
+        if waiting.ended:
+            agent.condition_waits.remove(entry)
+            continue
+        try:
+            held = holds()
+        except InternalError:
+            raise
+        except Exception as fault:
+            undo(agent.trail, 0)
+            agent.condition_waits.remove(entry)
+            waiting.fail(rescue.told(fault))
+        else:
+            if held:
+                agent.condition_waits.remove(entry)
+                waiting.resume()
+    _do_tasks(agent)
+
+
+def read_message(agent: Circumstance) -> None:
+    """Rule ProcMsg for the message whose turn it is."""
+    message = agent.inbox.popleft()
+    try:
+        speech_acts.process(agent, message)
+    except InternalError:
+        raise
+    except Exception as fault:
+        rescue.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
+        if message.performative.startswith("ask"):
+            speech_acts.answer(agent, message, None)
