@@ -1,6 +1,7 @@
 """The plans of one program, made and compiled once for all agents that run it."""
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.compiler.function import ActionInfo
@@ -26,15 +27,25 @@ class ProgramPlans:
             with_subplans(Plan(node, label_of(node, number)), number)
             for number, node in enumerate(plan_nodes, start=1)
         ]
+        self._by_head: dict[tuple[str, str, Any], list[Plan]] = {}
+        for plan in self.plans:
+            head = plan.node.trigger
+            self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
         self.sources: dict[Trigger, str] = {}
         self._selects: dict[Trigger, Select | None] = {}
 
     def select(self, trigger: Trigger, report: Callable[[str], None]) -> Select | None:
         """The select function of an event kind; None when no plan concerns it."""
         if trigger not in self._selects:
-            plans = relevant(self.plans, trigger)
+            plans = self._relevant(trigger)
             self._selects[trigger] = made(trigger, plans, self.actions, self.sources, report)
         return self._selects[trigger]
+
+    def _relevant(self, trigger: Trigger) -> Sequence[Plan]:
+        """The candidate plans of an event kind, found without a look at each of a thousand plans."""
+        if (trigger.operator, trigger.kind, None) in self._by_head:
+            return relevant(self.plans, trigger)
+        return self._by_head.get((trigger.operator, trigger.kind, trigger.functor), ())
 
 
 def relevant(plans: Sequence[Plan], trigger: Trigger) -> list[Plan]:

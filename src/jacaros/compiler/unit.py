@@ -11,7 +11,7 @@ from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.selection import SelectCompiler, compile_goal_condition, compile_rule
 from jacaros.compiler.triggers import Trigger
-from jacaros.compiler.writer import Writer
+from jacaros.compiler.writer import Writer, compile_all
 from jacaros.terms.values import Functor, String, Term
 
 Select = Callable[[Any, tuple[Term, ...], Any], list[Any] | None]
@@ -57,8 +57,7 @@ class CodeUnit:
 
     def execute(self) -> None:
         """Make the functions: afterwards they are in `globals`."""
-        for writer in self._writers:
-            exec(writer.compile(self.filename), self.globals)  # only ever made from the syntax tree
+        exec(compile_all(self._writers, self.filename), self.globals)  # only ever made from the syntax tree
         self._writers.clear()
 
 

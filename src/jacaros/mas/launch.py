@@ -44,6 +44,9 @@ def launch(
         InternalError: a defect of JaCaROS showed itself.
     """
     options.check()
+    if own_process:
+        # Before the programs are read: their syntax trees are many objects that all stay.
+        gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
     deployment = project if isinstance(project, Deployment) else load_deployment(project)
     clock: Clock = VirtualClock() if options.fast else WallClock()
 
@@ -55,7 +58,6 @@ def launch(
         def started() -> None:
             if own_process:
                 gc.freeze()
-                gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
             if when_started is not None:
                 when_started(mas)
 
