@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from jacaros.terms.values import Functor, Term
 from jacaros.trace import Cause
 
+# Not frozen: that would make each of them three times as dear.  Nobody changes them.
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(slots=True)
 class Act:
     """A request to the environment; the intention waits for its `Completion`.
 
@@ -42,7 +44,7 @@ class Completion:
     annotations: tuple[Term, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Percept:
     """One thing noticed in the environment.
 

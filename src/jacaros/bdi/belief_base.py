@@ -179,6 +179,11 @@ class Table:
         if row.__class__ is not tuple:
             self.plain = False
             return annotations
+        if self._indexes:
+            self._add_to_indexes(row)
+        return annotations
+
+    def _add_to_indexes(self, row: Row) -> None:
         for positions, index in self._indexes.items():
             key = _key(row, positions)
             bucket = index.get(key)
@@ -186,7 +191,24 @@ class Table:
                 index[key] = {row: None}
             else:
                 bucket[row] = None
-        return annotations
+
+    def begin(self, row: Row, annotations: tuple[Term, ...]) -> bool:
+        """Put in a row of numbers, strings and atoms; False when it is held already."""
+        if row in self.rows or (self.late and row in self.late):
+            return False
+        self.rows[row] = annotations
+        if self._indexes:
+            self._add_to_indexes(row)
+        return True
+
+    def end(self, row: Row, annotations: tuple[Term, ...]) -> bool:
+        """Take out a row; False when it is not held with this very tuple of annotations."""
+        if self.rows.get(row) is not annotations:
+            return False
+        del self.rows[row]
+        if self._indexes:
+            self._remove_from_indexes(row)
+        return True
 
     def remove(self, row: Any) -> bool:
         """Take out a row, rule or open belief that is held; False when the base refuses."""
@@ -194,7 +216,7 @@ class Table:
             del self.late[row]
         else:
             del self.rows[row]
-            if row.__class__ is tuple:
+            if self._indexes and row.__class__ is tuple:
                 self._remove_from_indexes(row)
         if not self.plain:
             self.plain = not self.late and all(r.__class__ is tuple for r in self.rows)

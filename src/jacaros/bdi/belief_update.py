@@ -10,7 +10,7 @@ from jacaros.bdi.belief_base import OpenFact, Row, Rule, Table, literal, parts, 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
-from jacaros.compiler.triggers import Trigger, trigger
+from jacaros.compiler.triggers import Trigger, belief_changes, trigger
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import ATOMIC, free_variables, is_key, rename, resolve, undo, unify_annotations
@@ -294,33 +294,88 @@ def _abolish_entry(
 
 def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
     """Bring the belief base in line with what was noticed, then raise the events, in order."""
+    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
+    watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
     for percept in percepts:
-        symbol, row, _ = parts(percept.literal)
-        if symbol is None:
-            raise InternalError(f"a percept is no literal: {percept.literal!r}")
-        if percept.kind == "signal":
-            external_change(agent, "+", symbol, row, percept.annotations, percept.cause)
-        elif percept.kind == "add":
-            agent.held_percepts.setdefault((symbol, row), []).append(percept.annotations)
-            insert(agent, symbol, row, percept.annotations)
-            external_change(agent, "+", symbol, row, percept.annotations, percept.cause)
+        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
+        symbol, row = (literal[0], literal[1:]) if literal.__class__ is tuple else _parts(literal)
+        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
+        if kind == "add":
+            change = belief_changes[symbol][0]
+            table = beliefs[symbol]
+            if (
+                literal in holders
+                or table.__class__ is not Table
+                or not _is_flat(row)
+                or not table.begin(row, annotations)
+            ):
+                _take_percept(agent, symbol, row, literal, annotations)
+            else:
+                holders[literal] = annotations
+        elif kind == "remove":
+            change = belief_changes[symbol][1]
+            held_by = holders.pop(literal, None)
+            table = beliefs[symbol]
+            if (
+                held_by is not annotations or table.__class__ is not Table or not table.end(row, annotations)
+            ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
+                continue
         else:
-            _forget_percept(agent, symbol, row, percept)
+            change = belief_changes[symbol][0]
+        if watched:
+            external_change(agent, change.operator, symbol, row, annotations, percept.cause)
+        elif selects[change] is not None:
+            post(Event((change, *row), None, annotations, percept.cause))
+    if agent.condition_waits:
+        agent.tasks.append(_nothing)
 
 
-def _forget_percept(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> None:
-    """Take away what this percept alone accounts for; another property may hold the same literal."""
-    held_by = agent.held_percepts.get((symbol, row), [])
-    if percept.annotations in held_by:
-        held_by.remove(percept.annotations)
-    if not held_by:
-        agent.held_percepts.pop((symbol, row), None)
+def _is_flat(row: Row) -> bool:
+    """Whether a row holds numbers, strings and atoms only."""
+    for argument in row:  # noqa: SIM110 - `all` would make a generator for every percept
+        if argument.__class__ not in ATOMIC:
+            return False
+    return True
+
+
+def _parts(literal: Term) -> tuple[Functor, Row]:
+    symbol, row, _ = parts(literal)
+    if symbol is None:
+        raise InternalError(f"a percept is no literal: {literal!r}")
+    return symbol, row
+
+
+def _take_percept(
+    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations
+) -> None:
+    """Add a percept whose literal may be held already; several properties may have the same values."""
+    held_by = agent.held_percepts.get(literal)
+    if held_by.__class__ is list:
+        held_by.append(annotations)
+    else:
+        agent.held_percepts[literal] = annotations if held_by is None else [held_by, annotations]
+    insert(agent, symbol, row, annotations)
+
+
+def _forget_percept(
+    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations, known: Any
+) -> bool:
+    """Take away what a percept alone accounts for: another property may have the same values.
+
+    False when the belief is not held any more.
+    """
+    held_by: list[Annotations] = known if known.__class__ is list else [] if known is None else [known]
+    if annotations in held_by:
+        held_by.remove(annotations)
+    if held_by:
+        agent.held_percepts[literal] = held_by
     table = agent.beliefs[symbol]
     held = table.get(row)
-    if held is not None:
-        others = {a for annotations in held_by for a in annotations}
-        take_away(table, row, held, tuple(a for a in percept.annotations if a not in others))
-        external_change(agent, "-", symbol, row, percept.annotations, percept.cause)
+    if held is None:
+        return False
+    others = {a for annotations_ in held_by for a in annotations_}
+    take_away(table, row, held, tuple(a for a in annotations if a not in others))
+    return True
 
 
 def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:

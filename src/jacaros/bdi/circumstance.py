@@ -129,7 +129,7 @@ class Circumstance:
         self.face: Any = None
         self.drowsy = False
         self.asleep = False
-        self.held_percepts: dict[Any, list[tuple[Term, ...]]] = {}
+        self.held_percepts: dict[Term, Any] = {}
         self.plans_made = len(plans.plans)
         self.bodies: dict[int, tuple[Term, Any]] = {}
         self._intention_numbers = 0

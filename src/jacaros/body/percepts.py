@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from jacaros.bdi.act import Percept
-from jacaros.body.values import References, atom_of, symbol_of, to_term
+from jacaros.body.values import References, atom_of, number_to_term, symbol_of, to_term
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.property import ObservableProperty
@@ -20,6 +20,8 @@ _WORKSPACE = functor("workspace", 2)
 _OBSERVABLE_PROPERTY = (_PERCEPT_TYPE, atom("obs_prop"))
 _OBSERVABLE_EVENT = (_PERCEPT_TYPE, atom("obs_ev"))
 _NULL = atom("null")
+
+Annotations = tuple[Term, ...]
 
 
 class PerceptWriter:
@@ -54,23 +56,34 @@ class PerceptWriter:
             Percept(SIGNAL, self._literal(signal.name, signal.arguments, namespace), about_signal, cause)
             for signal in observation.signals
         ]
-
-        def add(kind: str, each: ObservableProperty) -> None:
-            annotations = about_property
-            if each.annotations:
-                own = tuple(to_term(a, self._references) for a in each.annotations)
-                annotations = annotation_set((*annotations, *own))
-            literal = self._literal(each.name, each.values, namespace)
-            found.append(Percept(kind, literal, annotations, cause))
-
         for old, new in observation.changed:
-            add(REMOVE, old)
-            add(ADD, new)
+            # What is written of a property is kept with it: for its end, and for all others who observe it.
+            written = old.written
+            literal, about = (
+                written if written and not namespace else self._write(old, about_property, namespace)
+            )
+            found.append(Percept(REMOVE, literal, about, cause))
+            written = new.written
+            literal, about = (
+                written if written and not namespace else self._write(new, about_property, namespace)
+            )
+            found.append(Percept(ADD, literal, about, cause))
         for each in observation.added:
-            add(ADD, each)
+            found.append(Percept(ADD, *self._write(each, about_property, namespace), cause))
         for each in observation.removed:
-            add(REMOVE, each)
+            found.append(Percept(REMOVE, *self._write(each, about_property, namespace), cause))
         return found
+
+    def _write(
+        self, each: ObservableProperty, about: Annotations, namespace: str | None
+    ) -> tuple[Term, Annotations]:
+        if each.annotations:
+            own = tuple(to_term(a, self._references) for a in each.annotations)
+            about = annotation_set((*about, *own))
+        written = self._literal(each.name, each.values, namespace), about
+        if not namespace:
+            each.written = written
+        return written
 
     def own(self, kind: str, name: str, *arguments: Term) -> Percept:
         """A percept about the agent's own body, such as ``joinedWsp(Id,lab,"/main/lab")``."""
@@ -102,7 +115,17 @@ class PerceptWriter:
         symbol = symbol_of(f"{namespace}::{name}" if namespace else name, len(values))
         if not values:
             return symbol
-        return (symbol, *[_ground(to_term(value, self._references)) for value in values])
+        written: list[Term] = [symbol]
+        for value in values:
+            # Nearly all are numbers.
+            kind = type(value)
+            if kind is float:
+                written.append(value)
+            elif kind is int:
+                written.append(number_to_term(value))
+            else:
+                written.append(_ground(to_term(value, self._references)))
+        return tuple(written)
 
 
 def _ground(term: Term) -> Term:

@@ -162,7 +162,8 @@ def to_term(value: Any, references: References) -> Term:
     return _other_to_term(value, references)
 
 
-def _number_to_term(value: float, references: References) -> Term:
+def number_to_term(value: Any) -> float:
+    """The number for an `int` or `float` of any size."""
     try:
         return float(value)
     except OverflowError:
@@ -215,13 +216,13 @@ def _other_to_term(value: Any, references: References) -> Term:
     if isinstance(simple, str):
         return String(simple)
     if isinstance(simple, (int, float)):
-        return _number_to_term(simple, references)
+        return number_to_term(simple)
     return Reference(simple)
 
 
 _BY_CLASS: dict[type, Callable[[Any, References], Term]] = {
     float: lambda value, _: value,
-    int: _number_to_term,
+    int: lambda value, _: number_to_term(value),
     bool: lambda value, _: TRUE if value else FALSE,
     str: lambda value, _: String(value),
     Atom: lambda value, _: TRUE if value == "true" else FALSE if value == "false" else symbol_of(value, 0),

@@ -35,3 +35,13 @@ def trigger(operator: str, kind: str, functor: Functor) -> Trigger:
     if found is None:
         found = _triggers[key] = Trigger(operator, kind, functor)
     return found
+
+
+class _BeliefChanges(dict[Functor, tuple[Trigger, Trigger]]):
+    def __missing__(self, functor: Functor) -> tuple[Trigger, Trigger]:
+        found = self[functor] = trigger("+", "", functor), trigger("-", "", functor)
+        return found
+
+
+belief_changes: dict[Functor, tuple[Trigger, Trigger]] = _BeliefChanges()
+"""By functor, the triggers of the coming and going of its beliefs."""

@@ -146,8 +146,11 @@ class Artifact:
         Raises:
             UnknownProperty: there is none.
         """
-        self._steps.current("updating property", name)
-        self._steps.publication.properties.update(name, values, annotations)
+        steps = self._steps
+        holder = steps.turns.holder
+        if holder is None or holder.task is not None:
+            steps.current("updating property", name)
+        steps.publication.properties.update(name, values, annotations)
 
     def remove_property(self, name: str, *values: object) -> None:
         """Remove the first property called *name*, with *values* the first that has these values.

@@ -1,25 +1,30 @@
 """The observable properties of one artifact, changed in steps that are committed or rolled back."""
 
-from typing import NamedTuple
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 from jacaros.env.errors import InvalidArtifact, UnknownProperty, spelling_hint
-from jacaros.env.values import equal, plain
+from jacaros.env.values import SCALARS, equal, plain
 
 
-class ObservableProperty(NamedTuple):
-    """What observers see of one property at one moment.
+@dataclass(slots=True)
+class ObservableProperty:
+    """What observers see of one property at one moment; nobody changes it.
 
     Attributes:
         name: the functor of the belief.
         values: plain values, the arguments of the belief.
         annotations: further annotations of the belief (atoms and structures).
         key: identity within its artifact; it stays when the values change, and is never used again.
+        written: what the observers of a run have made of it, kept so that it is made once for all of them and for the
+            end of the value too; theirs alone.
     """
 
     name: str
     values: tuple[object, ...]
     annotations: tuple[object, ...]
     key: int
+    written: Any = field(default=None, compare=False, repr=False)
 
 
 Change = tuple[ObservableProperty, ObservableProperty]
@@ -65,7 +70,7 @@ class PropertyStore:
         check_name(name)
         self._last_key = key = self._last_key + 1
         self._before[key] = (name, None)
-        new = ObservableProperty(name, tuple(map(plain, values)), plain_annotations(annotations or ()), key)
+        new = ObservableProperty(name, _plain(values), plain_annotations(annotations or ()), key)
         self._by_name.setdefault(name, {})[key] = new
 
     def update(self, name: str, values: tuple[object, ...], annotations: tuple[object, ...] | None) -> None:
@@ -74,10 +79,15 @@ class PropertyStore:
         Raises:
             UnknownProperty: there is none.
         """
-        old = self.first(name)
-        self._before.setdefault(old.key, (name, old))
+        properties = self._by_name.get(name)
+        if not properties:
+            raise self._unknown(name)
+        old = next(iter(properties.values()))
+        key = old.key
+        if key not in self._before:
+            self._before[key] = (name, old)
         kept = old.annotations if annotations is None else plain_annotations(annotations)
-        self._by_name[name][old.key] = ObservableProperty(name, tuple(map(plain, values)), kept, old.key)
+        properties[key] = ObservableProperty(name, _plain(values), kept, key)
 
     def remove(self, name: str, template: tuple[object, ...]) -> None:
         """Remove the first property called *name* whose values fit *template* (see `first`).
@@ -101,10 +111,13 @@ class PropertyStore:
         for found in self._by_name.get(name, _NONE).values():
             if not template or _fits(template, found.values):
                 return found
+        raise self._unknown(name, template)
+
+    def _unknown(self, name: str, template: tuple[object, ...] = ()) -> UnknownProperty:
         names = [each for each, properties in self._by_name.items() if properties]
         known = f" (it has {', '.join(names)})" if names else " (it has none)"
         wanted = f"{name} with values like {template}" if template else name
-        raise UnknownProperty(f"no observable property {wanted}{known}{spelling_hint(name, names)}")
+        return UnknownProperty(f"no observable property {wanted}{known}{spelling_hint(name, names)}")
 
     def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
         """True when there is a property called *name* whose values fit *template*."""
@@ -161,6 +174,14 @@ def check_name(name: str) -> None:
     """
     if not name[:1].islower():
         raise InvalidArtifact(f"{name!r} cannot name a property or signal: begin with a lower-case letter")
+
+
+def _plain(values: tuple[object, ...]) -> tuple[object, ...]:
+    """Make values plain; numbers and texts, which most are, are so already."""
+    for value in values:
+        if type(value) not in SCALARS:
+            return tuple(map(plain, values))
+    return values
 
 
 def plain_annotations(annotations: tuple[object, ...]) -> tuple[object, ...]:

@@ -77,7 +77,8 @@ class Out:
         return f"Out({self._value!r})"
 
 
-_SCALARS = frozenset({int, float, bool, str, Atom, type(None)})
+SCALARS: frozenset[type] = frozenset({int, float, bool, str, Atom, type(None)})
+"""Classes of values that are plain as they are."""
 
 
 def plain(value: Any) -> object:
@@ -89,7 +90,7 @@ def plain(value: Any) -> object:
     these stays as it is: an opaque reference.
     """
     kind = type(value)
-    if kind in _SCALARS:
+    if kind in SCALARS:
         return value
     if kind is Structure:
         return Structure(value.functor, tuple(map(plain, value.arguments)))
