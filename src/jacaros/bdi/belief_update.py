@@ -325,7 +325,7 @@ def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
         if watched:
             external_change(agent, change.operator, symbol, row, annotations, percept.cause)
         elif selects[change] is not None:
-            post(Event((change, *row), None, annotations, percept.cause))
+            post(((change, *row), None, annotations, percept.cause))
     if agent.condition_waits:
         agent.tasks.append(_nothing)
 
