@@ -34,7 +34,7 @@ from jacaros.bdi.intention import Frame
 from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.program_plans import ProgramPlans
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.speech_act import SpeechAct, message_id
 from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
@@ -88,7 +88,7 @@ class Agent(Circumstance):
         self.program = program
         self.context = Context(self)
         self._acts = 0
-        self._messages = 0
+        self.messages = 0
         self._namespaces = 0
         self._call_own = partial(functions.call_own, self)
         self.register_functions(program.functions)
@@ -417,8 +417,8 @@ class Agent(Circumstance):
 
     def next_message_id(self) -> str:
         """An id for a message; unique with the name of the agent."""
-        self._messages += 1
-        return f"mid{self._messages}_{self.name}"
+        self.messages += 1
+        return message_id(self.messages, self.name)
 
     def test_for(self, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]) -> None:
         """Answer a question by a plan for its test goal; whatever fails is answered with false."""

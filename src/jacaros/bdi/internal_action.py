@@ -19,6 +19,8 @@ from typing import Any
 from jacaros.terms.values import Term
 
 Function = Callable[..., Any]
+Written = tuple[Term | None, ...]
+"""The arguments of a call as far as they are written out in a program; None for those that are known at run time."""
 
 
 class WrongArguments(Exception):
@@ -51,6 +53,8 @@ class InternalAction:
         backtracks: the function is a generator of answers.
         suspends: it may suspend the intention, or acts on it: not for contexts and rules.
         minimum, maximum: number of arguments allowed; maximum None for any number.
+        direct: asked for a quicker function for a call with the arguments that a program writes out, or None: it is called
+            with the agent itself and all arguments, bindings not applied, and never suspends.
     """
 
     name: str
@@ -59,6 +63,7 @@ class InternalAction:
     suspends: bool = False
     minimum: int = 0
     maximum: int | None = None
+    direct: Callable[[Written], Function | None] | None = None
 
 
 Registry = dict[str, InternalAction]
@@ -72,12 +77,13 @@ def internal_action(
     arity: int | tuple[int, int | None] = (0, None),
     backtracks: bool = False,
     suspends: bool = False,
+    direct: Callable[[Written], Function | None] | None = None,
 ) -> Callable[[Function], Function]:
     """Register a standard internal action; *arity* is a number of arguments, or least and most (None: any)."""
     least, most = (arity, arity) if isinstance(arity, int) else arity
 
     def register(function: Function) -> Function:
-        STANDARD[name] = InternalAction(name, function, backtracks, suspends, least, most)
+        STANDARD[name] = InternalAction(name, function, backtracks, suspends, least, most, direct)
         return function
 
     return register

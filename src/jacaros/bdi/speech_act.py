@@ -1,26 +1,62 @@
 """What agents say to each other."""
 
-from dataclasses import dataclass
-
 from jacaros.terms.values import Term
 
 
-@dataclass(frozen=True, slots=True)
 class SpeechAct:
-    """A message between agents (KQML).
+    """A message between agents (KQML).  Nobody changes one that has been sent.
 
     Attributes:
         performative: ``tell``, ``achieve``, ``askOne`` … in Jason's spelling.
-        sender: name of the agent that says it.
+        sender: name of the agent that says it, ``self`` in messages to oneself.
         receiver: name of the agent it is for.
         content: a term; a copy of its own, so that no variable is shared between agents.
-        id: number of the message, unique in the system, such as ``mid7``.
         in_reply_to: id of the question that this message answers, or None.
+        flat: the content is known to be an atom, or a structure of atoms, numbers and strings: it need not be
+            copied nor looked into; False when nobody has looked.
     """
 
-    performative: str
-    sender: str
-    receiver: str
-    content: Term
-    id: str
-    in_reply_to: str | None = None
+    __slots__ = ("_id", "content", "flat", "in_reply_to", "performative", "receiver", "sender")
+
+    def __init__(
+        self,
+        performative: str,
+        sender: str,
+        receiver: str,
+        content: Term,
+        id: str | int,
+        in_reply_to: str | None = None,
+        flat: bool = False,
+    ) -> None:
+        """Make a message.
+
+        Args:
+            id: unique in the system; or the number of the message among those of its sender, which the id is made
+                of when somebody asks for it.
+        """
+        self.performative = performative
+        self.sender = sender
+        self.receiver = receiver
+        self.content = content
+        self._id = id
+        self.in_reply_to = in_reply_to
+        self.flat = flat
+
+    @property
+    def id(self) -> str:
+        """Name of the message, unique in the system, such as ``mid7_ann``."""
+        if self._id.__class__ is int:
+            self._id = message_id(self._id, self.receiver if self.sender == "self" else self.sender)
+        return str(self._id)
+
+    def with_content(self, content: Term) -> "SpeechAct":
+        """The same message with another content."""
+        return SpeechAct(self.performative, self.sender, self.receiver, content, self._id, self.in_reply_to)
+
+    def __repr__(self) -> str:
+        return f"SpeechAct({self.performative!r}, {self.sender!r}, {self.receiver!r}, {self.content!r}, {self.id!r})"
+
+
+def message_id(number: int, sender: str) -> str:
+    """The id of a message; numbers are unique for its sender."""
+    return f"mid{number}_{sender}"

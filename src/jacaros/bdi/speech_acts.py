@@ -13,13 +13,15 @@ from jacaros.bdi.meta_events import post_new_goal
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import fresh_names, lower_plan
 from jacaros.compiler.runtime import run
-from jacaros.compiler.triggers import trigger
+from jacaros.compiler.triggers import Trigger, trigger
+from jacaros.compiler.unit import Select
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN, TRIGGERS, body_steps, step_parts
 from jacaros.terms.text import text
 from jacaros.terms.unifier import is_flat, rename, resolve, undo
 from jacaros.terms.values import (
     BY_SELF,
+    CONS,
     SOURCE,
     SOURCE_SELF,
     Annotated,
@@ -40,53 +42,47 @@ from jacaros.terms.values import (
 )
 
 RECEIVED = trigger("+", "!", functor("kqml_received", 4))
-PERFORMATIVES = {
-    "ask-one": "askOne",
-    "ask-all": "askAll",
-    "ask-how": "askHow",
-    "tell-how": "tellHow",
-    "untell-how": "untellHow",
-}
 
 
 def process(agent: Circumstance, message: SpeechAct) -> None:
     """Rule ProcMsg: one message; a plan of the program for ``+!kqml_received`` comes before what is done here."""
-    if message.in_reply_to is not None and message.in_reply_to in agent.pending_asks:
-        agent.pending_asks[message.in_reply_to](message)
-        return
-    if message.in_reply_to in agent.abandoned_asks:
-        agent.abandoned_asks.remove(message.in_reply_to)
+    if message.in_reply_to is not None and _answers_question(agent, message):
         return
     if agent.accepts is not None and not agent.accepts(message):
         return
-    performative = PERFORMATIVES.get(message.performative, message.performative)
-    if _handled_by_program(agent, message):
+    select = agent.selects[RECEIVED]
+    if select is not None and _handled_by_program(agent, message, select):
         return
-    action = _ACTIONS.get(performative)
+    action = _ACTIONS.get(message.performative)
     if action is None:
         agent.architecture.log(
-            "warning", f"a message with unknown performative {performative} from {message.sender}"
+            "warning", f"a message with unknown performative {message.performative} from {message.sender}"
         )
         return
     action(agent, message)
 
 
-def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
+def _answers_question(agent: Circumstance, message: SpeechAct) -> bool:
+    """Whether the message is the answer to a question of the agent: who asked has it then, or nobody wants it any more."""
+    question = message.in_reply_to
+    if question in agent.pending_asks:
+        agent.pending_asks[question](message)
+        return True
+    if question in agent.abandoned_asks:
+        agent.abandoned_asks.remove(question)
+        return True
+    return False
+
+
+def _handled_by_program(agent: Circumstance, message: SpeechAct, select: Select) -> bool:
     """Post ``+!kqml_received`` when the program has an applicable plan for it."""
-    select = agent.selects[RECEIVED]
-    if select is None:
-        return False
-    goal = (RECEIVED, atom(message.sender), atom(message.performative), message.content, _id_term(message.id))
+    goal = (RECEIVED, atom(message.sender), atom(message.performative), message.content, atom(message.id))
     frame = select(agent, goal, BY_SELF)
     undo(agent.trail, 0)
     if frame is None:
         return False
     agent.post((goal, None, BY_SELF, None))
     return True
-
-
-def _id_term(message_id: str) -> Term:
-    return atom(message_id)
 
 
 def from_sender(content: Term, sender: str) -> Term:
@@ -138,12 +134,27 @@ def _untell(agent: Circumstance, message: SpeechAct) -> None:
 
 
 def _achieve(agent: Circumstance, message: SpeechAct) -> None:
+    content = message.content
+    if message.flat and content.__class__ is tuple and content[0] is not CONS and not agent.meta:
+        # The most frequent message, written out: there is nothing in it to be looked at.
+        kind = _GOALS.get(content[0]) or _goal(content[0])
+        agent.post(Event((kind, *content[1:]), None, _only_from(message.sender)))
+        return
     for content in _contents(message.content):
         symbol, arguments, annotations = literal_from(content, message.sender)
         if symbol is None:
             _refuse(agent, message)
         else:
             post_new_goal(agent, ((trigger("+", "!", symbol), *arguments), None, annotations, None))
+
+
+_GOALS: dict[Functor, Trigger] = {}
+"""Event kinds of the goals that agents were asked for, by functor."""
+
+
+def _goal(symbol: Functor) -> Trigger:
+    kind = _GOALS[symbol] = trigger("+", "!", symbol)
+    return kind
 
 
 def _unachieve(agent: Circumstance, message: SpeechAct) -> None:
@@ -291,4 +302,9 @@ _ACTIONS = {
     "askHow": _ask_how,
     "tellHow": _tell_how,
     "untellHow": _untell_how,
+    "ask-one": _ask_one,
+    "ask-all": _ask_all,
+    "ask-how": _ask_how,
+    "tell-how": _tell_how,
+    "untell-how": _untell_how,
 }

@@ -11,7 +11,7 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.compiler.annotations import own_annotations
-from jacaros.compiler.building import annotation_parts, build, functor_of_literal, resolved, tuple_of
+from jacaros.compiler.building import annotation_parts, build, functor_of_literal, resolved, tuple_of, written
 from jacaros.compiler.conditions import accepts, condition, question
 from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
@@ -200,8 +200,19 @@ def _is_called(compiler: BodyCompiler, node: nodes.InternalAction) -> bool:
 def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_name: str) -> None:
     fn = compiler.begin(node)
     action = compiler.unit.actions.get(node.name)
+    direct = (
+        None
+        if action is None or action.direct is None
+        else action.direct(tuple(map(written, node.arguments)))
+    )
     with fn.writer.block(_head(name)):
         fn.load(compiler.frame, names_in(node))
+        if direct is not None:
+            fn.line(f"{fn.constant(direct)}({', '.join(['agent', *(build(fn, a) for a in node.arguments)])})")
+            fn.store(compiler.frame)
+            fn.line(f"frame[0] = {next_name}")
+            _finish(compiler, fn)
+            return
         arguments = [resolved(fn, build(fn, a)) for a in node.arguments]
         if action is None:
             symbol = fn.constant(functor(node.name, len(node.arguments)))

@@ -34,6 +34,11 @@ def build(fn: FunctionBuilder, node: nodes.Node) -> str:
     return _COMPOUND[type(node)](fn, node)
 
 
+def written(node: nodes.Node) -> Term | None:
+    """The value of a term that is the same at every evaluation; None for others."""
+    return resolve(lower(node, _no_variable)) if isinstance(node, _STATIC) and is_static(node) else None
+
+
 def is_static(node: object) -> bool:
     """Whether a term is the same at every evaluation."""
     if any(True for _ in variables_in(node)):

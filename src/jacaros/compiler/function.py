@@ -39,6 +39,10 @@ class ActionInfo(Protocol):
     def maximum(self) -> int | None:
         """Greatest number of arguments, None for any."""
 
+    @property
+    def direct(self) -> Callable[[tuple[Term | None, ...]], Callable[..., Any] | None] | None:
+        """Asked for a quicker function for a call with the arguments that are written out; None when there is none."""
+
 
 class Unit(Protocol):
     """The unit that the function becomes part of: constants, and further functions."""

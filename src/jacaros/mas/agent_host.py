@@ -151,6 +151,7 @@ class AgentHost:
         self.intercept: Callable[[Act], bool] | None = None
         self.intercept_stop: Callable[[float, int], bool] | None = None
         self._run = run
+        self._scheduler = run.scheduler
         self._ended = False
 
     def run(self, fuel: int) -> bool:
@@ -181,7 +182,8 @@ class AgentHost:
 
     def ready(self) -> None:
         """The mind has something to do."""
-        self._run.scheduler.make_ready(self)
+        if not self.queued:
+            self._scheduler.make_ready(self)
 
     def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* after *delay* seconds."""

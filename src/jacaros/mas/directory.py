@@ -1,6 +1,6 @@
 """Who is there: the agents of a run by name."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Generic, TypeVar
 
 H = TypeVar("H")
@@ -12,6 +12,8 @@ class Directory(Generic[H]):
     def __init__(self) -> None:
         self._hosts: dict[str, H] = {}
         self._names: tuple[str, ...] | None = ()
+        self.find: Callable[[str], H | None] = self._hosts.get
+        """The agent of a name, or None."""
 
     def add(self, name: str, host: H) -> None:
         """Enter an agent; the name must be free."""
@@ -25,10 +27,6 @@ class Directory(Generic[H]):
         host = self._hosts.pop(name, None)
         self._names = None
         return host
-
-    def find(self, name: str) -> H | None:
-        """The agent of that name, or None."""
-        return self._hosts.get(name)
 
     def names(self) -> Sequence[str]:
         """All names."""

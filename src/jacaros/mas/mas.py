@@ -11,7 +11,6 @@ import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.program_plans import ProgramPlans
-from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.errors import JacarosError
 from jacaros.mas.activity import Activity, AgentTimer
@@ -60,6 +59,7 @@ class Mas:
         ros: the ROS graph and the embedded world.
         scheduler: gives the agents their turns.
         activity: what the agents wait for.
+        deliver: brings a message to its receiver; False when there is none.
         services: the directory facilitator.
     """
 
@@ -95,7 +95,7 @@ class Mas:
         self._when_made = when_made
         self._tell_idle = when_idle or (lambda: self.end(0))
         self._watches_idle = self.options.until_idle or when_idle is not None
-        self._mailboxes = Mailboxes(self._mailbox_of)
+        self.deliver = Mailboxes(self.directory.find).deliver
         self.services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
@@ -252,14 +252,6 @@ class Mas:
         asyncio.get_running_loop().call_soon(self._look_again, look, hops - 1)
 
     # ---- what agents ask for
-
-    def _mailbox_of(self, name: str) -> Callable[[SpeechAct], None] | None:
-        host = self.directory.find(name)
-        return host.receive if host is not None else None
-
-    def deliver(self, message: SpeechAct) -> bool:
-        """Bring a message to its receiver; False when there is none."""
-        return self._mailboxes.deliver(message)
 
     def agent_names(self) -> Sequence[str]:
         """Names of all agents, in the order of their making."""

@@ -60,7 +60,8 @@ class Scheduler:
             return
         agent.queued = True
         self._queue.append(agent)
-        self._call_soon()
+        if not self._due:
+            self._call_soon()
 
     def stop(self) -> None:
         """Let nobody have a turn any more."""
@@ -68,30 +69,29 @@ class Scheduler:
         self._queue.clear()
 
     def _call_soon(self) -> None:
-        if self._due:
-            return
         self._due = True
         if self._loop is None:
             self._loop = asyncio.get_running_loop()
         self._loop.call_soon(self._turns)
 
     def _turns(self) -> None:
-        self._due = False
-        queue = self._queue
+        queue, quantum = self._queue, self.QUANTUM
         left = self.CYCLES_PER_CALL
         try:
             while queue and left > 0:
                 agent = queue.popleft()
                 agent.queued = False
-                more = agent.run(self.QUANTUM)
-                spent = self.QUANTUM if more else 1
-                left -= spent
-                self._clock.busy(spent)
-                if more and not agent.queued and not self._stopped:
-                    agent.queued = True
-                    queue.append(agent)
+                if agent.run(quantum):
+                    left -= quantum
+                    if not agent.queued and not self._stopped:
+                        agent.queued = True
+                        queue.append(agent)
+                else:
+                    left -= 1
         except Exception as error:
             self._report(error)
+        self._clock.busy(self.CYCLES_PER_CALL - left)
+        self._due = False
         if queue:
             self._call_soon()
         elif not self._stopped:

@@ -405,7 +405,10 @@ def is_flat(term: Term) -> bool:
         return term.__class__ is Functor and not term.kind
     if term[0].kind:
         return False
-    return all(argument.__class__ in ATOMIC for argument in term)
+    for part in term:  # noqa: SIM110 - twice as fast as `all`
+        if part.__class__ not in ATOMIC:
+            return False
+    return True
 
 
 def is_ground(term: Term) -> bool:

@@ -7,6 +7,7 @@ from jacaros.asl.loader import parse_term
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import lower_value
 from jacaros.terms.text import text
+from jacaros.terms.unifier import is_flat
 
 
 def message(performative: str, content: str, reply: str | None = None) -> SpeechAct:
@@ -35,6 +36,44 @@ def test_untell_takes_only_the_source_of_the_sender() -> None:
 
 def test_achieve_posts_a_goal() -> None:
     assert after("+!g(X)[source(S)] <- .print(X, S).", message("achieve", "g(1)")).printed == ["1ann"]
+
+
+@pytest.mark.parametrize("flat", [False, True])
+@pytest.mark.parametrize(
+    ("content", "done"),
+    [
+        ("g", ["gann"]),
+        ("g(1)", ["1ann"]),
+        ('g(x, "y")', ["xyann"]),
+        ("[g, g(2)]", ["gann", "2ann"]),
+        ("[]", []),
+    ],
+)
+def test_a_flat_content_is_taken_as_any_other(content: str, done: list[str], flat: bool) -> None:
+    said = message("achieve", content)
+    said.flat = flat and is_flat(said.content)
+    plans = "+!g[source(S)] <- .print(g, S). +!g(X)[source(S)] <- .print(X, S). +!g(X, Y)[source(S)] <- .print(X, Y, S)."
+    assert after(plans, said).printed == done
+
+
+@pytest.mark.parametrize("flat", [False, True])
+def test_an_asked_for_goal_is_told_of_and_awaited(flat: bool) -> None:
+    said = message("achieve", "g(1)")
+    said.flat = flat
+    assert after("+!g(_). ^!g(X)[state(pending)] <- .print(X).", said).printed == ["1"]
+    host = mind("!w. +!w <- .wait({+!g(X)}); .print(X). +!g(_).")
+    host.agent.run(10)
+    host.agent.receive(said)
+    host.run()
+    assert host.printed == ["1"]
+
+
+@pytest.mark.parametrize("flat", [False, True])
+def test_a_plan_of_the_program_for_messages_comes_first(flat: bool) -> None:
+    said = message("achieve", "g(1)")
+    said.flat = flat
+    program = "+!kqml_received(S, P, C, M) : .ground(C) <- .print(S, P, C, M). +!g(X) <- .print(no)."
+    assert after(program, said).printed == ["annachieveg(1)m1"]
 
 
 def test_unachieve_drops_the_goal() -> None:

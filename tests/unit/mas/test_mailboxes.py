@@ -5,6 +5,7 @@ import pytest
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.mas.directory import Directory
 from jacaros.mas.mailboxes import Mailboxes
+from jacaros.terms.collections import SetValue
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var, atom, structure
 
@@ -13,12 +14,22 @@ def said(content: Term, receiver: str = "bob") -> SpeechAct:
     return SpeechAct("tell", "ann", receiver, content, "mid1")
 
 
+class Box:
+    """Keeps what arrives."""
+
+    def __init__(self) -> None:
+        self.messages: list[SpeechAct] = []
+
+    def receive(self, message: SpeechAct) -> None:
+        self.messages.append(message)
+
+
 def test_messages_arrive_in_order() -> None:
-    inbox: list[SpeechAct] = []
-    mailboxes = Mailboxes({"bob": inbox.append}.get)
+    bob = Box()
+    mailboxes = Mailboxes({"bob": bob}.get)
     for name in ("one", "two", "three"):
         assert mailboxes.deliver(said(atom(name)))
-    assert [text(message.content) for message in inbox] == ["one", "two", "three"]
+    assert [text(message.content) for message in bob.messages] == ["one", "two", "three"]
 
 
 def test_nobody_gets_a_message_for_an_unknown_agent() -> None:
@@ -26,12 +37,39 @@ def test_nobody_gets_a_message_for_an_unknown_agent() -> None:
 
 
 def test_variables_are_renamed_apart() -> None:
-    inbox: list[SpeechAct] = []
+    bob = Box()
     variable = Var("X")
-    Mailboxes({"bob": inbox.append}.get).deliver(said(structure("p", variable, variable)))
-    _, first, second = inbox[0].content
+    Mailboxes({"bob": bob}.get).deliver(said(structure("p", variable, variable)))
+    _, first, second = bob.messages[0].content
     assert first is second
     assert first is not variable
+
+
+def test_a_flat_content_is_handed_over_as_it_is() -> None:
+    bob = Box()
+    message = SpeechAct("tell", "ann", "bob", structure("p", 1.0), 7, flat=True)
+    Mailboxes({"bob": bob}.get).deliver(message)
+    assert bob.messages == [message]
+
+
+def test_collections_in_a_message_are_copied() -> None:
+    bob = Box()
+    shared = SetValue()
+    Mailboxes({"bob": bob}.get).deliver(said(structure("p", shared)))
+    (message,) = bob.messages
+    assert message.content[1] is not shared
+    assert (message.performative, message.sender, message.receiver, message.id) == (
+        "tell",
+        "ann",
+        "bob",
+        "mid1",
+    )
+
+
+def test_the_id_of_a_message_names_its_sender() -> None:
+    assert SpeechAct("tell", "ann", "bob", atom("x"), 7).id == "mid7_ann"
+    assert SpeechAct("tell", "self", "bob", atom("x"), 7).id == "mid7_bob"
+    assert SpeechAct("tell", "ann", "bob", atom("x"), "mid3").id == "mid3"
 
 
 def test_agents_are_listed_in_the_order_of_their_making() -> None:

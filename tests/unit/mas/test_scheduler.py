@@ -1,5 +1,7 @@
 """Turns of the agents."""
 
+import asyncio
+
 import pytest
 
 from jacaros.clock import VirtualClock, run
@@ -49,6 +51,46 @@ def test_an_agent_is_queued_once() -> None:
 
     run(main, clock)
     assert log == ["a"]
+
+
+def test_who_becomes_ready_in_a_turn_comes_behind_those_who_wait() -> None:
+    log: list[str] = []
+    clock = VirtualClock()
+    late = Worker("late", 1, log)
+
+    class Waker(Worker):
+        def run(self, fuel: int) -> bool:
+            scheduler.make_ready(late)
+            scheduler.make_ready(self)
+            return super().run(fuel)
+
+    scheduler = Scheduler(clock)
+
+    async def main() -> None:
+        scheduler.make_ready(Waker("a", 60, log))
+        scheduler.make_ready(Worker("b", 60, log))
+        await clock.sleep(1)
+        scheduler.stop()
+
+    run(main, clock)
+    assert log[:7] == ["a", "b", "late", "a", "b", "late", "a"]
+
+
+def test_callbacks_of_the_loop_have_their_turn_among_busy_agents() -> None:
+    clock = VirtualClock()
+    seen: list[int] = []
+    endless = Worker("a", 10**6, [])
+
+    async def main() -> None:
+        scheduler = Scheduler(clock)
+        scheduler.make_ready(endless)
+        for _ in range(3):
+            await asyncio.sleep(0)
+            seen.append(10**6 - endless.cycles)
+        scheduler.stop()
+
+    run(main, clock)
+    assert seen == [Scheduler.CYCLES_PER_CALL * turns for turns in (1, 2, 3)]
 
 
 def test_endless_cycles_let_timers_and_virtual_time_go_on() -> None:

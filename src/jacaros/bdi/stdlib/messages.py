@@ -3,12 +3,12 @@
 from typing import Any
 
 from jacaros.bdi.context import Context
-from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.internal_action import ActionError, Written, WrongArguments, internal_action
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.speech_acts import from_sender
 from jacaros.bdi.waiting import Waiting
 from jacaros.terms.text import text
-from jacaros.terms.unifier import rename
+from jacaros.terms.unifier import is_flat, rename, resolve
 from jacaros.terms.values import (
     PLAIN,
     Functor,
@@ -37,16 +37,60 @@ def _name(term: Term, what: str) -> str:
     raise WrongArguments(f"{what} must be an atom or a string, not {text(term)}")
 
 
-def _deliver(
-    ctx: Context, receiver: str, performative: str, content: Term, message_id: str, reply: str | None
+def _say(
+    agent: Any,
+    receiver: str,
+    performative: str,
+    content: Term,
+    reply: str | None = None,
+    message_id: str | int | None = None,
 ) -> None:
-    sender = ctx.agent.name
+    """Send a message to one agent; its content may have bindings that are not applied yet."""
+    if message_id is None:
+        agent.messages = message_id = agent.messages + 1
+    sender = agent.name
     target = sender if receiver == "self" else receiver
-    act = SpeechAct(
-        performative, "self" if target == sender else sender, target, rename(content), message_id, reply
+    flat = is_flat(content)
+    if not flat:
+        content = rename(content)
+        flat = is_flat(content)
+    message = SpeechAct(
+        performative, "self" if target == sender else sender, target, content, message_id, reply, flat
     )
-    if not ctx.architecture.send(act):
+    if not agent.architecture.send(message):
         raise ActionError(f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found")))
+
+
+def _direct(written: Written) -> Any:
+    """A function for a ``.send`` whose performative is written out, as it nearly always is, and perhaps the receiver."""
+    if len(written) != 3 or written[1] is None:
+        return None
+    act, to = _known_name(written[1]), _known_name(written[0])
+    if act is None or (to is None and written[0] is not None):
+        return None
+    if to is not None:
+
+        def send_on(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
+            _say(agent, to, act, content)
+
+        return send_on
+
+    def send_to(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
+        for name in _receivers(resolve(receiver)):
+            _say(agent, name, act, content)
+
+    return send_to
+
+
+def _known_name(term: Term | None) -> str | None:
+    """The name that a term of the program is, if it is one."""
+    return None if term is None or bare(term).__class__ not in (String, Functor) else _name(term, "")
+
+
+def _receivers(receiver: Term) -> list[str]:
+    if is_list(receiver):
+        return [_name(r, "a receiver") for r in list_items(receiver)]
+    return [_name(receiver, "the receiver")]
 
 
 def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
@@ -104,7 +148,7 @@ class _Question:
             self.timer.cancel()
 
 
-@internal_action(".send", arity=(3, 5), suspends=True)
+@internal_action(".send", arity=(3, 5), suspends=True, direct=_direct)
 def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Any:
     """``.send(To, Performative, Content [, Answer [, Timeout]])``: a message; with an answer, a synchronous question.
 
@@ -114,16 +158,12 @@ def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest:
         ActionError: ``receiver_not_found``.
     """
     act = _name(performative, "the performative")
-    receivers = (
-        [_name(r, "a receiver") for r in list_items(receiver)]
-        if is_list(receiver)
-        else [_name(receiver, "the receiver")]
-    )
+    receivers = _receivers(receiver)
     if act in QUESTIONS and rest:
         return _ask(ctx, receivers, act, content, rest, is_list(receiver))
     reply = _name(rest[0], "the message id") if rest and rest[0].__class__ is not Var else None
     for name in receivers:
-        _deliver(ctx, name, act, content, ctx.agent.next_message_id(), reply)
+        _say(ctx.agent, name, act, content, reply)
     return None
 
 
@@ -137,7 +177,7 @@ def _ask(
         message_id = ctx.agent.next_message_id()
         question.ids.append(message_id)
         ctx.agent.pending_asks[message_id] = question.answered
-        _deliver(ctx, name, act, content, message_id, None)
+        _say(ctx.agent, name, act, content, None, message_id)
     if len(rest) > 1:
         if rest[1].__class__ is not float:
             raise WrongArguments(f"the time-out must be a number of milliseconds, not {text(rest[1])}")
@@ -151,4 +191,4 @@ def broadcast(ctx: Context, performative: Term, content: Term) -> None:
     act = _name(performative, "the performative")
     for name in ctx.architecture.agent_names():
         if name != ctx.agent.name:
-            _deliver(ctx, name, act, content, ctx.agent.next_message_id(), None)
+            _say(ctx.agent, name, act, content)
