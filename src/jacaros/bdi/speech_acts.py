@@ -138,7 +138,7 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
     if message.flat and content.__class__ is tuple and content[0] is not CONS and not agent.meta:
         # The most frequent message, written out: there is nothing in it to be looked at.
         kind = _GOALS.get(content[0]) or _goal(content[0])
-        agent.post(Event((kind, *content[1:]), None, _only_from(message.sender)))
+        agent.post(((kind, *content[1:]), None, _only_from(message.sender), None))
         return
     for content in _contents(message.content):
         symbol, arguments, annotations = literal_from(content, message.sender)
