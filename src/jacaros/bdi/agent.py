@@ -191,9 +191,11 @@ class Agent(Circumstance):
         """Make at most *fuel* reasoning cycles; True when there is more to do."""
         # Calls inside terms are evaluated for this agent meanwhile.
         before, arithmetic.agent_call = arithmetic.agent_call, self._call_own
+        self.running = True
         try:
             return cycle.run(self, fuel)
         finally:
+            self.running = False
             arithmetic.agent_call = before
 
     # --- from outside --------------------------------------------------------------------------------------

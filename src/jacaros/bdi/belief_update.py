@@ -10,7 +10,7 @@ from jacaros.bdi.belief_base import OpenFact, Row, Rule, Table, literal, parts, 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
-from jacaros.compiler.triggers import Trigger, belief_changes, trigger
+from jacaros.compiler.triggers import ADDED, DELETED, Trigger
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import ATOMIC, free_variables, is_key, rename, resolve, undo, unify_annotations
@@ -37,15 +37,14 @@ def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations
 def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool) -> Any:
     if new is None:
         return None
-    kind = trigger("+", "", symbol)
     if agent.condition_waits:
         agent.tasks.append(_nothing)
-    return _raise(agent, (kind, *row), new, apart)
+    return _raise(agent, (ADDED[symbol], *row), new, apart)
 
 
 def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
     """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
-    unplanned = not _is_kept(agent, goal[0])
+    unplanned = agent.selects[goal[0]] is None and not _is_kept(agent, goal[0])
     if apart or agent.options.new_focus:
         if unplanned and not agent.event_waits:
             return None
@@ -81,7 +80,7 @@ def insert(
         if argument.__class__ not in ATOMIC and not is_key(argument):
             return _insert_aside(table, symbol, row, annotations, last)
     try:
-        held = table.get(row)
+        held = table.rows.get(row) if table.plain else table.get(row)
     except TypeError:
         return _insert_aside(table, symbol, row, annotations, last)
     if held is None:
@@ -117,10 +116,9 @@ def delete_belief(
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
     if removed is None:
         return None
-    kind = trigger("-", "", symbol)
     if agent.condition_waits:
         agent.tasks.append(_nothing)
-    return _raise(agent, (kind, *removed), annotations, apart)
+    return _raise(agent, (DELETED[symbol], *removed), annotations, apart)
 
 
 def _remove_first(
@@ -128,6 +126,11 @@ def _remove_first(
 ) -> Row | None:
     """Remove the first match; the row as asked for, with variables bound, or None when nothing matches."""
     table = agent.beliefs[symbol]
+    if annotations is BY_SELF and table.plain and ATOMIC.issuperset(map(type, arguments)):
+        # What is usual: a fact whose only source is the agent itself goes as a whole.
+        held = table.rows.get(arguments)
+        if held is None or held is BY_SELF:
+            return arguments if held is not None and table.remove(arguments) else None
     trail = agent.trail
     unbound = all(a.__class__ is Var and a.ref is None for a in arguments)
     for entry, held in table.in_order() if unbound else table.candidates(arguments):
@@ -184,6 +187,12 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
 
 def _delete_own(agent: Circumstance, symbol: Functor) -> None:
     table = agent.beliefs[symbol]
+    if table.plain and table.rows:
+        newest = next(reversed(table.rows))
+        if table.rows[newest] is BY_SELF:
+            if table.remove(newest):
+                external_change(agent, "-", symbol, newest, BY_SELF)
+            return
     for entry, held in table.in_order():
         row = entry if entry.__class__ is tuple else _open_row(entry)
         if row is not None and BY_SELF[0] in held:
@@ -254,8 +263,8 @@ def external_change(
     agent: Circumstance, operator: str, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
 ) -> None:
     """Raise the external event of a belief change, if anybody cares."""
-    kind = trigger(operator, "", symbol)
-    if _is_kept(agent, kind) or agent.event_waits:
+    kind = (ADDED if operator == "+" else DELETED)[symbol]
+    if agent.selects[kind] is not None or agent.event_waits or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
     if agent.condition_waits:
         agent.tasks.append(_nothing)
@@ -301,7 +310,7 @@ def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
         symbol, row = (literal[0], literal[1:]) if literal.__class__ is tuple else _parts(literal)
         # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
         if kind == "add":
-            change = belief_changes[symbol][0]
+            change = ADDED[symbol]
             table = beliefs[symbol]
             if (
                 literal in holders
@@ -313,7 +322,7 @@ def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
             else:
                 holders[literal] = annotations
         elif kind == "remove":
-            change = belief_changes[symbol][1]
+            change = DELETED[symbol]
             held_by = holders.pop(literal, None)
             table = beliefs[symbol]
             if (
@@ -321,7 +330,7 @@ def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
             ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
                 continue
         else:
-            change = belief_changes[symbol][0]
+            change = ADDED[symbol]
         if watched:
             external_change(agent, change.operator, symbol, row, annotations, percept.cause)
         elif selects[change] is not None:

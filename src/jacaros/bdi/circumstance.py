@@ -65,6 +65,7 @@ class Circumstance:
         blamed: plans whose goal condition cannot be evaluated, as people have been told.
         goal_depth: how many plans may be on the stack of an intention.
         rule_depth: how many rules and conditions may be open at the same time in one search.
+        running: the agent has its turn: whoever gave it finds out at its end whether there is more to do.
         stopped: the agent is over.
         accepts: asked whether a message is acceptable; None accepts all.
         face: what the project's Python code sees of the agent; made when it is first asked for.
@@ -124,6 +125,7 @@ class Circumstance:
         self.blamed: set[Any] = set()
         self.goal_depth = options.goal_depth
         self.rule_depth = options.rule_depth
+        self.running = False
         self.stopped = False
         self.accepts: Callable[[SpeechAct], bool] | None = None
         self.face: Any = None
@@ -147,7 +149,8 @@ class Circumstance:
             intention.parked = True
         else:
             self.intentions.append(intention)
-        self.architecture.ready()
+        if not self.running:
+            self.architecture.ready()
 
     def finish(self, intention: Intention) -> None:
         """An intention is over; what it waits for is cancelled."""

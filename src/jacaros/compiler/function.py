@@ -68,6 +68,7 @@ class Frame:
         slots: index in the frame by variable name.
         states: ``set`` (has a value, perhaps a `Var`) or ``maybe`` (None when it was bound on another branch);
             names that are missing have no value yet.
+        asked: variables that went into a call without a value, to have one afterwards: their slots hold a `Var`.
         counts: how often each variable is mentioned in the plan: a value that nobody reads is not kept.
     """
 
@@ -75,6 +76,7 @@ class Frame:
         self.slots: dict[str, int] = {}
         self.extra = 0
         self.states: dict[str, str] = {}
+        self.asked: set[str] = set()
         self.counts = counts
 
     def slot(self, name: str) -> int:
@@ -101,6 +103,7 @@ class FunctionBuilder:
 
     Attributes:
         values: Python expression (a local name) of each variable that has a value here.
+        asked: variables that were given a `Var` in this function.
         fresh: variables that got their value in this function, in order.
         trampoline: the function is a generator that yields generators to have them run (see `conditions`).
         snapshot: answers are taken while beliefs may change in between, so tables are copied first.
@@ -112,6 +115,7 @@ class FunctionBuilder:
         self.writer = Writer()
         self.values: dict[str, str] = {}
         self.fresh: list[str] = []
+        self.asked: set[str] = set()
         self.trampoline = trampoline
         self.snapshot = snapshot
         self.quiet = True
@@ -141,6 +145,8 @@ class FunctionBuilder:
         self.values[name] = target
         if name not in self.fresh:
             self.fresh.append(name)
+        if expression is not None and expression.startswith("Var("):
+            self.asked.add(name)
         return target
 
     @contextmanager
@@ -161,6 +167,10 @@ class FunctionBuilder:
             if state == "maybe":
                 self.line(f'if v_{name} is None: v_{name} = frame[{slot}] = Var("{name}")')
                 frame.states[name] = "set"
+            elif name in frame.asked:
+                self.line(
+                    f"if v_{name}.__class__ is Var and v_{name}.ref is not None: v_{name} = deref(v_{name})"
+                )
             self.values[name] = f"v_{name}"
 
     def store(self, frame: Frame) -> None:
@@ -168,6 +178,7 @@ class FunctionBuilder:
         for name in self.fresh:
             if frame.counts.get(name, 0) > 1:
                 self.line(f"frame[{frame.slot(name)}] = {self.values[name]}")
+        frame.asked |= self.asked
 
     def mark_stored(self, frame: Frame) -> None:
         """Take note that the fresh variables have a value from now on."""

@@ -25,6 +25,19 @@ class Trigger:
         return f"{self.operator}{self.kind}{self.functor!r}"
 
 
+class BeliefChanges(dict[Functor, Trigger]):
+    """The triggers of additions (``+``) or deletions (``-``) of beliefs, by functor."""
+
+    def __init__(self, operator: str) -> None:
+        super().__init__()
+        self._operator = operator
+
+    def __missing__(self, functor: Functor) -> Trigger:
+        found = self[functor] = trigger(self._operator, "", functor)
+        return found
+
+
+ADDED, DELETED = BeliefChanges("+"), BeliefChanges("-")
 _triggers: dict[tuple[str, str, Functor], Trigger] = {}
 
 
@@ -35,13 +48,3 @@ def trigger(operator: str, kind: str, functor: Functor) -> Trigger:
     if found is None:
         found = _triggers[key] = Trigger(operator, kind, functor)
     return found
-
-
-class _BeliefChanges(dict[Functor, tuple[Trigger, Trigger]]):
-    def __missing__(self, functor: Functor) -> tuple[Trigger, Trigger]:
-        found = self[functor] = trigger("+", "", functor), trigger("-", "", functor)
-        return found
-
-
-belief_changes: dict[Functor, tuple[Trigger, Trigger]] = _BeliefChanges()
-"""By functor, the triggers of the coming and going of its beliefs."""

@@ -47,6 +47,7 @@ class CodeUnit:
 
     def add(self, writer: Writer) -> None:
         """Make a finished function part of the unit."""
+        writer.prune()
         self._writers.append(writer)
         self.source.append(writer.text())
 

@@ -1,9 +1,14 @@
 """Python source being written: indentation, fresh names, and the AgentSpeak line behind each line."""
 
 import ast
+import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from types import CodeType
+
+_READ = re.compile(r" +(v\d+) = deref\(\w+\)")
+_SETTLED = re.compile(r"\bv\d+\b")
 
 
 class Writer:
@@ -45,6 +50,17 @@ class Writer:
             self.line("pass")
         self.loops -= loop
         self.depth -= 1
+
+    def prune(self) -> None:
+        """Take out the values of variables that are read and then used by nobody."""
+        names = Counter(name for line in self.lines for name in _SETTLED.findall(line))
+        kept = [
+            index
+            for index, line in enumerate(self.lines)
+            if (read := _READ.fullmatch(line)) is None or names[read[1]] > 1
+        ]
+        self.lines = [self.lines[i] for i in kept]
+        self.origins = [self.origins[i] for i in kept]
 
     def text(self) -> str:
         """The source."""
