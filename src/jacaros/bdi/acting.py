@@ -1,13 +1,16 @@
-"""The third part of a reasoning cycle: an intention makes a step, and goes on as long as nothing else wants a cycle."""
+"""The third part of a reasoning cycle: an intention makes a step, and goes on as long as nothing else wants a cycle.
+
+`execute` does what there is to do in general, `execute_plainly` what there is to do for nearly all agents nearly always.
+"""
 
 from typing import Any
 
 from jacaros.bdi import failure, meta_events
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.deliberation import add_frame, go_without, push
+from jacaros.bdi.deliberation import go_without, is_alone, push
 from jacaros.bdi.event import Posted
 from jacaros.bdi.finishing import pop_finished
-from jacaros.bdi.goal_failure import fail_intention
+from jacaros.bdi.goal_failure import fail_intention, has_room
 from jacaros.bdi.intention import Frame, Intention
 from jacaros.bdi.internal_action import Crashed
 from jacaros.bdi.waiting import OWN_SUSPENSION
@@ -17,24 +20,83 @@ from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF
 
 
-def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - written out for speed
-    """Rules ExecInt and ClrInt: steps of one intention while nothing else wants a cycle; gives the fuel left.
+def is_plain(agent: Circumstance) -> bool:
+    """Whether `execute_plainly` does all that there is to do."""
+    return not (agent.special or agent.event_waits or agent.option_filter.rows or agent.atomic is not None)
 
-    What happens in nearly every cycle is written out here; whatever is rarer is called: `pop_finished`, `push`,
-    `add_frame`, `go_without` do the same in full.
+
+def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
+    """Rules ExecInt and ClrInt: steps of one intention while nothing else wants a cycle; gives the fuel left."""
+    agent.current = intention
+    while True:
+        fuel -= 1
+        if agent.atomic_over:
+            agent.atomic, agent.atomic_over = None, False
+        frame: Frame = intention.frames[-1]
+        goal = None if frame[0] is None else _step(agent, intention, frame)
+        if agent.stopped or intention.dropped:
+            break
+        if goal is None:
+            if frame[0] is None and not pop_finished(agent, intention):
+                break
+            if fuel <= 0 or intention.suspended is not None or not is_alone(agent) or _is_called(agent):
+                agent.make_ready(intention)
+                break
+        elif goal is SUSPENDED:
+            if agent.meta:
+                _tell_waiting(agent, intention)
+            break
+        elif not _pursue(agent, intention, goal, fuel):
+            break
+    agent.current = None
+    return fuel
+
+
+def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
+    """Make the next step of a plan; what it gives, or the event for its failure.  An intention that nobody saves ends."""
+    goal: Any = None
+    try:
+        goal = frame[0](agent, frame)
+    except InternalError:
+        raise
+    except Exception as fault:
+        goal = _failed(agent, intention, fault)
+    agent.trail.clear()
+    return goal
+
+
+def _pursue(agent: Circumstance, intention: Intention, goal: Any, fuel: int) -> bool:
+    """A step has posted a goal or event; True when the intention goes on with it at once."""
+    annotations: Any = BY_SELF
+    if goal.__class__ is Posted:
+        goal, annotations = goal
+    _announce(agent, intention, goal, annotations)
+    if fuel > 0 and intention.suspended is None and is_alone(agent):
+        return push(agent, intention, goal, annotations)
+    if agent.atomic is not intention:
+        agent.events.append((goal, intention, annotations, None))
+    elif push(agent, intention, goal, annotations):
+        agent.make_ready(intention)
+    return False
+
+
+def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - see below
+    """What `execute` does, for an agent that is plain (`is_plain`).
+
+    This is where an agent spends its time, so what happens in nearly every cycle is written out here: `pop_finished`,
+    `is_alone`, `select_plan` and `add_frame`.  A step may make the agent other than plain; then it is left to the next
+    cycle to go on, which with empty queues comes to the same.
     """
     agent.current = intention
     frames, trail, selects = intention.frames, agent.trail, agent.selects
     events, intentions, inbox = agent.events, agent.intentions, agent.inbox
     percepts, tasks, waits = agent.percepts, agent.tasks, agent.condition_waits
-    filters, depth = agent.option_filter.rows, agent.goal_depth
+    filters, depth, tail_calls = agent.option_filter.rows, agent.goal_depth, agent.options.tail_calls
+    frame: Frame = frames[-1]
     while True:
         fuel -= 1
-        if agent.atomic_over:
-            agent.atomic, agent.atomic_over = None, False
-        frame = frames[-1]
-        step = frame[0]
         goal: Any = None
+        step = frame[0]
         if step is not None:
             try:
                 goal = step(agent, frame)
@@ -51,7 +113,7 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
 
         if goal is None:
             if frame[0] is None:
-                if agent.meta or agent.goal_conditions or agent.atomic is not None or intention.handlers:
+                if intention.handlers or agent.special:
                     if not pop_finished(agent, intention):
                         break
                 else:
@@ -68,11 +130,15 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
                 or percepts
                 or tasks
                 or waits
-                or agent.goal_conditions
+                or agent.special
                 or intention.suspended is not None
-            ) and not _stays(agent, intention, fuel, at_goal=False):
-                agent.make_ready(intention)
+            ):
+                if intention.suspended is None:
+                    intentions.append(intention)
+                else:
+                    intention.parked = True
                 break
+            frame = frames[-1]
             continue
 
         if goal is SUSPENDED:
@@ -82,8 +148,6 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
         annotations: Any = BY_SELF
         if goal.__class__ is Posted:
             goal, annotations = goal
-        if agent.meta or agent.event_waits:
-            _announce(agent, intention, goal, annotations)
         if (
             fuel <= 0
             or intentions
@@ -92,20 +156,13 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
             or percepts
             or tasks
             or waits
-            or agent.goal_conditions
+            or agent.special
+            or filters
             or intention.suspended is not None
-        ) and not _stays(agent, intention, fuel, at_goal=True):
-            if agent.atomic is not intention:
-                events.append((goal, intention, annotations, None))
-            elif push(agent, intention, goal, annotations):
-                agent.make_ready(intention)
+        ):
+            _announce(agent, intention, goal, annotations)
+            events.append((goal, intention, annotations, None))
             break
-        if filters or agent.subplans:
-            if push(agent, intention, goal, annotations):
-                continue
-            break
-
-        # `push` and `add_frame`, written out.
         trail.serial += 1
         kind = goal[0]
         select = selects[kind]
@@ -113,38 +170,36 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
         if trail:
             trail.clear()
         if made is None:
-            if go_without(agent, intention, goal, annotations, None):
-                continue
-            break
-        if agent.meta or made[4].atomic or agent.atomic is not None:
-            if add_frame(agent, intention, made) or go_without(agent, intention, goal, annotations, made):
-                continue
-            break
-        caller = frames[-1]
-        if (
-            caller[0] is None
-            and caller[1][0] is kind
+            if not go_without(agent, intention, goal, annotations, None):
+                break
+            made = frames[-1]
+        elif (
+            frame[0] is None
+            and frames[-1] is frame
+            and frame[1][0] is kind
             and kind.on_fail is not None
-            and agent.options.tail_calls
-            and caller[4].replaceable
+            and tail_calls
+            and frame[4].replaceable
         ):
             frames[-1] = made
         else:
             frames.append(made)
-            if len(frames) > depth:
-                frames.pop()
-                if add_frame(agent, intention, made) or go_without(agent, intention, goal, annotations, made):
-                    continue
-                break
+            if len(frames) > depth and not has_room(agent, intention):
+                if not go_without(agent, intention, goal, annotations, made):
+                    break
+                made = frames[-1]
+        frame = made
+        if frame[4].atomic:
+            agent.atomic, agent.atomic_over = intention, False
+            agent.make_ready(intention)
+            break
     agent.current = None
     return fuel
 
 
-def _stays(agent: Circumstance, intention: Intention, fuel: int, *, at_goal: bool) -> bool:
-    """Whether an intention goes on although there is more to do: an atomic one does."""
-    if agent.atomic is None or fuel <= 0 or agent.goal_conditions or intention.suspended is not None:
-        return False
-    return at_goal or not (agent.inbox or agent.tasks or agent.percepts)
+def _is_called(agent: Circumstance) -> bool:
+    """Whether an atomic intention, for which nothing else has its turn, lets what has come in be looked at."""
+    return agent.atomic is not None and bool(agent.inbox or agent.tasks or agent.percepts)
 
 
 def _failed(agent: Circumstance, intention: Intention, fault: Exception) -> Any:

@@ -54,6 +54,7 @@ class Circumstance:
         bodies: compiled forms of plan bodies held by variables.
         goal_conditions: whether plans have goal conditions, which are tested in every cycle.
         subplans: whether plans have plans of their own.
+        special: whether any of `meta`, `goal_conditions` and `subplans` is true.
         outer_frame: frame of the plan whose sub-plans are being tried.
         context: the view of itself that it gives to internal actions.
         namespace_properties: properties that programs give to namespaces.
@@ -115,6 +116,7 @@ class Circumstance:
         self.probe: Probe | None = None
         self.goal_conditions = False
         self.subplans = False
+        self.special = False
         self.outer_frame: Any = None
         self.namespace_properties: dict[str, dict[Term, Term]] = {}
         self.functions: dict[str, Any] = {}

@@ -6,7 +6,7 @@ nothing a program can see.
 """
 
 from jacaros.bdi import edge_signals, rescue
-from jacaros.bdi.acting import execute
+from jacaros.bdi.acting import execute, execute_plainly, is_plain
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.deliberation import handle_atomic_event, handle_event
 from jacaros.bdi.event import EVENT_INTENTION
@@ -40,7 +40,7 @@ def run(agent: Circumstance, fuel: int) -> bool:
         intention = _select_intention(agent) if intentions else None
         if intention is not None:
             try:
-                fuel = execute(agent, intention, fuel)
+                fuel = (execute_plainly if is_plain(agent) else execute)(agent, intention, fuel)
             except InternalError:
                 raise
             except Exception as fault:

@@ -13,10 +13,20 @@ from jacaros.errors import InternalError
 
 def handle_event(agent: Circumstance) -> None:
     """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
-    while agent.events:
-        event = agent.events.popleft()
+    events = agent.events
+    while events:
+        event = events.popleft()
+        goal, intention, annotations, _ = event
         try:
-            if _take_up(agent, event):
+            if intention is None:
+                if _external(agent, event):
+                    return
+            elif not intention.dropped:
+                if push(agent, intention, goal, annotations):
+                    if intention.suspended is None:
+                        agent.intentions.append(intention)
+                    else:
+                        intention.parked = True
                 return
         except InternalError:
             raise
@@ -29,8 +39,10 @@ def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
     event = next((e for e in agent.events if e[EVENT_INTENTION] is intention), None)
     if event is not None:
         remove_event(agent, event)
+        goal, _, annotations, _ = event
         try:
-            _take_up(agent, event)
+            if push(agent, intention, goal, annotations):
+                agent.make_ready(intention)
         except InternalError:
             raise
         except Exception as fault:
@@ -42,18 +54,6 @@ def _pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
     intention = event[EVENT_INTENTION]
     if intention is not None:
         rescue.give_up(agent, intention, fault)
-
-
-def _take_up(agent: Circumstance, event: Event) -> bool:
-    """Handle one event; False when it is passed over and the next one may have its turn in the same cycle."""
-    goal, intention, annotations, _ = event
-    if intention is None:
-        return _external(agent, event)
-    if intention.dropped:
-        return False
-    if push(agent, intention, goal, annotations):
-        agent.make_ready(intention)
-    return True
 
 
 def _external(agent: Circumstance, event: Event) -> bool:
@@ -120,7 +120,15 @@ def select_plan(
 
 def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> bool:
     """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
-    frame = select_plan(agent, goal, annotations, intention)
+    if agent.special or agent.option_filter.rows:
+        frame = select_plan(agent, goal, annotations, intention)
+    else:  # `select_plan`, written out
+        trail = agent.trail
+        trail.serial += 1
+        select = agent.selects[goal[0]]
+        frame = None if select is None else select(agent, goal, annotations)
+        if trail:
+            trail.clear()
     if frame is not None and add_frame(agent, intention, frame):
         return True
     return go_without(agent, intention, goal, annotations, frame)

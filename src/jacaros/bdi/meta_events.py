@@ -61,4 +61,4 @@ def observe_goals(agent: Circumstance, observer: Callable[[str, str, int], None]
     """Have an observer told of every change of a goal: its state (``executing``, ``achieved``, ``failed``,
     ``suspended``, ``resumed``, ``dropped`` …), the goal as text, and a number that is the same for all news of one goal."""
     agent.goal_observer = observer
-    agent.meta = True
+    agent.meta = agent.special = True

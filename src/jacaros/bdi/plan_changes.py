@@ -41,6 +41,7 @@ def look_at_plans(agent: Circumstance) -> None:
     agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
     agent.subplans = agent.subplans or agent.library.has_subplans()
     agent.goal_conditions = agent.goal_conditions or agent.library.has_goal_conditions()
+    agent.special = agent.meta or agent.subplans or agent.goal_conditions
 
 
 def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:

@@ -134,5 +134,5 @@ def _ground(term: Term) -> Term:
         return term
     unbound = free_variables(term)
     for variable in unbound:
-        variable.ref = _NULL
+        variable.ref, variable.at = _NULL, 0
     return resolve(term) if unbound else term

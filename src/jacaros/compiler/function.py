@@ -168,9 +168,8 @@ class FunctionBuilder:
                 self.line(f'if v_{name} is None: v_{name} = frame[{slot}] = Var("{name}")')
                 frame.states[name] = "set"
             elif name in frame.asked:
-                self.line(
-                    f"if v_{name}.__class__ is Var and v_{name}.ref is not None: v_{name} = deref(v_{name})"
-                )
+                value = f"v_{name}.ref if v_{name}.ref.__class__ is float else deref(v_{name})"
+                self.line(f"if v_{name}.__class__ is Var and v_{name}.ref is not None: v_{name} = {value}")
             self.values[name] = f"v_{name}"
 
     def store(self, frame: Frame) -> None:

@@ -88,7 +88,7 @@ class Var:
 
     Attributes:
         ref: its value, or None while it has none.
-        at: number of the goal posting after which it was bound (see `Trail.serial`).
+        at: number of the goal posting after which it was bound (see `Trail.serial`); unset before.
         name: for people; names of unnamed variables begin with ``_``.
         number: place among the variables of that name in the standard order; unset until it is asked for.
     """
@@ -96,10 +96,10 @@ class Var:
     __slots__ = ("at", "name", "number", "ref")
 
     number: int
+    at: int
 
     def __init__(self, name: str = "_") -> None:
         self.ref: Term = None
-        self.at = 0
         self.name = name
 
     def __repr__(self) -> str:
