@@ -88,6 +88,8 @@ class Agent(Circumstance):
         self.program = program
         self.context = Context(self)
         self._acts = 0
+        self._beginning = 0
+        self._ended_at_once: Completion | None = None
         self.messages = 0
         self._namespaces = 0
         self._call_own = partial(functions.call_own, self)
@@ -218,20 +220,28 @@ class Agent(Circumstance):
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """An external action ended; an id that is not pending (any more) is ignored."""
+        if act_id == self._beginning:
+            self._beginning, self._ended_at_once = 0, completion
+            return
         waiting = self.pending_acts.pop(act_id, None)
         if waiting is None:
             return
         if not completion.success:
             waiting.fail("the action failed", (ERROR, atom("action_failed")), *completion.annotations)
-            return
+        elif self._take_outputs(completion):
+            waiting.resume()
+        else:
+            waiting.fail("", *error_terms("action_failed", "an output of the action does not fit"))
+
+    def _take_outputs(self, completion: Completion) -> bool:
+        """Bind the output variables of an act; False when one has another value already."""
         mark = len(self.trail)
         for variable, value in completion.outputs:
             if not unify(variable, value, self.trail):
                 undo(self.trail, mark)
-                waiting.fail("", *error_terms("action_failed", "an output of the action does not fit"))
-                return
+                return False
         del self.trail[mark:]
-        waiting.resume()
+        return True
 
     def shut_down_in(self, milliseconds: float) -> None:
         """The agent will be ended after so many milliseconds; its plans may prepare for it."""
@@ -369,19 +379,34 @@ class Agent(Circumstance):
     def begin_act(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: Any
     ) -> Any:
-        """Begin an external action; the intention waits for its completion."""
+        """Begin an external action; the intention waits for its completion, if it has not ended already."""
         intention = self.current
         assert intention is not None
         self._acts += 1
-        number = self._acts
+        number = self._beginning = self._acts
         why = cause("act", symbol.name, intention.cause) if intention.cause is not None else None
+        try:
+            self.architecture.act(Act(number, symbol, arguments, annotations, intention.id, why))
+        finally:
+            self._beginning = 0
+            completion, self._ended_at_once = self._ended_at_once, None
+        if (
+            completion is not None
+            and completion.success
+            and not self.meta
+            and (not completion.outputs or self._take_outputs(completion))
+        ):
+            # It would be made ready in the next cycle before all others: it may as well be ready now.
+            intention.frames[-1][0] = next_step
+            return None
         waiting = Waiting(self, intention, (ACTION, (symbol, *arguments) if arguments else symbol))
         waiting.attach(intention.frames[-1], next_step)
         waiting.on_drop = lambda: self._cancel_act(number)
         waiting.on_suspend = lambda: self.architecture.suspend_act(number)
         waiting.on_resume = lambda: self.architecture.resume_act(number)
         self.pending_acts[number] = waiting
-        self.architecture.act(Act(number, symbol, arguments, annotations, intention.id, why))
+        if completion is not None:
+            self.complete(number, completion)
         return SUSPENDED
 
     def _cancel_act(self, number: int) -> None:

@@ -1,13 +1,13 @@
 """The body of one agent: carries out its actions, and perceives what it focuses."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.body.actions import ACTIONS, Handle, Situation, keys
 from jacaros.body.call import Call, read
-from jacaros.body.completion import of_operation, refused, succeeded
+from jacaros.body.completion import SUCCEEDED, of_operation, refused, succeeded
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.selection import Selection
@@ -42,13 +42,6 @@ class Activity(Protocol):
 
     def end(self) -> None:
         """An action has ended or was given up."""
-
-
-@dataclass(slots=True)
-class Pending:
-    """An act under way; without a handle while the call that begins it has not returned."""
-
-    handle: Handle | None = None
 
 
 class AgentBody:
@@ -86,7 +79,8 @@ class AgentBody:
         self._writer = writer
         self._show = show
         self._activity = activity
-        self._pending: dict[int, Pending] = {}
+        # Acts under way; without a handle while the call that begins them has not returned.
+        self._pending: dict[int, Handle | None] = {}
         self._entered = self._closed = False
         self._whereabouts = Whereabouts(environment, home)
         focused = FocusedArtifacts(agent, writer, references, self._notice)
@@ -137,36 +131,38 @@ class AgentBody:
 
     def act(self, act: Act) -> None:
         """Begin an action; the mind is told its end, which may be before this returns."""
-        self.enter()
-        pending = self._pending[act.id] = Pending()
+        if not self._entered:
+            self.enter()
+        self._pending[act.id] = None
         self._activity.begin()
         try:
             handle = self._begin(read(act))
         except OperationFailed as failure:
             self._finish(act.id, refused(failure, self._references))
             return
-        pending.handle = handle
+        if act.id in self._pending:
+            self._pending[act.id] = handle
 
     def cancel_act(self, act_id: int) -> None:
         """Give an action up: its operation is cancelled, its end is not told."""
-        pending = self._pending.pop(act_id, None)
-        if pending is None:
+        if act_id not in self._pending:
             return
+        handle = self._pending.pop(act_id)
         self._activity.end()
-        if pending.handle is not None:
-            pending.handle.cancel()
+        if handle is not None:
+            handle.cancel()
 
     def suspend_act(self, act_id: int) -> None:
         """Pause the operation of an action, if it can be paused."""
-        pending = self._pending.get(act_id)
-        if pending is not None and pending.handle is not None:
-            pending.handle.pause()
+        handle = self._pending.get(act_id)
+        if handle is not None:
+            handle.pause()
 
     def resume_act(self, act_id: int) -> None:
         """Let the operation of an action go on."""
-        pending = self._pending.get(act_id)
-        if pending is not None and pending.handle is not None:
-            pending.handle.resume()
+        handle = self._pending.get(act_id)
+        if handle is not None:
+            handle.resume()
 
     def close(self) -> None:
         """Give all actions and focused artifacts up; the mind is told nothing more."""
@@ -180,9 +176,9 @@ class AgentBody:
         if call.direction.artifact is None:
             action = ACTIONS.get((call.name, len(call.arguments)))
             if action is not None:
-                return action(self._situation, call, lambda completion: self._finish(call.act.id, completion))
+                return action(self._situation, call, partial(self._finish, call.act.id))
         artifact = self._selection.artifact_for(call)
-        if artifact.name == _CONSOLE and artifact.creator is None and _prints(call):
+        if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
             # Printed here and not by the console artifact: it would see values where people want terms.
             self._show("".join(map(display, call.arguments)))
             self._finish(call.act.id, succeeded())
@@ -190,17 +186,24 @@ class AgentBody:
         return self._execute(call, artifact)
 
     def _execute(self, call: Call, artifact: ArtifactId) -> Handle:
+        act = call.act
         outputs: Outputs = []
-        arguments = tuple([to_value(argument, outputs) for argument in call.arguments])
-
-        def done(outcome: OperationOutcome) -> None:
-            self._finish(call.act.id, of_operation(outcome, outputs, self._references))
-
-        request = OperationRequest(artifact, call.name, arguments, self._agent, call.act.cause, done)
+        arguments = []
+        for argument in call.arguments:
+            arguments.append(to_value(argument, outputs))
+        done = partial(self._done, act.id, outputs)
+        request = OperationRequest(artifact, call.name, tuple(arguments), self._agent, act.cause, done)
         return self._environment.execute(request)
 
+    def _done(self, act_id: int, outputs: Outputs, outcome: OperationOutcome) -> None:
+        if outcome.ok and not outputs:
+            self._finish(act_id, SUCCEEDED)
+        else:
+            self._finish(act_id, of_operation(outcome, outputs, self._references))
+
     def _finish(self, act_id: int, completion: Completion) -> None:
-        if self._pending.pop(act_id, None) is not None:
+        if act_id in self._pending:
+            del self._pending[act_id]
             self._activity.end()
             self._mind.complete(act_id, completion)
 

@@ -9,7 +9,7 @@ from jacaros.env.ids import ArtifactId
 from jacaros.env.values import Atom, Structure
 from jacaros.env.workspace import Workspace
 from jacaros.terms.text import text
-from jacaros.terms.values import Functor, Reference, String, Term, bare, deref
+from jacaros.terms.values import Functor, Reference, String, Term, Var, bare, deref
 
 _BY_ARTIFACT = {"artifact_id": "artifact", "aid": "artifact", "artifact_name": "artifact", "art": "artifact"}
 _BY_WORKSPACE = {"wid": "workspace", "wsp": "workspace"}
@@ -27,6 +27,10 @@ class Direction:
 
     artifact: ArtifactId | str | None = None
     workspace: Workspace | str | None = None
+
+
+ANYWHERE = Direction()
+"""The direction of actions whose annotations say nothing; not to be changed."""
 
 
 @dataclass(slots=True)
@@ -59,10 +63,13 @@ def read(act: Act) -> Call:
     Raises:
         OperationFailed: an annotation cannot be obeyed.
     """
-    symbol = act.functor
-    name = symbol.name[1:-1] if symbol.name[:1] == "'" else symbol.name
-    direction = _direction(act) if act.annotations else Direction()
-    return Call(act, name, symbol.namespace, tuple(map(deref, act.arguments)), direction)
+    symbol, arguments = act.functor, act.arguments
+    name = symbol.name[1:-1] if symbol.name[0] == "'" else symbol.name
+    for argument in arguments:
+        if argument.__class__ is Var:
+            arguments = tuple(map(deref, arguments))
+            break
+    return Call(act, name, symbol.namespace, arguments, _direction(act) if act.annotations else ANYWHERE)
 
 
 def _direction(act: Act) -> Direction:

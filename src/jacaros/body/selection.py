@@ -11,7 +11,7 @@ import difflib
 from collections.abc import Iterable, Sequence
 
 from jacaros.bdi.internal_action import STANDARD
-from jacaros.body.call import Call
+from jacaros.body.call import ANYWHERE, Call
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.whereabouts import Whereabouts, not_joined
 from jacaros.env.errors import OperationFailed, UnknownArtifact
@@ -46,6 +46,11 @@ class Selection:
         """
         intention = call.act.intention
         direction = call.direction
+        if direction is ANYWHERE and call.namespace is None:
+            # Nearly always it is the only one of the current workspace.
+            candidates = self._whereabouts.current(intention).providers(call.name, len(call.arguments))
+            if len(candidates) == 1:
+                return candidates[0]
         places = self._places(direction.workspace, intention)
         if direction.artifact is not None:
             return self.artifact(direction.artifact, places)

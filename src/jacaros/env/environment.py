@@ -11,7 +11,7 @@ from jacaros.env.errors import OperationFailed, UnknownArtifactType, UnknownWork
 from jacaros.env.execution import OperationExecution
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
-from jacaros.env.operation import OperationRequest
+from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
 from jacaros.trace import Tracer
@@ -116,7 +116,10 @@ class Environment:
 
     def execute(self, request: OperationRequest) -> OperationExecution:
         """Run an operation for an agent, wherever the artifact lives; see `Workspace.execute`."""
-        return self._workspaces["/main"].execute(request)
+        steps = self._registry.find(request.artifact)
+        if steps is None:
+            return self._workspaces["/main"].execute(request)
+        return steps.execute(request, OPERATION)
 
     async def close(self) -> None:
         """Dispose every artifact, the workspaces made last first."""
