@@ -47,19 +47,17 @@ class PropertyStore:
     """The properties of one artifact, and a journal of the step in progress.
 
     Several properties may have one name, even with equal values; "the first" is the oldest.
+
+    Attributes:
+        changing: how the properties were that the step in progress has touched, by key; empty when there are none.
     """
 
-    __slots__ = ("_before", "_by_name", "_last_key")
+    __slots__ = ("_by_name", "_last_key", "changing")
 
     def __init__(self) -> None:
         self._by_name: dict[str, dict[int, ObservableProperty]] = {}
-        self._before: dict[int, tuple[str, ObservableProperty | None]] = {}
+        self.changing: dict[int, tuple[str, ObservableProperty | None]] = {}
         self._last_key = 0
-
-    @property
-    def changing(self) -> bool:
-        """True when the step in progress has touched a property."""
-        return bool(self._before)
 
     def define(self, name: str, values: tuple[object, ...], annotations: tuple[object, ...] | None) -> None:
         """Add a property.
@@ -69,7 +67,7 @@ class PropertyStore:
         """
         check_name(name)
         self._last_key = key = self._last_key + 1
-        self._before[key] = (name, None)
+        self.changing[key] = (name, None)
         new = ObservableProperty(name, _plain(values), plain_annotations(annotations or ()), key)
         self._by_name.setdefault(name, {})[key] = new
 
@@ -84,8 +82,8 @@ class PropertyStore:
             raise self._unknown(name)
         old = next(iter(properties.values()))
         key = old.key
-        if key not in self._before:
-            self._before[key] = (name, old)
+        if key not in self.changing:
+            self.changing[key] = (name, old)
         kept = old.annotations if annotations is None else plain_annotations(annotations)
         properties[key] = ObservableProperty(name, _plain(values), kept, key)
 
@@ -96,7 +94,7 @@ class PropertyStore:
             UnknownProperty: there is none.
         """
         old = self.first(name, template)
-        self._before.setdefault(old.key, (name, old))
+        self.changing.setdefault(old.key, (name, old))
         del self._by_name[name][old.key]
 
     def first(self, name: str, template: tuple[object, ...] = ()) -> ObservableProperty:
@@ -126,7 +124,7 @@ class PropertyStore:
     def committed(self) -> tuple[ObservableProperty, ...]:
         """The properties as observers know them, in the order of their definition."""
         known = {p.key: p for properties in self._by_name.values() for p in properties.values()}
-        for key, (_, before) in self._before.items():
+        for key, (_, before) in self.changing.items():
             if before is None:
                 known.pop(key, None)
             else:
@@ -135,12 +133,12 @@ class PropertyStore:
 
     def commit(self) -> PropertyChanges:
         """End the step: forget how it was before and tell what is different now."""
-        if not self._before:
+        if not self.changing:
             return NO_CHANGES
         changed: list[Change] = []
         added: list[ObservableProperty] = []
         removed: list[ObservableProperty] = []
-        for key, (name, before) in self._before.items():
+        for key, (name, before) in self.changing.items():
             now = self._by_name[name].get(key)
             if before is None:
                 if now is not None:
@@ -149,12 +147,12 @@ class PropertyStore:
                 removed.append(before)
             else:
                 changed.append((before, now))
-        self._before.clear()
+        self.changing.clear()
         return PropertyChanges(tuple(changed), tuple(added), tuple(removed))
 
     def roll_back(self) -> None:
         """Undo the step: additions, updates and removals alike."""
-        for key, (name, before) in self._before.items():
+        for key, (name, before) in self.changing.items():
             properties = self._by_name[name]
             if before is None:
                 properties.pop(key, None)
@@ -163,7 +161,7 @@ class PropertyStore:
             else:
                 properties[key] = before
                 self._by_name[name] = {each: properties[each] for each in sorted(properties)}
-        self._before.clear()
+        self.changing.clear()
 
 
 def check_name(name: str) -> None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import ClassVar
 
 from jacaros.artifacts.ros.options import positive, text
@@ -66,9 +67,14 @@ class ArtScan(ArtBaseScan):
 
 def sampled(ranges: Sequence[float], longest: float) -> tuple[float, ...]:
     """Five ranges, evenly spread over the scan; what is no range becomes *longest*."""
-    last = len(ranges) - 1
-    return tuple(_echo(float(ranges[round(share * last)]), longest) for share in SHARES)
+    return tuple([_echo(float(ranges[place]), longest) for place in _places(len(ranges))])
+
+
+@lru_cache(16)
+def _places(beams: int) -> tuple[int, ...]:
+    """Which beams of so many are sampled; the others are never touched."""
+    return tuple(round(share * (beams - 1)) for share in SHARES)
 
 
 def _echo(distance: float, longest: float) -> float:
-    return distance if math.isfinite(distance) and distance < longest else longest
+    return distance if -math.inf < distance < longest else longest

@@ -50,6 +50,8 @@ class ReadingPolicy:
 
     def differ(self, old: Values, new: Values) -> bool:
         """Whether *new* is worth passing after *old*."""
+        if old == new:
+            return False
         return len(old) != len(new) or any(
             self._field_differs(index, a, b) for index, (a, b) in enumerate(zip(old, new, strict=True))
         )

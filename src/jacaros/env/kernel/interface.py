@@ -105,6 +105,9 @@ class Interface:
             found = self.internals.find(operation, arity)
             return found if found is not None else self.operations.find(operation, arity)
         function = getattr(operation, "__func__", operation)
+        usual = self.internals.find(getattr(function, "__name__", ""), arity)
+        if usual is not None and usual.function is function:
+            return usual
         for declared in chain(self.internals, self.operations):
             if declared.function is function and declared.signature.takes(arity):
                 return declared

@@ -87,7 +87,7 @@ class Steps:
         if self.setting.tracer is not None:
             cause = self.setting.trace("operation", f"{self.id.path} {outcomes.key(request)}", cause)
         execution = OperationExecution(self, request, declared, arguments, cause)
-        self.turns.enter(execution, self._guard(execution))
+        self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
         return execution
 
     def refuse(self, request: OperationRequest, outcome: OperationOutcome) -> OperationExecution:
@@ -135,12 +135,12 @@ class Steps:
         execution.begun = not declared.coroutine
         if error is not None:
             self._end(execution, error)
-        elif declared.coroutine:
+        elif not declared.coroutine:
+            self._run(execution, declared)
+        else:
             name = f"{self.id.path} {outcomes.key(execution.request)}"
             execution.task = asyncio.get_running_loop().create_task(self._drive(execution), name=name)
             self._running[execution] = None
-        else:
-            self._run(execution, declared)
 
     def _run(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
         try:
@@ -192,7 +192,8 @@ class Steps:
     def _end(self, execution: OperationExecution, error: BaseException | None) -> None:
         """End the operation, and with it its last step."""
         if error is None:
-            self.commit()
+            if self.publication.properties.changing or self._started or self._delayed:
+                self.commit()
             outcome = SUCCEEDED
         else:
             self._roll_back()
