@@ -6,6 +6,7 @@ own code after ``.stopMAS``; 130 and 143 when a signal (Ctrl-C, SIGTERM) ended t
 
 import os
 import sys
+import threading
 import traceback
 from importlib import import_module
 
@@ -15,6 +16,9 @@ from jacaros.errors import JacarosError, UsageError
 
 OUTPUT_GONE = 141
 """Whoever read the output has gone, as in ``| head``: 128 and the number of SIGPIPE."""
+
+ENDED_BY_SIGNAL = (130, 143)
+"""Exit codes of a run that Ctrl-C or SIGTERM ended."""
 
 COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
@@ -64,10 +68,22 @@ def jacaros() -> None:
 def main(arguments: list[str] | None = None) -> None:
     """The entry point of the ``jacaros`` command; ends the process."""
     code = call(arguments)
+    if code in ENDED_BY_SIGNAL and _threads_go_on():
+        # Python would wait for them; Ctrl-C is not to be waited for.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
     if code == OUTPUT_GONE:
         # Otherwise the interpreter complains when it flushes the output at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(code)
+
+
+def _threads_go_on() -> bool:
+    """Whether a thread of the project's own would keep the process from ending."""
+    return any(
+        thread is not threading.main_thread() and not thread.daemon for thread in threading.enumerate()
+    )
 
 
 def call(arguments: list[str] | None = None) -> int:

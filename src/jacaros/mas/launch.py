@@ -2,22 +2,20 @@
 
 import asyncio
 import gc
-import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
-from jacaros.clock import Clock, VirtualClock, WallClock, run
+from jacaros.clock import Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
+from jacaros.mas.interruption import Interrupted, Interruption
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.watchdog import Watchdog
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
 GARBAGE_THRESHOLD = 100_000
 """Terms are made and dropped by the million, mostly without cycles: looking for cycles more often costs a
 tenth of the time and finds nothing."""
@@ -58,47 +56,31 @@ def launch(
         def started() -> None:
             if own_process:
                 gc.freeze()
+                watchdog.start()
             if when_started is not None:
                 when_started(mas)
 
-        with _ended_by_signals(mas, loop) if own_process else _ended_by_nobody():
+        if not own_process:
+            return await mas.run(started)
+        with interruption.of(mas.end):
             return await mas.run(started)
 
-    return run(main, clock)
+    def warn(text: str) -> None:
+        console.log(text, "warning")
+
+    interruption, watchdog = Interruption(warn), Watchdog(warn)
+    try:
+        return interruption.run(partial(new_event_loop, clock), main())
+    finally:
+        watchdog.stop()
 
 
 def _escaped(mas: Mas, context: dict[str, Any]) -> None:
     """Something raised an exception outside of anybody's care."""
     error = context.get("exception")
+    if isinstance(error, Interrupted):
+        return
     if isinstance(error, Exception) and "handle" in context:
         mas.fail(error)
         return
     mas.console.log(f"error: {context.get('message')}: {type(error).__name__}: {error}", "error")
-
-
-@contextmanager
-def _ended_by_nobody() -> Iterator[None]:
-    yield
-
-
-@contextmanager
-def _ended_by_signals(mas: Mas, loop: asyncio.AbstractEventLoop) -> Iterator[None]:
-    """Let Ctrl-C and SIGTERM end the run in good order; the second one ends it at once."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: signal.getsignal(number) for number in SIGNALS}
-
-    def end(number: int, frame: FrameType | None) -> None:
-        for each, handler in before.items():
-            signal.signal(each, handler)
-        loop.call_soon_threadsafe(mas.end, 128 + number)
-
-    for number in SIGNALS:
-        if before[number] is not signal.SIG_IGN:
-            signal.signal(number, end)
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

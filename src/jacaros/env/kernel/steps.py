@@ -170,6 +170,9 @@ class Steps:
                 error = cancelled
         except Exception as raised:
             error = raised
+        except (KeyboardInterrupt, SystemExit):
+            self._end(execution, OperationFailed("the process was interrupted"))
+            raise
         if cancellation is not None and error is None and not execution.stopped:
             execution.cancelled = True
             self._end(execution, None)

@@ -1,0 +1,162 @@
+"""Ctrl-C and SIGTERM end a run in the middle of a step that never ends, and leave the robot still."""
+
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+ENDLESS = {
+    "body": "!g. +!g <- .print(begun); ?(.range(I, 1, 1e15) & I < 0).",
+    "context": "!g. +!g <- .print(begun); !find(3).\n+!find(X) : .range(I, X, 1e15) & I < 0 <- .print(found).",
+    "rule": "p(N) :- N > 0 & p(N - 1) & q.\np(N) :- N > 0 & p(N - 1).\np(0).\n!g. +!g <- .print(begun); ?p(200) & 1 > 2.",
+    "findall": "!g. +!g <- .print(begun); .findall(I, .range(I, 1, 1e15) & I < 0, L).",
+    "python": "!g. +!g <- .print(begun); tools.stay(1).",
+    "sleeping": "!g. +!g <- .print(begun); tools.sleep_on(1).",
+    "operation": '!g. +!g <- .print(begun); makeArtifact("a", "artifacts.Endless", [], A); focus(A); spin.',
+    "coroutine": '!g. +!g <- .print(begun); makeArtifact("a", "artifacts.Endless", [], A); focus(A); later.',
+    "regex": f'!g. +!g <- .print(begun); .replace("{"a" * 60}c", "(a+)+b", "", X).',
+}
+"""What is printed just before the step that never ends."""
+
+TOOLS = """
+import time
+from jacaros import internal_action
+
+@internal_action
+def stay(n: float) -> None:
+    while True:
+        try:
+            n += 1
+        except Exception:
+            pass
+
+@internal_action
+def sleep_on(n: float) -> None:
+    time.sleep(1000)
+"""
+ARTIFACTS = """
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.env import Artifact, operation
+
+class Endless(Artifact):
+    @operation
+    def spin(self):
+        while True:
+            pass
+
+    @operation
+    async def later(self):
+        await self.sleep(0.01)
+        while True:
+            pass
+
+    @operation(threaded=True)
+    def thread(self):
+        while True:
+            pass
+
+class Wheels(RosArtifact):
+    def open(self):
+        self.subscription("cmd_vel", "geometry_msgs/msg/Twist", self.take)
+
+    def take(self, sample):
+        with open("velocities.txt", "a") as file:
+            file.write(f"{sample.message.linear.x}\\n")
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "tools.py").write_text(TOOLS, encoding="utf-8")
+    (tmp_path / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
+    return tmp_path
+
+
+def interrupted(
+    folder: Path, program: str, number: signal.Signals = signal.SIGINT, options: Sequence[str] = ()
+) -> tuple[int, str, str]:
+    """Exit code, further output and errors of a run that gets one signal when it has printed ``begun``."""
+    (folder / "bob.asl").write_text(program, encoding="utf-8")
+    command = [sys.executable, "-m", "jacaros", "run", "bob.asl", *options]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, cwd=folder) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "[bob] begun\n"
+        process.send_signal(number)
+        try:
+            output, errors = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    return process.returncode, output, errors
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ENDLESS)
+def test_one_ctrl_c_ends_a_step_without_end(folder: Path, kind: str) -> None:
+    code, output, errors = interrupted(folder, ENDLESS[kind])
+    assert (code, output) == (130, "")
+    assert "Traceback" not in errors
+    assert "never retrieved" not in errors
+
+
+@pytest.mark.slow
+def test_sigterm_does_so_too_and_on_the_virtual_clock(folder: Path) -> None:
+    code, _, errors = interrupted(folder, ENDLESS["context"], signal.SIGTERM, ["--clock", "fast"])
+    assert code == 143
+    assert "interrupted in the middle of a step: agent bob, plan +!find(X) (bob.asl:2)" in errors
+
+
+@pytest.mark.slow
+def test_people_are_told_what_was_interrupted(folder: Path) -> None:
+    _, _, errors = interrupted(folder, "!g.\n+!g\n  <- .print(begun);\n     tools.stay(1).")
+    place = f"bob.asl:4, in {folder / 'tools.py'}:"
+    assert f"interrupted in the middle of a step: agent bob, plan +!g ({place}" in errors
+
+
+@pytest.mark.slow
+def test_an_operation_in_a_thread_is_left_behind(folder: Path) -> None:
+    program = '!g. +!g <- makeArtifact("a", "artifacts.Endless", [], A); focus(A); !!tell; thread. +!tell <- .print(begun).'
+    code, _, errors = interrupted(folder, program)
+    assert code == 130
+    assert errors == "the run has ended; an operation that does not end is left behind\n"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("options", [(), ("--clock", "fast")])
+def test_the_robot_is_left_still(folder: Path, options: tuple[str, ...]) -> None:
+    program = """
+        !g.
+        +!g <- makeArtifact("m", "ArtCmdVelAndOdometry", [], M); focus(M);
+               makeArtifact("w", "artifacts.Wheels", []); !!drive; .wait(500); .print(begun);
+               ?(.range(I, 1, 1e15) & I < 0).
+        +!drive <- moveForward(1000).
+        """
+    code, _, _ = interrupted(folder, program, options=options)
+    assert code == 130
+    velocities = (folder / "velocities.txt").read_text().split()
+    assert float(velocities[-2]) > 0
+    assert float(velocities[-1]) == 0
+
+
+@pytest.mark.slow
+def test_a_recording_is_finished(folder: Path) -> None:
+    interrupted(folder, ENDLESS["body"], options=["--replay", "run.html", "--record", "run.jsonl"])
+    assert (folder / "run.html").stat().st_size > 1000
+    assert "begun" in (folder / "run.jsonl").read_text()
+
+
+@pytest.mark.slow
+def test_people_are_told_of_a_step_that_holds_everybody_up(folder: Path) -> None:
+    (folder / "bob.asl").write_text(ENDLESS["context"], encoding="utf-8")
+    command = [sys.executable, "-m", "jacaros", "run", "bob.asl"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=folder) as process:
+        assert process.stderr is not None
+        told = process.stderr.readline()
+        process.kill()
+    assert told == (
+        "warning: a step takes more than 2 seconds, and everybody waits for it: "
+        "agent bob, plan +!find(X) (bob.asl:2)\n"
+    )
