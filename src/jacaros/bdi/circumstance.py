@@ -50,6 +50,7 @@ class Circumstance:
         meta: whether plans or an observer want to hear of changes of goal states.
         goal_observer: told of the state, text and number of each goal that changes, or None.
         probe: the test that looks on, or None.
+        intentions_made: number of intentions so far.
         plans_made: number of plans so far, for the labels of those that have none.
         bodies: compiled forms of plan bodies held by variables.
         goal_conditions: whether plans have goal conditions, which are tested in every cycle.
@@ -70,6 +71,7 @@ class Circumstance:
         stopped: the agent is over.
         accepts: asked whether a message is acceptable; None accepts all.
         face: what the project's Python code sees of the agent; made when it is first asked for.
+        edges: there may be plans for falling asleep and awaking.
         drowsy: it has had nothing to do since it last awoke, and has been told so.
         asleep: it is drowsy, and has done what its plans do before sleep.
     """
@@ -131,17 +133,18 @@ class Circumstance:
         self.stopped = False
         self.accepts: Callable[[SpeechAct], bool] | None = None
         self.face: Any = None
+        self.edges = False
         self.drowsy = False
         self.asleep = False
         self.held_percepts: dict[Term, Any] = {}
         self.plans_made = len(plans.plans)
         self.bodies: dict[int, tuple[Term, Any]] = {}
-        self._intention_numbers = 0
+        self.intentions_made = 0
 
     def new_intention(self, cause: Any = None) -> Intention:
         """An intention with a number of its own; it is not in any queue yet."""
-        self._intention_numbers += 1
-        intention = Intention(self._intention_numbers, cause)
+        self.intentions_made += 1
+        intention = Intention(self.intentions_made, cause)
         self.alive[intention.id] = intention
         return intention
 
@@ -157,8 +160,10 @@ class Circumstance:
     def finish(self, intention: Intention) -> None:
         """An intention is over; what it waits for is cancelled."""
         intention.dropped = True
-        intention.frames.clear()
-        intention.handlers.clear()
+        if intention.frames:
+            intention.frames.clear()
+        if intention.handlers:
+            intention.handlers.clear()
         self.alive.pop(intention.id, None)
         if self.atomic is intention:
             self.atomic = None

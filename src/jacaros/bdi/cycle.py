@@ -12,11 +12,12 @@ from jacaros.bdi.deliberation import handle_atomic_event, handle_event
 from jacaros.bdi.event import EVENT_INTENTION
 from jacaros.bdi.finishing import end_achieved_goals
 from jacaros.bdi.intention import Intention
-from jacaros.bdi.sensing import housekeeping, looks_around, read_message
+from jacaros.bdi.sensing import housekeeping, looks_around
+from jacaros.bdi.speech_acts import read_message
 from jacaros.errors import InternalError
 
 
-def run(agent: Circumstance, fuel: int) -> bool:
+def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for speed
     """Make at most *fuel* cycles; True when there is more to do."""
     begun = fuel
     if agent.asleep:
@@ -51,19 +52,17 @@ def run(agent: Circumstance, fuel: int) -> bool:
                 agent.requeued.clear()
         elif (events and agent.atomic is None) or inbox:
             fuel -= 1
-        elif not (percepts or tasks or edge_signals.fall_asleep(agent)):
+        elif not (percepts or tasks or (agent.edges and edge_signals.fall_asleep(agent))):
             break
     agent.cycles += begun - fuel
-    return not agent.stopped and _has_work(agent)
-
-
-def _has_work(agent: Circumstance) -> bool:
-    if agent.inbox or agent.percepts or agent.tasks:
+    if agent.stopped:
+        return False
+    if inbox or percepts or tasks:
         return True
     if agent.atomic is not None:
         atomic = agent.atomic
-        return atomic in agent.intentions or any(e[EVENT_INTENTION] is atomic for e in agent.events)
-    return bool(agent.events or agent.intentions)
+        return atomic in intentions or any(e[EVENT_INTENTION] is atomic for e in events)
+    return bool(events or intentions)
 
 
 def _select_intention(agent: Circumstance) -> Intention | None:

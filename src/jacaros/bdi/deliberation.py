@@ -16,18 +16,37 @@ def handle_event(agent: Circumstance) -> None:
     events = agent.events
     while events:
         event = events.popleft()
-        goal, intention, annotations, _ = event
+        goal, intention, annotations, cause = event
         try:
-            if intention is None:
-                if _external(agent, event):
-                    return
-            elif not intention.dropped:
+            if intention is not None:
+                if intention.dropped:
+                    continue
                 if push(agent, intention, goal, annotations):
                     if intention.suspended is None:
                         agent.intentions.append(intention)
                     else:
                         intention.parked = True
                 return
+            if agent.special or agent.option_filter.rows:
+                if _external(agent, event):
+                    return
+                continue
+            # `_external`, written out for what is usual.
+            trail = agent.trail
+            trail.serial += 1
+            select = agent.selects[goal[0]]
+            frame: Frame | None = None if select is None else select(agent, goal, annotations)
+            if trail:
+                trail.clear()
+            if frame is None or frame[4].atomic or goal[0].failing:
+                if _begin(agent, event, frame, False):
+                    return
+                continue
+            agent.intentions_made = number = agent.intentions_made + 1
+            agent.alive[number] = intention = Intention(number, cause)
+            intention.frames.append(frame)
+            agent.intentions.append(intention)
+            return
         except InternalError:
             raise
         except Exception as fault:
@@ -58,10 +77,15 @@ def _pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
 
 def _external(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
+    goal, _, annotations, _ = event
+    reacted = agent.subplans and goal[0].kind == "" and _react(agent, event)
+    return _begin(agent, event, select_plan(agent, goal, annotations), reacted)
+
+
+def _begin(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool) -> bool:
+    """Begin an intention with the frame of the plan for an external event, if there is one."""
     goal, _, annotations, cause = event
     trigger = goal[0]
-    reacted = agent.subplans and trigger.kind == "" and _react(agent, event)
-    frame = select_plan(agent, goal, annotations)
     if frame is None:
         if trigger.kind == "" or trigger.operator == "^":
             if agent.options.events == "requeue" and not reacted and trigger.operator != "^":

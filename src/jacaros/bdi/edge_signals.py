@@ -14,11 +14,6 @@ SHUTTING_DOWN = trigger("+", "", functor("jag_shutting_down", 1))
 
 def fall_asleep(agent: Circumstance) -> bool:
     """There is nothing to do: True when a plan for ``+jag_sleeping`` is to be tried before the agent sleeps."""
-    selects = agent.selects
-    if selects[SLEEPING] is None and selects[AWAKING] is None and not agent.subplans:
-        # Nobody would notice, and an agent that gets such a plan later is awake then.
-        agent.drowsy = agent.asleep = False
-        return False
     if agent.drowsy or not agent.is_idle():
         agent.asleep = agent.drowsy
         return False

@@ -6,6 +6,7 @@ from jacaros.asl.loader import parse_plans
 from jacaros.bdi import belief_update
 from jacaros.bdi.belief_base import Rule
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.edge_signals import AWAKING, SLEEPING
 from jacaros.bdi.functions import known_names
 from jacaros.bdi.internal_action import ActionError
 from jacaros.compiler.lowering import fresh_names, lower
@@ -42,6 +43,10 @@ def look_at_plans(agent: Circumstance) -> None:
     agent.subplans = agent.subplans or agent.library.has_subplans()
     agent.goal_conditions = agent.goal_conditions or agent.library.has_goal_conditions()
     agent.special = agent.meta or agent.subplans or agent.goal_conditions
+    agent.edges = agent.subplans or any(agent.selects[kind] is not None for kind in (SLEEPING, AWAKING))
+    if not agent.edges:
+        # Nobody would notice, and an agent that gets such a plan later is awake then.
+        agent.drowsy = agent.asleep = False
 
 
 def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:

@@ -1,6 +1,6 @@
 """The first part of a reasoning cycle: what came in since the last one."""
 
-from jacaros.bdi import rescue, speech_acts
+from jacaros.bdi import rescue
 from jacaros.bdi.belief_update import apply_percepts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.errors import InternalError
@@ -62,16 +62,3 @@ def _check_conditions(agent: Circumstance) -> None:
                 agent.condition_waits.remove(entry)
                 waiting.resume()
     _do_tasks(agent)
-
-
-def read_message(agent: Circumstance) -> None:
-    """Rule ProcMsg for the message whose turn it is."""
-    message = agent.inbox.popleft()
-    try:
-        speech_acts.process(agent, message)
-    except InternalError:
-        raise
-    except Exception as fault:
-        rescue.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
-        if message.performative.startswith("ask"):
-            speech_acts.answer(agent, message, None)

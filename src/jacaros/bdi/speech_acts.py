@@ -5,7 +5,7 @@ from typing import Any
 
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import parse_plans
-from jacaros.bdi import belief_update
+from jacaros.bdi import belief_update, rescue
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
@@ -13,8 +13,9 @@ from jacaros.bdi.meta_events import post_new_goal
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import fresh_names, lower_plan
 from jacaros.compiler.runtime import run
-from jacaros.compiler.triggers import Trigger, trigger
+from jacaros.compiler.triggers import ACHIEVED, trigger
 from jacaros.compiler.unit import Select
+from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN, TRIGGERS, body_steps, step_parts
 from jacaros.terms.text import text
@@ -44,8 +45,29 @@ from jacaros.terms.values import (
 RECEIVED = trigger("+", "!", functor("kqml_received", 4))
 
 
-def process(agent: Circumstance, message: SpeechAct) -> None:
-    """Rule ProcMsg: one message; a plan of the program for ``+!kqml_received`` comes before what is done here."""
+def read_message(agent: Circumstance) -> None:
+    """Rule ProcMsg for the message whose turn it is."""
+    message = agent.inbox.popleft()
+    try:
+        if (
+            message.in_reply_to is None
+            and agent.accepts is None
+            and agent.selects[RECEIVED] is None
+            and (action := _ACTIONS.get(message.performative)) is not None
+        ):
+            action(agent, message)
+        else:
+            _process(agent, message)
+    except InternalError:
+        raise
+    except Exception as fault:
+        rescue.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
+        if message.performative.startswith("ask"):
+            answer(agent, message, None)
+
+
+def _process(agent: Circumstance, message: SpeechAct) -> None:
+    """A message that may be an answer, refused, or taken up by a plan for ``+!kqml_received``, which comes first."""
     if message.in_reply_to is not None and _answers_question(agent, message):
         return
     if agent.accepts is not None and not agent.accepts(message):
@@ -137,24 +159,17 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
     content = message.content
     if message.flat and content.__class__ is tuple and content[0] is not CONS and not agent.meta:
         # The most frequent message, written out: there is nothing in it to be looked at.
-        kind = _GOALS.get(content[0]) or _goal(content[0])
-        agent.post(((kind, *content[1:]), None, _only_from(message.sender), None))
+        event = ((ACHIEVED[content[0]], *content[1:]), None, _only_from(message.sender), None)
+        agent.events.append(event)
+        if agent.event_waits:
+            agent.notify_event_waits(event)
         return
     for content in _contents(message.content):
         symbol, arguments, annotations = literal_from(content, message.sender)
         if symbol is None:
             _refuse(agent, message)
         else:
-            post_new_goal(agent, ((trigger("+", "!", symbol), *arguments), None, annotations, None))
-
-
-_GOALS: dict[Functor, Trigger] = {}
-"""Event kinds of the goals that agents were asked for, by functor."""
-
-
-def _goal(symbol: Functor) -> Trigger:
-    kind = _GOALS[symbol] = trigger("+", "!", symbol)
-    return kind
+            post_new_goal(agent, ((ACHIEVED[symbol], *arguments), None, annotations, None))
 
 
 def _unachieve(agent: Circumstance, message: SpeechAct) -> None:

@@ -25,19 +25,20 @@ class Trigger:
         return f"{self.operator}{self.kind}{self.functor!r}"
 
 
-class BeliefChanges(dict[Functor, Trigger]):
-    """The triggers of additions (``+``) or deletions (``-``) of beliefs, by functor."""
+class Kinds(dict[Functor, Trigger]):
+    """The triggers of one operator and kind, by functor."""
 
-    def __init__(self, operator: str) -> None:
+    def __init__(self, operator: str, kind: str) -> None:
         super().__init__()
-        self._operator = operator
+        self._operator, self._kind = operator, kind
 
     def __missing__(self, functor: Functor) -> Trigger:
-        found = self[functor] = trigger(self._operator, "", functor)
+        found = self[functor] = trigger(self._operator, self._kind, functor)
         return found
 
 
-ADDED, DELETED = BeliefChanges("+"), BeliefChanges("-")
+ADDED, DELETED, ACHIEVED = Kinds("+", ""), Kinds("-", ""), Kinds("+", "!")
+"""Beliefs that come, beliefs that go, goals that are to be achieved."""
 _triggers: dict[tuple[str, str, Functor], Trigger] = {}
 
 

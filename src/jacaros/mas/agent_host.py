@@ -1,6 +1,7 @@
 """What stands between one mind and its run: Jason's agent architecture."""
 
 from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from functools import partial
 from random import Random
 from typing import Any, Protocol
 
@@ -137,6 +138,8 @@ class AgentHost:
         coroutines: of the project's Python code that run for the agent.
         intercept: asked first about each action; True when it answers the action itself.  For tests.
         intercept_stop: the same for the end of the run.
+        send: delivers a message; False when there is no such agent.
+        ready: the mind has something to do.
     """
 
     mind: Mind
@@ -151,7 +154,9 @@ class AgentHost:
         self.intercept: Callable[[Act], bool] | None = None
         self.intercept_stop: Callable[[float, int], bool] | None = None
         self._run = run
-        self._scheduler = run.scheduler
+        # The mind calls these for every message: there is nothing to be done on their way.
+        self.send: Callable[[SpeechAct], bool] = run.deliver
+        self.ready: Callable[[], None] = partial(run.scheduler.make_ready, self)
         self._ended = False
 
     def run(self, fuel: int) -> bool:
@@ -179,11 +184,6 @@ class AgentHost:
     def now(self) -> float:
         """Seconds since the Unix epoch on the run's clock."""
         return self._run.clock.now()
-
-    def ready(self) -> None:
-        """The mind has something to do."""
-        if not self.queued:
-            self._scheduler.make_ready(self)
 
     def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* after *delay* seconds."""
@@ -218,10 +218,6 @@ class AgentHost:
         """The intention behind an act was resumed."""
         if self.body is not None:
             self.body.resume_act(act_id)
-
-    def send(self, message: SpeechAct) -> bool:
-        """Deliver a message; False when there is no such agent."""
-        return self._run.deliver(message)
 
     def agent_names(self) -> Sequence[str]:
         """Names of all agents, in the order of their making."""

@@ -32,6 +32,8 @@ class CustomHost(AgentHost):
         for link in reversed(self._chain):
             link.following = following
             following = link
+        if self._chain:
+            self.send = self._send
         self._perceiving = [
             (link, Perception()) for link in chain if type(link).perceive is not AgentArch.perceive
         ]
@@ -99,11 +101,12 @@ class CustomHost(AgentHost):
         else:
             super().cancel_act(act_id)
 
-    def send(self, message: SpeechAct) -> bool:
-        """Deliver a message; False when there is no such agent."""
-        if not self._chain:
-            return super().send(message)
+    def _send(self, message: SpeechAct) -> bool:
         return bool(self._ask(lambda: self._chain[0].send(Message(message)), False))
+
+    def deliver(self, message: SpeechAct) -> bool:
+        """What `send` is without architectures."""
+        return self._run.deliver(message)
 
     def receive(self, message: SpeechAct) -> None:
         """Hand a message to the mind, if the architectures let it through."""
@@ -135,7 +138,7 @@ class _End:
         AgentHost.act(self._host, action.raw)
 
     def send(self, message: Message) -> bool:
-        return AgentHost.send(self._host, message.raw)
+        return self._host.deliver(message.raw)
 
     def check_mail(self, message: Message) -> bool:
         return True

@@ -158,6 +158,21 @@ def test_an_agent_is_told_that_it_falls_asleep_and_awakes(tmp_path: Path, plan: 
     assert sorted(result.of("a")) == sorted(["up", *([word] * (3 if word == "sleep" else 2))])
 
 
+@pytest.mark.parametrize("word", ["sleeping", "awaking"])
+def test_an_agent_falls_asleep_by_plans_that_it_has_learnt(tmp_path: Path, word: str) -> None:
+    result = run(
+        tmp_path,
+        a_asl=f"""!go.
+            +!go <- .wait(10); .print(up); .add_plan("@p +jag_{word} <- .print({word}).");
+                .wait(10); .remove_plan(p); .wait(10); .add_plan("+jag_{word} <- .print(again)."); .wait(10);
+                .print(end).""",
+    )
+    if word == "sleeping":
+        assert result.of("a") == ["up", "sleeping", "again", "end", "again"]
+    else:
+        assert result.of("a") == ["up", "awaking", "end", "again"]
+
+
 def test_a_clone_shares_no_collections_with_its_original(tmp_path: Path) -> None:
     result = run(
         tmp_path,

@@ -8,7 +8,7 @@ from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.speech_acts import from_sender
 from jacaros.bdi.waiting import Waiting
 from jacaros.terms.text import text
-from jacaros.terms.unifier import is_flat, rename, resolve
+from jacaros.terms.unifier import ATOMIC, is_flat, rename, resolve
 from jacaros.terms.values import (
     PLAIN,
     Functor,
@@ -58,7 +58,11 @@ def _say(
         performative, "self" if target == sender else sender, target, content, message_id, reply, flat
     )
     if not agent.architecture.send(message):
-        raise ActionError(f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found")))
+        raise _nobody(receiver)
+
+
+def _nobody(receiver: str) -> ActionError:
+    return ActionError(f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found")))
 
 
 def _direct(written: Written) -> Any:
@@ -71,6 +75,16 @@ def _direct(written: Written) -> Any:
     if to is not None:
 
         def send_on(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
+            # `_say` and `is_flat`, written out for the most frequent message; the others are left to it.
+            if content.__class__ is tuple and not content[0].kind and to != "self" and to != agent.name:
+                for part in content:
+                    if part.__class__ not in ATOMIC:
+                        break
+                else:
+                    agent.messages = number = agent.messages + 1
+                    if agent.architecture.send(SpeechAct(act, agent.name, to, content, number, None, True)):
+                        return
+                    raise _nobody(to)
             _say(agent, to, act, content)
 
         return send_on
