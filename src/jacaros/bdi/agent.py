@@ -73,6 +73,16 @@ class Agent(Circumstance):
         plans: those of the program with the same actions, if another agent has had them made already.
     """
 
+    __slots__ = (
+        "_acts",
+        "_beginning",
+        "_call_own",
+        "_ended_at_once",
+        "_namespaces",
+        "messages",
+        "program",
+    )
+
     def __init__(
         self,
         name: str,

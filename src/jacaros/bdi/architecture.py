@@ -22,8 +22,9 @@ class Timer(Protocol):
 class Architecture(Protocol):
     """What a mind asks of its host.  No call may enter the agent again before it returns."""
 
-    random: Random
-    """The agent's own generator, seeded by the run."""
+    @property
+    def random(self) -> Random:
+        """The agent's own generator, seeded by the run."""
 
     def now(self) -> float:
         """Seconds since the Unix epoch on the run's clock."""

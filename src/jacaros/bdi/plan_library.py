@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import cast
 
 from jacaros.bdi.intention import Frame
-from jacaros.bdi.program_plans import ProgramPlans, concerns, made, relevant
+from jacaros.bdi.program_plans import ProgramPlans, concerns, has_goal_condition, made, relevant
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import Trigger
@@ -23,11 +23,13 @@ class PlanLibrary:
         report: told what cannot be compiled.
     """
 
+    __slots__ = ("_every", "_sources", "actions", "own", "plans", "program", "removed", "report", "selects")
+
     def __init__(self, program: ProgramPlans) -> None:
         self.program = program
         self.actions: Mapping[str, ActionInfo] = program.actions
         self.report: Callable[[str], None] = _ignore
-        self.plans: list[Plan] = list(program.plans)
+        self.plans: list[Plan] = program.plans
         self.own: list[Plan] = []
         self.removed: list[Plan] = []
         self.selects = Selects(self)
@@ -36,6 +38,7 @@ class PlanLibrary:
 
     def add(self, plan: Plan, first: bool = False) -> None:
         """Add a plan at the end, or before all others."""
+        self._have_own_list()
         self.plans.insert(0 if first else len(self.plans), plan)
         self.own.append(plan)
         self._every.clear()
@@ -43,6 +46,7 @@ class PlanLibrary:
 
     def remove(self, plan: Plan) -> None:
         """Take a plan out."""
+        self._have_own_list()
         self.plans.remove(plan)
         if plan in self.own:
             self.own.remove(plan)
@@ -51,6 +55,11 @@ class PlanLibrary:
         self._sources.pop(plan, None)
         self._every.clear()
         self.selects.forget(plan)
+
+    def _have_own_list(self) -> None:
+        """The list of plans is that of the program, as of all its agents, until it changes."""
+        if self.plans is self.program.plans:
+            self.plans = list(self.plans)
 
     def take_over(self, other: "PlanLibrary") -> None:
         """Have the plans of the library of another agent that runs the same program."""
@@ -80,6 +89,8 @@ class PlanLibrary:
 
     def is_as_written(self, trigger: Trigger) -> bool:
         """Whether the plans of an event kind are those of the program."""
+        if not self.own and not self.removed:
+            return True
         changed = (*self.own, *self.removed)
         return not any(concerns(plan, trigger) for plan in changed)
 
@@ -93,14 +104,16 @@ class PlanLibrary:
 
     def has_subplans(self) -> bool:
         """Whether any plan has plans of its own."""
-        return any(plan.subplans for plan in self.plans)
+        return self.program.has_subplans or any(plan.subplans for plan in self.own)
 
     def has_goal_conditions(self) -> bool:
         """Whether any plan, or plan of a plan, has a goal condition."""
-        return any(_has_goal_condition(plan) for plan in self.plans)
+        return self.program.has_goal_conditions or any(has_goal_condition(plan) for plan in self.own)
 
     def has_meta_plans(self) -> bool:
         """Whether any plan reacts to changes of goal states (``^!g``)."""
+        if not self.own and not self.removed:
+            return self.program.has_meta_plans
         return any(plan.node.trigger.operator == "^" for plan in self.plans)
 
 
@@ -108,12 +121,10 @@ def _ignore(text: str) -> None:
     del text
 
 
-def _has_goal_condition(plan: Plan) -> bool:
-    return plan.node.goal_condition is not None or any(_has_goal_condition(inner) for inner in plan.subplans)
-
-
 class Selects(dict[Trigger, Select | None]):
     """The select function of each event kind, made at its first event; None when there is no relevant plan."""
+
+    __slots__ = ("library", "sources")
 
     def __init__(self, library: PlanLibrary) -> None:
         super().__init__()

@@ -18,6 +18,11 @@ class ProgramPlans:
     Args:
         plan_nodes: the syntax.
         actions: the internal actions that the plans may call.
+
+    Attributes:
+        has_subplans: whether any plan has plans of its own.
+        has_goal_conditions: whether any plan, or plan of a plan, has a goal condition.
+        has_meta_plans: whether any plan reacts to changes of goal states (``^!g``).
     """
 
     def __init__(self, plan_nodes: Sequence[nodes.Plan], actions: Mapping[str, ActionInfo]) -> None:
@@ -31,6 +36,9 @@ class ProgramPlans:
         for plan in self.plans:
             head = plan.node.trigger
             self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
+        self.has_subplans = any(plan.subplans for plan in self.plans)
+        self.has_goal_conditions = any(has_goal_condition(plan) for plan in self.plans)
+        self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
         self.sources: dict[Trigger, str] = {}
         self._selects: dict[Trigger, Select | None] = {}
 
@@ -46,6 +54,11 @@ class ProgramPlans:
         if (trigger.operator, trigger.kind, None) in self._by_head:
             return relevant(self.plans, trigger)
         return self._by_head.get((trigger.operator, trigger.kind, trigger.functor), ())
+
+
+def has_goal_condition(plan: Plan) -> bool:
+    """Whether a plan, or a plan of it, has a goal condition."""
+    return plan.node.goal_condition is not None or any(has_goal_condition(inner) for inner in plan.subplans)
 
 
 def relevant(plans: Sequence[Plan], trigger: Trigger) -> list[Plan]:

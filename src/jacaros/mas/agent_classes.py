@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from random import Random
 from typing import TYPE_CHECKING
 
 from jacaros.asl.diagnostics import Diagnostic
@@ -61,7 +60,7 @@ class AgentClasses:
         spec: AgentSpec,
         program: Program,
         run: Run,
-        random: Random,
+        seed: str,
         options: Options,
         code: PythonCode,
         plans: ProgramPlans,
@@ -73,8 +72,8 @@ class AgentClasses:
         """
         objects = self._objects(spec)
         if any(objects):
-            return self._custom(spec, program, run, random, options, code, plans, objects)
-        host = AgentHost(spec.name, run, random)
+            return self._custom(spec, program, run, seed, options, code, plans, objects)
+        host = AgentHost(spec.name, run, seed)
         mind = Agent(spec.name, program, host, options, code.actions, plans)
         code.serve(mind)
         host.mind = mind
@@ -85,7 +84,7 @@ class AgentClasses:
         spec: AgentSpec,
         program: Program,
         run: Run,
-        random: Random,
+        seed: str,
         options: Options,
         code: PythonCode,
         plans: ProgramPlans,
@@ -97,7 +96,7 @@ class AgentClasses:
         from jacaros.mas.custom_host import CustomHost
 
         face, base, architectures = objects
-        host = CustomHost(spec.name, run, random)
+        host = CustomHost(spec.name, run, seed)
         mind = CustomMind(spec.name, program, host, options, code.actions, plans)
         code.serve(mind)
         host.mind = mind

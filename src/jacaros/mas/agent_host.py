@@ -128,35 +128,52 @@ class AgentHost:
     Args:
         name: of the agent.
         run: the run that it belongs to.
-        random: the agent's own generator.
+        seed: of the agent's own generator of random numbers.
 
     Attributes:
         queued: True while it waits for a turn; kept by the scheduler.
         mind: set before the first turn.
         body: what carries its actions out, None while there is none.
         make_body: makes the body for the first action; None in a project without environment.
-        coroutines: of the project's Python code that run for the agent.
         intercept: asked first about each action; True when it answers the action itself.  For tests.
         intercept_stop: the same for the end of the run.
         send: delivers a message; False when there is no such agent.
         ready: the mind has something to do.
     """
 
+    __slots__ = (
+        "_coroutines",
+        "_ended",
+        "_random",
+        "_run",
+        "_seed",
+        "body",
+        "intercept",
+        "intercept_stop",
+        "make_body",
+        "mind",
+        "name",
+        "queued",
+        "ready",
+        "send",
+    )
+
     mind: Mind
 
-    def __init__(self, name: str, run: Run, random: Random) -> None:
+    def __init__(self, name: str, run: Run, seed: str) -> None:
         self.name = name
-        self.random = random
         self.queued = False
         self.body: Body | None = None
         self.make_body: Callable[[], Body] | None = None
-        self.coroutines = Coroutines(run.activity)
         self.intercept: Callable[[Act], bool] | None = None
         self.intercept_stop: Callable[[float, int], bool] | None = None
         self._run = run
         # The mind calls these for every message: there is nothing to be done on their way.
         self.send: Callable[[SpeechAct], bool] = run.deliver
         self.ready: Callable[[], None] = partial(run.scheduler.make_ready, self)
+        self._seed = seed
+        self._random: Random | None = None
+        self._coroutines: Coroutines | None = None
         self._ended = False
 
     def run(self, fuel: int) -> bool:
@@ -170,9 +187,15 @@ class AgentHost:
 
     def end(self) -> None:
         """Give up all actions, coroutines and focused artifacts."""
-        self.coroutines.cancel()
+        if self._coroutines is not None:
+            self._coroutines.cancel()
         if self.body is not None:
             self.body.close()
+
+    async def close(self) -> None:
+        """Wait until the coroutines have put their things in order."""
+        if self._coroutines is not None:
+            await self._coroutines.close()
 
     def receive(self, message: SpeechAct) -> None:
         """Hand a message to the mind."""
@@ -180,6 +203,13 @@ class AgentHost:
             self.mind.receive(message)
 
     # From here on, the port `jacaros.bdi.architecture.Architecture`.
+
+    @property
+    def random(self) -> Random:
+        """The agent's own generator."""
+        if self._random is None:
+            self._random = Random(self._seed)
+        return self._random
 
     def now(self) -> float:
         """Seconds since the Unix epoch on the run's clock."""
@@ -191,7 +221,9 @@ class AgentHost:
 
     def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> Timer:
         """Run a coroutine of the project's Python code beside the mind."""
-        return self.coroutines.start(coroutine, ended)
+        if self._coroutines is None:
+            self._coroutines = Coroutines(self._run.activity)
+        return self._coroutines.start(coroutine, ended)
 
     def act(self, act: Act) -> None:
         """Begin an external action; without an environment it fails at once."""

@@ -56,9 +56,14 @@ def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
     return None
 
 
+_DEFAULTS: Final = Options()
+
+
 def mind_options(given: Mapping[str, str]) -> Options:
     """What the options of an agent mean for its mind."""
-    options = Options()
+    options = _DEFAULTS
+    if not given:
+        return options
     return replace(
         options,
         events=given.get("events", options.events),

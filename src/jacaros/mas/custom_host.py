@@ -3,7 +3,6 @@
 from collections.abc import Callable, Sequence
 from functools import partial
 from inspect import isawaitable
-from random import Random
 from typing import Any
 
 from jacaros.bdi.act import Act
@@ -18,8 +17,8 @@ from jacaros.mas.agent_host import AgentHost, Run
 class CustomHost(AgentHost):
     """Asks a chain of architectures, the first one first, and does itself what they leave to it."""
 
-    def __init__(self, name: str, run: Run, random: Random) -> None:
-        super().__init__(name, run, random)
+    def __init__(self, name: str, run: Run, seed: str) -> None:
+        super().__init__(name, run, seed)
         self._chain: list[AgentArch] = []
         self._perceiving: list[tuple[AgentArch, Perception]] = []
         self._acting: dict[int, Timer] = {}

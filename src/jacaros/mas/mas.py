@@ -177,10 +177,10 @@ class Mas:
     def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
         name = spec.name
         self._specs[name] = spec
-        random = Random(f"{self._seed}/{name}")
+        seed = f"{self._seed}/{name}"
         options = mind_options(spec.options)
         plans = self._plans_of(program)
-        host = self._classes.make(spec, _initial(spec, program), self, random, options, self._code, plans)
+        host = self._classes.make(spec, _initial(spec, program), self, seed, options, self._code, plans)
         self.directory.add(name, host)
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
@@ -202,7 +202,7 @@ class Mas:
         """The agent of the directory facilitator; an agent of the project that has its name takes its place."""
         host = self.directory.find(DIRECTORY_NAME)
         if host is None:
-            host = AgentHost(DIRECTORY_NAME, self, Random(f"{self._seed}/{DIRECTORY_NAME}"))
+            host = AgentHost(DIRECTORY_NAME, self, f"{self._seed}/{DIRECTORY_NAME}")
             host.mind = Agent(DIRECTORY_NAME, Program(), host)
             self.directory.add(DIRECTORY_NAME, host)
         mind = host.mind
@@ -233,7 +233,7 @@ class Mas:
         for host in self.directory:
             host.end()
         for host in self.directory:
-            await host.coroutines.close()
+            await host.close()
         if self._surroundings is not None:
             await self._surroundings.environment.close()
         await self.ros.close()

@@ -206,6 +206,8 @@ class _Resolver:
                     for name, namespace, _ in artifact.focused_by
                     if self._means(name, agent)
                 ]
+        if not join and not focus:
+            return agent
         join += [wanted.workspace for wanted in focus if wanted.workspace is not None]
         return replace(agent, join=tuple(dict.fromkeys(join)), focus=tuple(dict.fromkeys(focus)))
 

@@ -1,7 +1,6 @@
 """What stands between a mind and its run."""
 
 from collections.abc import Mapping, Sequence
-from random import Random
 
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.options import Options
@@ -108,7 +107,7 @@ class FakeRun:
 
 def host_and_mind() -> tuple[AgentHost, Mind, FakeRun]:
     run_ = FakeRun()
-    host, mind = AgentHost("ann", run_, Random(1)), Mind()
+    host, mind = AgentHost("ann", run_, "1"), Mind()
     host.mind = mind
     return host, mind, run_
 
