@@ -328,6 +328,7 @@ class Agent(Circumstance):
     # --- called by generated code --------------------------------------------------------------------------
 
     add_belief = belief_update.add_belief
+    replace_belief = belief_update.replace_belief
     add_belief_last = belief_update.add_belief_last
     add_belief_apart = belief_update.add_belief_apart
     delete_belief = belief_update.delete_belief

@@ -21,7 +21,42 @@ Annotations = tuple[Term, ...]
 
 def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
     """``+b``: the event belongs to the intention that made it."""
-    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), False)
+    # What is usual is written out: a fact that is not held yet.
+    table = agent.beliefs[symbol]
+    if not (table.plain and _is_flat(row)) or row in table.rows:
+        return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), False)
+    new = table.add(row, annotations)
+    if new is not BY_SELF or not agent.usual_events or agent.condition_waits:
+        return _own_event(agent, symbol, row, new, False)
+    kind = ADDED[symbol]
+    if agent.selects[kind] is None and not (
+        agent.events or agent.intentions or agent.event_waits or agent.subplans
+    ):
+        return None
+    return (kind, *row)
+
+
+def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``-+b``: the first belief with these annotations goes, whatever its arguments, and the new one comes.
+
+    The event of the first half is external.
+    """
+    table = agent.beliefs[symbol]
+    if annotations is BY_SELF and table.plain and table.rows:
+        # What is usual: the newest is a belief of the agent's own.
+        newest = next(reversed(table.rows))
+        if table.rows[newest] is BY_SELF:
+            if table.remove(newest) and (
+                agent.selects[DELETED[symbol]] is not None
+                or not agent.usual_events
+                or agent.event_waits
+                or agent.condition_waits
+                or agent.subplans
+            ):
+                external_change(agent, "-", symbol, newest, BY_SELF)
+            return add_belief(agent, symbol, row, annotations)
+    delete_any(agent, symbol, annotations)
+    return add_belief(agent, symbol, row, annotations)
 
 
 def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
@@ -187,12 +222,6 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
 
 def _delete_own(agent: Circumstance, symbol: Functor) -> None:
     table = agent.beliefs[symbol]
-    if table.plain and table.rows:
-        newest = next(reversed(table.rows))
-        if table.rows[newest] is BY_SELF:
-            if table.remove(newest):
-                external_change(agent, "-", symbol, newest, BY_SELF)
-            return
     for entry, held in table.in_order():
         row = entry if entry.__class__ is tuple else _open_row(entry)
         if row is not None and BY_SELF[0] in held:
@@ -217,7 +246,9 @@ def change_mind(agent: Circumstance, operator: str, term: Term) -> Any:
     mind: Any = agent
     if operator in ("-", "--"):
         return mind.delete_belief(symbol, row, own, operator == "--")
-    if operator.startswith("-+"):
+    if operator == "-+":
+        return mind.replace_belief(symbol, row, BY_SELF if own == BY_SELF else own)
+    if operator == "-++":
         mind.delete_any(symbol, BY_SELF if own == BY_SELF else own)
     if operator in ("++", "-++"):
         return mind.add_belief_apart(symbol, row, own)

@@ -30,6 +30,8 @@ class Circumstance:
         trail: bindings of the search under way; empty between two steps.
         beliefs, library, selects: what it believes, its plans, and their select functions.
         events: the queue of events, oldest first.
+        usual_events: external events without a plan are passed over, and events of belief changes in plans belong to
+            the intentions that made them.
         requeued: external events without plan that are to be tried again (``events=requeue``).
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
         option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
@@ -148,6 +150,7 @@ class Circumstance:
         self.options = options
         self.trail = Trail()
         self.beliefs = BeliefBase()
+        self.usual_events = options.events == "discard" and not options.new_focus
         self.option_filter = self.beliefs[functor("select__option", 4)]
         self.refused_options = False
         self.library = PlanLibrary(plans)

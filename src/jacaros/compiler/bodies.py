@@ -232,7 +232,14 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
     _finish(compiler, fn)
 
 
-_ADDITIONS = {"+": "add_belief", "+<": "add_belief", "+>": "add_belief_last", "++": "add_belief_apart"}
+_ADDITIONS = {
+    "+": "add_belief",
+    "+<": "add_belief",
+    "+>": "add_belief_last",
+    "++": "add_belief_apart",
+    "-+": "replace_belief",
+    "-++": "add_belief_apart",
+}
 
 
 def _belief_change(compiler: BodyCompiler, step: nodes.BeliefChange, name: str, next_name: str) -> None:
@@ -255,15 +262,16 @@ def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) 
     annotations = "BY_SELF"
     if operand.annotations is not None:
         annotations = own_annotations(fn, operand.annotations)
-    if operator in ("-", "--", "-+", "-++"):
-        if operator.startswith("-+"):
-            fn.line(f"agent.delete_any({symbol}{'' if annotations == 'BY_SELF' else ', ' + annotations})")
-        else:
-            arguments = tuple_of([build(fn, a) for a in operand.arguments]) if operand.arguments else "()"
-            fn.line(f"posted = agent.delete_belief({symbol}, {arguments}, {annotations}, {operator == '--'})")
-            return
+    if operator in ("-", "--"):
+        arguments = tuple_of([build(fn, a) for a in operand.arguments]) if operand.arguments else "()"
+        fn.line(f"posted = agent.delete_belief({symbol}, {arguments}, {annotations}, {operator == '--'})")
+        return
     row = tuple_of([resolved(fn, build(fn, a)) for a in operand.arguments]) if operand.arguments else "()"
-    method = "add_belief_apart" if operator == "-++" else _ADDITIONS.get(operator, "add_belief")
+    if operator == "-++":
+        fn.line(f"row = {row}")
+        fn.line(f"agent.delete_any({symbol}, {annotations})")
+        row = "row"
+    method = _ADDITIONS[operator]
     fn.line(f"posted = agent.{method}({symbol}, {row}, {annotations})")
 
 

@@ -79,6 +79,11 @@ class CustomMind(mind.Agent):
         self._revise(literal_from(symbol, row, annotations), None)
         return super().add_belief(symbol, row, annotations)
 
+    def replace_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+        """``-+b``."""
+        self.delete_any(symbol, annotations)
+        return self.add_belief(symbol, row, annotations)
+
     def add_belief_last(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
         """``+>b``."""
         self._revise(literal_from(symbol, row, annotations), None)
