@@ -89,8 +89,7 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
     """
     agent.current = intention
     frames, trail, selects = intention.frames, agent.trail, agent.selects
-    events, intentions, inbox = agent.events, agent.intentions, agent.inbox
-    percepts, tasks, waits = agent.percepts, agent.tasks, agent.condition_waits
+    events, intentions = agent.events, agent.intentions
     filters, depth, tail_calls = agent.option_filter.rows, agent.goal_depth, agent.options.tail_calls
     frame: Frame = frames[-1]
     while True:
@@ -122,17 +121,7 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
                     if not frames:
                         agent.finish(intention)
                         break
-            if (
-                fuel <= 0
-                or intentions
-                or events
-                or inbox
-                or percepts
-                or tasks
-                or waits
-                or agent.special
-                or intention.suspended is not None
-            ):
+            if intentions or events or agent.called or fuel <= 0:
                 if intention.suspended is None:
                     intentions.append(intention)
                 else:
@@ -148,18 +137,7 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
         annotations: Any = BY_SELF
         if goal.__class__ is Posted:
             goal, annotations = goal
-        if (
-            fuel <= 0
-            or intentions
-            or events
-            or inbox
-            or percepts
-            or tasks
-            or waits
-            or agent.special
-            or filters
-            or intention.suspended is not None
-        ):
+        if intentions or events or agent.called or filters or fuel <= 0:
             _announce(agent, intention, goal, annotations)
             events.append((goal, intention, annotations, None))
             break

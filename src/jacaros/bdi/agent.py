@@ -220,12 +220,14 @@ class Agent(Circumstance):
     def receive(self, message: SpeechAct) -> None:
         """Take a message; it is looked at in a later cycle."""
         self.inbox.append(message)
+        self.called = True
         self.architecture.ready()
 
     def perceive(self, percepts: list[Percept]) -> None:
         """Take note of changes in the environment; they are worked in before the next cycle."""
         if percepts:
             self.percepts.append(percepts)
+            self.called = True
             self.architecture.ready()
 
     def complete(self, act_id: int, completion: Completion) -> None:
@@ -268,7 +270,7 @@ class Agent(Circumstance):
         """A suspended step succeeded or failed: its intention goes on in the next cycle."""
         if waiting.frame is None:
             return
-        self.tasks.append(lambda: self._go_on(waiting))
+        self.do_soon(lambda: self._go_on(waiting))
         self.architecture.ready()
 
     def _go_on(self, waiting: Waiting) -> None:
@@ -297,7 +299,7 @@ class Agent(Circumstance):
         def on_resume() -> None:
             # The end of an external action is looked at in the next cycle, as any other; that of a wait has been.
             if is_action(ended.reason):
-                self.tasks.append(resumed)
+                self.do_soon(resumed)
                 self.architecture.ready()
             else:
                 resumed()

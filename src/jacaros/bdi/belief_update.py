@@ -73,7 +73,7 @@ def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations 
     if new is None:
         return None
     if agent.condition_waits:
-        agent.tasks.append(_nothing)
+        agent.do_soon(_nothing)
     return _raise(agent, (ADDED[symbol], *row), new, apart)
 
 
@@ -152,7 +152,7 @@ def delete_belief(
     if removed is None:
         return None
     if agent.condition_waits:
-        agent.tasks.append(_nothing)
+        agent.do_soon(_nothing)
     return _raise(agent, (DELETED[symbol], *removed), annotations, apart)
 
 
@@ -298,7 +298,7 @@ def external_change(
     if agent.selects[kind] is not None or agent.event_waits or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
     if agent.condition_waits:
-        agent.tasks.append(_nothing)
+        agent.do_soon(_nothing)
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:
@@ -367,7 +367,7 @@ def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
         elif selects[change] is not None:
             post(((change, *row), None, annotations, percept.cause))
     if agent.condition_waits:
-        agent.tasks.append(_nothing)
+        agent.do_soon(_nothing)
 
 
 def _is_flat(row: Row) -> bool:

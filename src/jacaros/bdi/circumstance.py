@@ -58,6 +58,8 @@ class Circumstance:
         goal_conditions: whether plans have goal conditions, which are tested in every cycle.
         subplans: whether plans have plans of their own.
         special: whether any of `meta`, `goal_conditions` and `subplans` is true.
+        called: something may want to be looked at besides `events` and `intentions`: `inbox`, `percepts`, `tasks`,
+            `condition_waits`, a suspension, or because the agent is `special`.  Whoever adds to one of them sets it.
         outer_frame: frame of the plan whose sub-plans are being tried.
         context: the view of itself that it gives to internal actions.
         namespace_properties: properties that programs give to namespaces.
@@ -180,6 +182,7 @@ class Circumstance:
         self.goal_conditions = False
         self.subplans = False
         self.special = False
+        self.called = False
         self.outer_frame: Any = None
         self.namespace_properties: dict[str, dict[Term, Term]] = {}
         self.functions: dict[str, Any] = {}
@@ -236,6 +239,11 @@ class Circumstance:
     def may_handle(self, kind: Trigger) -> bool:
         """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
         return self.subplans or self.selects[kind] is not None
+
+    def do_soon(self, task: Callable[[], None]) -> None:
+        """Have some housekeeping done at the beginning of the next cycle."""
+        self.tasks.append(task)
+        self.called = True
 
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and tell those who wait for it."""

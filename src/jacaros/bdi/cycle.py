@@ -26,11 +26,13 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     events, intentions = agent.events, agent.intentions
     always = agent.options.percept_interval == 1
     while fuel > 0 and not agent.stopped:
-        looks = always or looks_around(agent, agent.cycles + begun - fuel)
-        if percepts or tasks or agent.condition_waits:
-            housekeeping(agent, looks)
-        if inbox and looks:
-            read_message(agent)
+        if agent.called or not always:
+            looks = always or looks_around(agent, agent.cycles + begun - fuel)
+            if percepts or tasks or agent.condition_waits:
+                housekeeping(agent, looks)
+            if inbox and looks:
+                read_message(agent)
+            agent.called = bool(inbox or percepts or tasks or agent.condition_waits or agent.special)
         if events:
             if agent.atomic is None:
                 handle_event(agent)

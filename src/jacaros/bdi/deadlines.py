@@ -25,7 +25,7 @@ def _set(agent: Circumstance, goal: Term, delay: float, intention: Intention | N
     height = len(intention.frames) - 1 if intention is not None else 0
 
     def rings() -> None:
-        agent.tasks.append(over)
+        agent.do_soon(over)
         agent.architecture.ready()
 
     def over() -> None:

@@ -209,6 +209,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
     if intention.suspended is not None:
         return
     intention.suspended = reason
+    agent.called = True
     if agent.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "suspended")

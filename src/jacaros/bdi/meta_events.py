@@ -29,7 +29,7 @@ def goal_state(
         return
     told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
     event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
-    agent.tasks.append(lambda: _insert(agent, event))
+    agent.do_soon(lambda: _insert(agent, event))
 
 
 def post_new_goal(agent: Circumstance, event: Event) -> None:
@@ -61,4 +61,4 @@ def observe_goals(agent: Circumstance, observer: Callable[[str, str, int], None]
     """Have an observer told of every change of a goal: its state (``executing``, ``achieved``, ``failed``,
     ``suspended``, ``resumed``, ``dropped`` …), the goal as text, and a number that is the same for all news of one goal."""
     agent.goal_observer = observer
-    agent.meta = agent.special = True
+    agent.meta = agent.special = agent.called = True

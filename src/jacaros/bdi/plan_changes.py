@@ -43,6 +43,7 @@ def look_at_plans(agent: Circumstance) -> None:
     agent.subplans = agent.subplans or agent.library.has_subplans()
     agent.goal_conditions = agent.goal_conditions or agent.library.has_goal_conditions()
     agent.special = agent.meta or agent.subplans or agent.goal_conditions
+    agent.called = True
     agent.edges = agent.subplans or any(agent.selects[kind] is not None for kind in (SLEEPING, AWAKING))
     if not agent.edges:
         # Nobody would notice, and an agent that gets such a plan later is awake then.

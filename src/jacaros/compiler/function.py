@@ -140,7 +140,10 @@ class FunctionBuilder:
     def bind(self, name: str, expression: str | None = None) -> str:
         """Give a variable its value here; returns the local name."""
         target = f"v_{name}"
-        if expression is not None and expression != target:
+        if expression is not None and expression.startswith("Var("):
+            # What `Var.__init__` does, without the call.
+            self.line(f"{target} = new(Var); {target}.ref = None; {target}.name = {name!r}")
+        elif expression is not None and expression != target:
             self.line(f"{target} = {expression}")
         self.values[name] = target
         if name not in self.fresh:

@@ -497,5 +497,6 @@ NAMES: dict[str, Any] = {
     "CLOSED": CLOSED,
     "CONS": CONS,
     "copy": rename,
+    "new": object.__new__,
 }
 """The global names of generated code."""

@@ -131,6 +131,7 @@ def _wait_for_condition(ctx: Context, formula: Term, limit: Term, elapsed: Term)
 
     waited.entry = (holds, waited)
     ctx.agent.condition_waits.append(waited.entry)
+    ctx.agent.called = True
     if limit is not None:
         waited.limit(limit, fails=True)
     return waited.waiting
