@@ -92,6 +92,7 @@ class Circumstance:
         "beliefs",
         "blamed",
         "bodies",
+        "called",
         "condition_waits",
         "context",
         "current",
@@ -136,6 +137,7 @@ class Circumstance:
         "suspended_events",
         "tasks",
         "trail",
+        "usual_events",
     )
 
     def __init__(
