@@ -18,6 +18,7 @@ from jacaros.asl.checks.plans import (
     misspelt_label_words,
     narrow_handlers,
     never_selected,
+    wrong_urgencies,
 )
 from jacaros.asl.checks.variables import singletons, vain_comparisons
 from jacaros.asl.diagnostics import Diagnostic
@@ -64,6 +65,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *unknown_performatives(found),
         *contexts_never_true(found),
         *misspelt_label_words(found),
+        *wrong_urgencies(found),
     ]
     for clause in clauses:
         warnings += vain_comparisons(clause)

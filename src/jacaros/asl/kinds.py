@@ -90,5 +90,6 @@ KINDS: Final[dict[str, Kind]] = {
     "wrong-separator": Kind("error", "',' in place of another sign"),
     "wrong-tail": Kind("error", "the tail of a list or of annotations is no variable"),
     "wrong-trigger": Kind("error", "something that cannot trigger a plan"),
+    "wrong-urgency": Kind("warning", "an urgency of a plan that is no whole number from 0 on"),
 }
 """All kinds, by code.  docs/reference/diagnostics.md shows an example of each."""

@@ -40,6 +40,7 @@ class Circumstance:
         current: the intention whose step is being made.
         atomic: the intention that has an atomic plan on its stack, or None.
         atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
+        urgency: how urgent things are (`jacaros.bdi.urgency.Urgency`); None while no plan is more urgent than others.
         inbox, percepts: what was received and noticed, and not yet looked at.
         tasks: housekeeping for the beginning of the next cycle.
         suspended_events: goal events whose goal was suspended before it became an intention.
@@ -137,6 +138,7 @@ class Circumstance:
         "suspended_events",
         "tasks",
         "trail",
+        "urgency",
         "usual_events",
     )
 
@@ -160,6 +162,7 @@ class Circumstance:
         self.library = PlanLibrary(plans)
         self.library.report = lambda text: architecture.log("error", text)
         self.selects: Selects = self.library.selects
+        self.urgency: Any = None
         self.events: deque[Event] = deque()
         self.requeued: list[Event] = []
         self.next_look = 0

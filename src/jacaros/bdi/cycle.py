@@ -14,6 +14,7 @@ from jacaros.bdi.finishing import end_achieved_goals
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.sensing import housekeeping, looks_around
 from jacaros.bdi.speech_acts import read_message
+from jacaros.bdi.urgency import handle_urgent_event, read_urgent_messages
 from jacaros.errors import InternalError
 
 
@@ -24,18 +25,25 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         edge_signals.awake(agent)
     percepts, tasks, inbox = agent.percepts, agent.tasks, agent.inbox
     events, intentions = agent.events, agent.intentions
+    handle, read = (
+        (handle_event, read_message) if agent.urgency is None else (handle_urgent_event, read_urgent_messages)
+    )
     always = agent.options.percept_interval == 1
     while fuel > 0 and not agent.stopped:
         if agent.called or not always:
             looks = always or looks_around(agent, agent.cycles + begun - fuel)
             if percepts or tasks or agent.condition_waits:
                 housekeeping(agent, looks)
+                if agent.urgency is not None:
+                    # The queues may have been put in order of urgency just now.
+                    events, intentions = agent.events, agent.intentions
+                    handle, read = handle_urgent_event, read_urgent_messages
             if inbox and looks:
-                read_message(agent)
+                read(agent)
             agent.called = bool(inbox or percepts or tasks or agent.condition_waits or agent.special)
         if events:
             if agent.atomic is None:
-                handle_event(agent)
+                handle(agent)
             else:
                 handle_atomic_event(agent, agent.atomic)
         if agent.goal_conditions:

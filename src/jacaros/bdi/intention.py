@@ -33,6 +33,7 @@ class Intention:
         cause: why it was adopted.
         forks: the forks it is a branch of, outermost first, with the number of the branch.
         outer: intention and frame whose sub-plan reacts here to something outside, or None.
+        urgencies: the urgency of each frame with those below it; only there when the agent has urgent plans.
         on_failed: called with the reason (`FailureReason`, or None) when it ends in failure, in place of the usual
             warning.
     """
@@ -48,8 +49,11 @@ class Intention:
         "outer",
         "parked",
         "suspended",
+        "urgencies",
         "waiting",
     )
+
+    urgencies: list[tuple[Frame, int]]
 
     def __init__(self, number: int, cause: Cause | None = None) -> None:
         self.id = number

@@ -15,6 +15,7 @@ class Options:
         verbose: what people are told of the agent besides what it prints: 0 only trouble, 2 details as well.
         percept_interval: percepts and messages are looked at every so many cycles (``nrcbp``), and when there is nothing
             else to do.
+        urgency: names of events, with the urgency of all plans for them (`jacaros.bdi.urgency`).
         rule_depth: how many rules and conditions may be open at the same time in one search; one more and it fails
             (some kilobytes each).
         goal_depth: how many plans may be on the stack of an intention; a goal that would be one more fails (a quarter
@@ -28,3 +29,4 @@ class Options:
     goal_depth: int = 1_000_000
     verbose: int = 1
     percept_interval: int = 1
+    urgency: tuple[tuple[str, int], ...] = ()

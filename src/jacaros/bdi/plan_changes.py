@@ -3,7 +3,7 @@
 from jacaros.asl import nodes
 from jacaros.asl.labels import shape
 from jacaros.asl.loader import parse_plans
-from jacaros.bdi import belief_update
+from jacaros.bdi import belief_update, urgency
 from jacaros.bdi.belief_base import Rule
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.edge_signals import AWAKING, SLEEPING
@@ -48,6 +48,7 @@ def look_at_plans(agent: Circumstance) -> None:
     if not agent.edges:
         # Nobody would notice, and an agent that gets such a plan later is awake then.
         agent.drowsy = agent.asleep = False
+    urgency.plans_changed(agent)
 
 
 def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:
@@ -125,6 +126,7 @@ def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
         agent.library.set_sources(found, left)
     else:
         agent.library.remove(found)
+        urgency.plans_changed(agent)
     return True
 
 

@@ -22,6 +22,7 @@ from jacaros.terms.values import (
 
 ATOMIC_LABEL = atom("atomic")
 URL = functor("url", 1)
+URGENCY = functor("urgency", 1)
 
 
 class Plan:
@@ -32,6 +33,7 @@ class Plan:
         label: term of the label, without annotations.
         annotations: those of the label, without its sources.
         atomic: whether the label says ``atomic``.
+        urgency: the number of ``urgency(N)`` in the label, 0 without.
         slots: index in the frame by variable name.
         size: number of slots of a body that is run on its own.
         first: the first step function, None for an empty body; set when the plan is compiled.
@@ -58,6 +60,7 @@ class Plan:
         "steps",
         "subplans",
         "subselects",
+        "urgency",
     )
 
     def __init__(self, node: nodes.Plan, label: Term) -> None:
@@ -65,6 +68,7 @@ class Plan:
         self.label = bare(label)
         self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
         self.atomic = ATOMIC_LABEL in self.annotations
+        self.urgency = _urgency(self.annotations) if self.annotations else 0
         self.replaceable = node.goal_condition is None and not node.subplans
         self.slots: dict[str, int] = {}
         self.size = 0
@@ -101,6 +105,14 @@ class Plan:
         if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
             return None
         return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def _urgency(annotations: tuple[Term, ...]) -> int:
+    """The greatest whole number from 0 on in an annotation ``urgency(N)``; the checker tells of what is none."""
+    found = [
+        a[1] for a in annotations if a.__class__ is tuple and a[0] is URGENCY and a[1].__class__ is float
+    ]
+    return int(max((number for number in found if number > 0 and number.is_integer()), default=0))
 
 
 def _is_source(annotation: Term) -> bool:

@@ -1,5 +1,6 @@
 """The options of agents in project files: what they may be, and what becomes of them."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
@@ -9,6 +10,7 @@ from jacaros.asl.source import Span
 from jacaros.asl.spelling import close_matches
 from jacaros.bdi.options import Options
 
+_EVENT: Final = re.compile(r"(\w+::)?~?[a-z]\w*")
 _TRUTH: Final = ("true", "false")
 _CHOICES: Final[dict[str, tuple[str, ...]]] = {
     "events": ("discard", "requeue", "retrieve"),
@@ -50,6 +52,9 @@ def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
         return Diagnostic("error", f"{name} is one of {', '.join(choices)}, not '{value}'", span, hint)
     if name in _NUMBERS and not (value.isdigit() and int(value) > 0):
         return Diagnostic("error", f"{name} is a whole number from 1 on, not '{value}'", span)
+    if name == "urgency" and read_urgencies(value) is None:
+        hint = 'write names of events with whole numbers from 0 on: urgency="bumped=10, battery_low=5"'
+        return Diagnostic("error", f"'{value}' does not say how urgent events are", span, hint)
     if name in _WITHOUT_EFFECT:
         why = _WITHOUT_EFFECT[name]
         return Diagnostic("warning", f"the option '{name}' has no effect: {why}", span)
@@ -73,7 +78,19 @@ def mind_options(given: Mapping[str, str]) -> Options:
         percept_interval=_number(given, "nrcbp", options.percept_interval),
         rule_depth=_number(given, "rule_depth", options.rule_depth),
         goal_depth=_number(given, "goal_depth", options.goal_depth),
+        urgency=read_urgencies(given.get("urgency", "")) or (),
     )
+
+
+def read_urgencies(text: str) -> tuple[tuple[str, int], ...] | None:
+    """The option ``urgency``: ``bumped=10, battery_low=5``; None when it cannot be read."""
+    found = []
+    for piece in text.split(",") if text.strip() else ():
+        name, separator, number = (part.strip() for part in piece.partition("="))
+        if not separator or not _EVENT.fullmatch(name) or not number.isdecimal():
+            return None
+        found.append((name, int(number)))
+    return tuple(found)
 
 
 def _number(given: Mapping[str, str], name: str, default: int) -> int:

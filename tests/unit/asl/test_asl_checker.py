@@ -278,6 +278,13 @@ def test_annotations_of_labels_that_are_nearly_known():
     assert codes("@a[atomc] +!g. @b[atomic, priority(2), tests] +!h.") == ["misspelt-annotation"]
 
 
+def test_an_urgency_is_a_whole_number():
+    wrong = ["urgency", "urgency(high)", "urgency(1.5)", "urgency(-1)", "urgency(_)", "urgency(1, 2)"]
+    assert [codes(f"@a[{each}] +b.") for each in wrong] == [["wrong-urgency"]] * len(wrong)
+    assert codes("@a[urgency(0)] +b. @c[urgency(10), atomic] +d. @e[urgency(2 * 3)] +f.") == []
+    assert codes("@a[urgensy(3)] +b.") == ["misspelt-annotation"]
+
+
 def test_clauses_with_errors_are_passed_over():
     text = "+!a <- b(; .prnt(x); c(Y).\n+!d <- .prnt(Z).\n!nobody."
     file = SourceFile("main.asl", text)

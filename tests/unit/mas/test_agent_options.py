@@ -48,6 +48,17 @@ def test_messages_can_be_looked_at_less_often(tmp_path: Path) -> None:
     assert run(tmp_path, "nrcbp=10", program, "b;").of("a") == ["1", "2", "3", "4", "5"]
 
 
+def test_events_can_be_given_urgency_from_outside(tmp_path: Path) -> None:
+    program = """
+        !go. +!go <- ++low(1); ++low(2); ++bump; ++low(3); .print(gone).
+        +low(I) <- .print(low, I).  +bump <- .print(bump); .print(end).
+        +!stop.
+    """
+    assert run(tmp_path, 'urgency="bump=10, stop=20"', program).of("a") == [
+        *("low1", "bump", "end", "low2", "gone", "low3"),
+    ]
+
+
 @pytest.mark.parametrize(
     ("option", "told"),
     [("0", []), ("1", ["info: some", "debug: fine"]), ("2", ["info: some", "debug: fine"])],

@@ -182,6 +182,7 @@ def test_wrong_options_are_reported_at_their_line(folder: Path):
             agents: bob [events=discord, intBels=here,
                          verbose=9, tro=yes];
                     carl [nrcbp=0, own="anything"];
+                    bob2 bob.asl [urgency="bump 10"];
         }
         """
     assert located(report(folder, "p.mas2j", text)) == [
@@ -190,6 +191,7 @@ def test_wrong_options_are_reported_at_their_line(folder: Path):
         ("3:26", "verbose is one of 0, 1, 2, not '9'"),
         ("3:33", "tro is one of true, false, not 'yes'"),
         ("4:25", "nrcbp is a whole number from 1 on, not '0'"),
+        ("5:35", "'bump 10' does not say how urgent events are"),
     ]
 
 

@@ -11,7 +11,7 @@ from jacaros.asl.spelling import is_slip_of
 from jacaros.asl.walk import walk
 
 _REMOVING: Final = frozenset({".remove_plan", ".add_plan", ".include"})
-_LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs")
+_LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency")
 
 
 def never_selected(program: nodes.Program, found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
@@ -152,3 +152,30 @@ def misspelt_label_words(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
                     f"did you mean {meant[0]}?",
                     "misspelt-annotation",
                 )
+
+
+def wrong_urgencies(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+    """Annotations ``urgency`` of labels without a whole number from 0 on: they have no effect."""
+    for node in found:
+        if not isinstance(node, nodes.Plan) or not isinstance(node.label, nodes.Literal):
+            continue
+        annotations = node.label.annotations
+        for item in () if annotations is None else annotations.items:
+            if isinstance(item, nodes.Literal) and item.functor == "urgency" and not _is_urgency(item):
+                yield Diagnostic(
+                    "warning",
+                    "the urgency of a plan is a whole number from 0 on; this one has no effect",
+                    item.span,
+                    "write a number, such as urgency(10): what has a greater one goes first",
+                    "wrong-urgency",
+                )
+
+
+def _is_urgency(item: nodes.Literal) -> bool:
+    if len(item.arguments) != 1:
+        return False
+    argument = item.arguments[0]
+    if isinstance(argument, nodes.Number):
+        return argument.value >= 0 and float(argument.value).is_integer()
+    # What it comes to is known when it is computed only.
+    return isinstance(argument, nodes.Arithmetic)
