@@ -337,6 +337,7 @@ class Agent(Circumstance):
     delete_any = belief_update.delete_any
     change_mind = belief_update.change_mind
     tell = belief_update.tell
+    believe = belief_update.believe
     untell = belief_update.untell
     solve_formula = formulas.solve_formula
     solve_in_namespaces = formulas.solve_in_namespaces

@@ -271,11 +271,17 @@ def tell(agent: Circumstance, term: Term, cause: Any = None) -> bool:
     symbol, row, annotations = parts(term)
     if symbol is None:
         return False
-    annotations = with_source(annotations)
+    believe(agent, symbol, row, with_source(annotations), cause)
+    return True
+
+
+def believe(
+    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
+) -> None:
+    """The same for a literal in parts, with a source among its annotations."""
     new = insert(agent, symbol, row, annotations)
     if new is not None:
         external_change(agent, "+", symbol, row, new, cause)
-    return True
 
 
 def untell(agent: Circumstance, term: Term) -> bool:

@@ -1,6 +1,5 @@
 """What messages do (KQML as Jason defines it): tell, achieve, ask, and the rest."""
 
-from functools import lru_cache
 from typing import Any
 
 from jacaros.asl.errors import AslError
@@ -124,13 +123,19 @@ def from_sender(content: Term, sender: str) -> Term:
 def literal_from(content: Term, sender: str) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
     """Functor, arguments and annotations of the content with ``source(sender)``; no functor when it is no literal."""
     if is_flat(content):
-        return functor_of(content), arguments_of(content), _only_from(sender)
+        return functor_of(content), arguments_of(content), _ONLY_FROM[sender]
     return parts(from_sender(content, sender))
 
 
-@lru_cache(maxsize=4096)
-def _only_from(sender: str) -> tuple[Term, ...]:
-    return ((SOURCE, atom(sender)),)
+class _Sources(dict[str, tuple[Term, ...]]):
+    """The annotations of what comes from an agent and from nobody else, by its name: one tuple for each, as atoms are."""
+
+    def __missing__(self, sender: str) -> tuple[Term, ...]:
+        found = self[sender] = ((SOURCE, atom(sender)),)
+        return found
+
+
+_ONLY_FROM = _Sources()
 
 
 def _is_source(term: Term) -> bool:
@@ -145,6 +150,11 @@ def _contents(content: Term) -> list[Term]:
 
 
 def _tell(agent: Circumstance, message: SpeechAct) -> None:
+    content = message.content
+    if message.flat and content.__class__ is tuple and content[0] is not CONS:
+        # As for `_achieve`: what agents tell each other is mostly flat.
+        agent.believe(content[0], content[1:], _ONLY_FROM[message.sender])  # type: ignore[attr-defined]
+        return
     for content in _contents(message.content):
         if not agent.tell(from_sender(content, message.sender)):  # type: ignore[attr-defined]
             _refuse(agent, message)
@@ -159,7 +169,7 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
     content = message.content
     if message.flat and content.__class__ is tuple and content[0] is not CONS and not agent.meta:
         # The most frequent message, written out: there is nothing in it to be looked at.
-        event = ((ACHIEVED[content[0]], *content[1:]), None, _only_from(message.sender), None)
+        event = ((ACHIEVED[content[0]], *content[1:]), None, _ONLY_FROM[message.sender], None)
         agent.events.append(event)
         if agent.event_waits:
             agent.notify_event_waits(event)

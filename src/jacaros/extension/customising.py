@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from jacaros.bdi import act, event
 from jacaros.bdi import agent as mind
-from jacaros.bdi.belief_base import parts
+from jacaros.bdi.belief_base import literal, parts
 from jacaros.bdi.failure import error_terms
 from jacaros.bdi.intention import PLAN, Frame
 from jacaros.bdi.internal_action import ActionError
@@ -110,6 +110,13 @@ class CustomMind(mind.Agent):
     def tell(self, term: Term, cause: Any = None) -> bool:
         """A belief from a message."""
         return self._is_refused(term, told=True) or super().tell(term, cause)
+
+    def believe(
+        self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...], cause: Any = None
+    ) -> None:
+        """The same, in parts."""
+        if not self._is_refused(literal(symbol, row, annotations), told=True):
+            super().believe(symbol, row, annotations, cause)
 
     def untell(self, term: Term) -> bool:
         """A belief that a message takes back."""

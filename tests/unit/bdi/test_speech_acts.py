@@ -57,6 +57,22 @@ def test_a_flat_content_is_taken_as_any_other(content: str, done: list[str], fla
 
 
 @pytest.mark.parametrize("flat", [False, True])
+@pytest.mark.parametrize("content", ["p", "p(1)", 'p(x, "y")', "[p, p(2)]", "[]"])
+def test_a_flat_content_is_believed_as_any_other(content: str, flat: bool) -> None:
+    said = message("tell", content)
+    said.flat = flat and is_flat(said.content)
+    host = after("+p[source(S)] <- .print(S). +p(X)[source(S)] <- .print(X, S). +p(X, Y) <- .print(X, Y).", said, said)
+    held = {
+        "p": (["p[source(ann)]"], ["ann"]),
+        "p(1)": (["p(1)[source(ann)]"], ["1ann"]),
+        'p(x, "y")': (['p(x,"y")[source(ann)]'], ["xy"]),
+        "[p, p(2)]": (["p[source(ann)]", "p(2)[source(ann)]"], ["ann", "2ann"]),
+        "[]": ([], []),
+    }
+    assert (believed(host, "p"), host.printed) == held[content]
+
+
+@pytest.mark.parametrize("flat", [False, True])
 def test_an_asked_for_goal_is_told_of_and_awaited(flat: bool) -> None:
     said = message("achieve", "g(1)")
     said.flat = flat
