@@ -61,7 +61,9 @@ def test_a_flat_content_is_taken_as_any_other(content: str, done: list[str], fla
 def test_a_flat_content_is_believed_as_any_other(content: str, flat: bool) -> None:
     said = message("tell", content)
     said.flat = flat and is_flat(said.content)
-    host = after("+p[source(S)] <- .print(S). +p(X)[source(S)] <- .print(X, S). +p(X, Y) <- .print(X, Y).", said, said)
+    host = after(
+        "+p[source(S)] <- .print(S). +p(X)[source(S)] <- .print(X, S). +p(X, Y) <- .print(X, Y).", said, said
+    )
     held = {
         "p": (["p[source(ann)]"], ["ann"]),
         "p(1)": (["p(1)[source(ann)]"], ["1ann"]),
