@@ -7,6 +7,7 @@ python=$root/.venv/bin/python
 "$python" "$root/benchmarks/patrol_speed.py"
 "$python" "$root/benchmarks/mind_speed.py"
 "$python" "$root/benchmarks/mind/compare.py" --rounds 1
+"$python" "$root/benchmarks/robot.py"
 "$python" "$root/benchmarks/latency.py" memory
 for venv in ros1 ros2-jazzy ros2-kilted; do
   if [ -x "$root/.venv-$venv/bin/python" ]; then
