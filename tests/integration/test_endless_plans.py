@@ -1,0 +1,51 @@
+"""A plan that never ends holds nobody up: not the other agents, not the timers, not the world."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.testing import run_project
+
+ENDLESS = {
+    "while": "!g. +!g <- while (true) { }.",
+    "work": "n(0). !g. +!g <- while (n(X)) { -+n(X + 1) }.",
+    "tail_call": "!g. +!g <- !g.",
+    "new_intentions": "!g. +!g <- !!g.",
+    "events": "n(0). +n(X) <- -+n(X + 1).",
+    "failures": "!g. +!g <- .fail. -!g <- !g.",
+    "tests": "!g. +!g <- ?h; !g. +?h.",
+    "atomic": "!g. @a[atomic] +!g <- while (true) { }.",
+    "messages": "!g. +!g <- .my_name(Me); .send(Me, achieve, g).",
+    "thousand": "!g. +!g <- for (.range(I, 1, 1000)) { !!h }. +!h <- while (true) { }.",
+}
+"""Programs that always have something to do."""
+
+PROJECT = """
+MAS shared {
+    environment: jacaros.Environment
+    agents: mad #3; clerk; driver;
+}
+"""
+CLERK = """
+!wait(4).
++!wait(0) <- .send(driver, askOne, moving(_), _); .print(waited); .stopMAS.
++!wait(N) <- .wait(25); !wait(N - 1).
+"""
+DRIVER = """
+!go.
++!go <- makeArtifact("motion", "ArtCmdVelAndOdometry", [], M); focus(M); +moving(yes); moveForward(1000).
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "fast"),
+    [*((kind, False) for kind in ENDLESS), *((kind, True) for kind in ("while", "tail_call", "events"))],
+)
+def test_a_plan_without_end_holds_nobody_up(tmp_path: Path, kind: str, fast: bool) -> None:
+    for name, text in {"mad": ENDLESS[kind], "clerk": CLERK, "driver": DRIVER}.items():
+        (tmp_path / f"{name}.asl").write_text(text, encoding="utf-8")
+    (tmp_path / "shared.mas2j").write_text(PROJECT, encoding="utf-8")
+    result = run_project(tmp_path / "shared.mas2j", fast=fast, seconds=600)
+    assert result.of("clerk") == ["waited"]
+    assert result.ground_truth.latest().x > 0
