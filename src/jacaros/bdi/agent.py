@@ -23,7 +23,7 @@ from jacaros.bdi import (
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.answers import AnswerByPlan
 from jacaros.bdi.architecture import Architecture
-from jacaros.bdi.belief_base import OpenFact, Rule, parts
+from jacaros.bdi.belief_base import parts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.context import Context
 from jacaros.bdi.event import Posted
@@ -34,6 +34,7 @@ from jacaros.bdi.intention import Frame
 from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.bdi.rules import OpenFact, Rule
 from jacaros.bdi.speech_act import SpeechAct, message_id
 from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
@@ -172,7 +173,7 @@ class Agent(Circumstance):
 
     def _initial_belief(self, node: nodes.Literal | nodes.Rule) -> None:
         if isinstance(node, nodes.Rule):
-            rule = Rule(node, self.actions)
+            rule = Rule(node, self.actions, self.library.program.rule_functions)
             head = functor_of(rule.head())
             assert head is not None
             belief_update.add_rule(self, rule, head, last=False)
@@ -183,9 +184,9 @@ class Agent(Circumstance):
         symbol, _, annotations = parts(term)
         assert symbol is not None
         if free_variables(term):
-            self.beliefs[symbol].add(
-                OpenFact(bare(term), own_annotations(annotations)), own_annotations(annotations)
-            )
+            own = own_annotations(annotations)
+            fact = OpenFact(bare(term), own, node, self.actions, self.library.program.rule_functions)
+            self.beliefs[symbol].add(fact, own)
         else:
             belief_update.tell(self, term)
 

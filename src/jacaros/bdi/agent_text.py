@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Iterator
 
 from jacaros.asl.formatter import format_plan, format_term
-from jacaros.bdi.belief_base import OpenFact, Rule, literal
+from jacaros.bdi.belief_base import literal
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.rules import OpenFact, Rule
 from jacaros.terms.text import text
 from jacaros.terms.values import SOURCE_SELF, Annotated, Term, annotations_of, bare
 

@@ -1,15 +1,12 @@
 """Beliefs and rules, indexed by functor and, where programs ask for it, by arguments."""
 
-from collections.abc import Generator, Iterable, Iterator, Mapping
+import itertools
+from collections.abc import Iterable, Iterator
 from typing import Any
 
-from jacaros.asl import nodes
-from jacaros.compiler.function import ActionInfo
-from jacaros.compiler.lowering import fresh_names, lower, lower_value
-from jacaros.compiler.unit import compile_rule_function
+from jacaros.bdi.rules import OpenFact, Search, Searches
 from jacaros.terms.order import annotation_set
-from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, equal, is_key, rename, resolve, unify
+from jacaros.terms.unifier import ATOMIC, Trail, equal, is_key, resolve
 from jacaros.terms.values import (
     BY_SELF,
     SOURCE,
@@ -23,83 +20,14 @@ from jacaros.terms.values import (
 )
 
 Row = tuple[Term, ...]
+Item = tuple[Any, tuple[Term, ...]]
+"""An entry of a table with its annotations."""
+Index = dict[Any, Any]
+"""By key the row, or a dictionary of the rows, newest last."""
 _ONE = ((),)
 _NONE: tuple[Row, ...] = ()
-_NOTHING: tuple[tuple[Row, tuple[Term, ...]], ...] = ()
-_FLAT = frozenset({float, Functor})
-
-
-class Rule:
-    """A rule in the base; its function is generated when it is first used."""
-
-    __slots__ = ("_actions", "_function", "node", "term")
-
-    def __init__(self, node: nodes.Rule, actions: Mapping[str, ActionInfo]) -> None:
-        self.node = _with_source(node)
-        self._actions = actions
-        self._function: Any = None
-
-    def search(self, agent: Any, arguments: Row, trail: Trail) -> Generator[Any, Any, None]:
-        """A generator of the answers, see `jacaros.compiler.runtime.run`."""
-        if self._function is None:
-            self._function = compile_rule_function(self.node, self._actions)
-        found: Generator[Any, Any, None] = self._function(agent, arguments, trail)
-        return found
-
-    def head_annotations(self) -> tuple[Term, ...]:
-        """The annotations of the head, ``source(self)`` when it names no source."""
-        annotations = self.node.head.annotations
-        return BY_SELF if annotations is None else annotations_of(lower_value(self.node.head))
-
-    def text(self) -> str:
-        """The rule as Jason prints it."""
-        lookup = fresh_names()
-        head = lower(self.node.head, lookup)
-        if self.node.head.annotations is None:
-            head = Annotated(head, BY_SELF)
-        return f"{text(head)} :- {text(lower(self.node.body, lookup))}"
-
-    def head(self) -> Term:
-        """The head as a term with fresh variables."""
-        return lower(self.node.head, fresh_names())
-
-
-_SOURCE_SELF = nodes.Literal("source", (nodes.Literal("self"),))
-
-
-def _with_source(rule: nodes.Rule) -> nodes.Rule:
-    """The rule with ``source(self)`` among the annotations of its head, when there are some and none is a source."""
-    annotations = rule.head.annotations
-    if annotations is None:
-        return rule
-    if any(isinstance(item, nodes.Literal) and item.functor == "source" for item in annotations.items):
-        return rule
-    more = nodes.replace(annotations, items=(*annotations.items, _SOURCE_SELF))
-    return nodes.replace(rule, head=nodes.replace(rule.head, annotations=more))
-
-
-class OpenFact:
-    """A belief with variables: every use takes a copy."""
-
-    __slots__ = ("annotations", "literal")
-
-    def __init__(self, literal: Term, annotations: tuple[Term, ...]) -> None:
-        self.literal, self.annotations = literal, annotations
-
-    def search(self, agent: Any, arguments: Row, trail: Trail) -> Generator[Any, Any, None]:
-        """One answer when the arguments unify with a copy."""
-        del agent
-        own = arguments_of(rename(self.literal))
-        if all(unify(a, b, trail) for a, b in zip(arguments, own, strict=True)):
-            yield ()
-
-    def head_annotations(self) -> tuple[Term, ...]:
-        """The annotations of the belief."""
-        return self.annotations
-
-    def head(self) -> Term:
-        """A copy of the literal."""
-        return rename(self.literal)
+_NOTHING: tuple[Item, ...] = ()
+_FEW = 8
 
 
 class Table:
@@ -108,31 +36,51 @@ class Table:
     Attributes:
         rows: annotations by row; newest last.  Keys that are no tuples are rules and beliefs with variables.
         late: those added behind all others, in order.
+        others: how many of `rows` are rules and beliefs with variables.
         plain: holds only facts without variables, in `rows` alone: compiled queries may read it directly.
+        searches: generator functions for a table that is not plain, by pattern of use.
+        deep: those that need no Python recursion.
     """
 
-    __slots__ = ("_indexes", "functor", "late", "plain", "rows")
+    __slots__ = (
+        "_base",
+        "_indexes",
+        "_parted",
+        "deep",
+        "functor",
+        "late",
+        "others",
+        "plain",
+        "rows",
+        "searches",
+    )
 
-    def __init__(self, functor: Functor) -> None:
+    def __init__(self, functor: Functor, base: "BeliefBase | None" = None) -> None:
         self.functor = functor
         self.rows: dict[Any, tuple[Term, ...]] = {}
         self.late: dict[Any, tuple[Term, ...]] = {}
+        self.others = 0
         self.plain = True
-        self._indexes: dict[tuple[int, ...], dict[Any, dict[Row, None]]] = {}
+        self.searches: Searches | None = None
+        self.deep: Searches | None = None
+        self._indexes: dict[tuple[int, ...], Index] = {}
+        self._base = base
+        self._parted = 0
+
+    def search(self, pattern: int, agent: Any, trail: Trail) -> Search:
+        """The generator function for a search that begins here; *pattern* tells which arguments are given."""
+        trail.room = agent.rule_depth
+        assert self.searches is not None
+        return self.searches[pattern]
 
     def exact(self, row: Row) -> Iterable[tuple[()]]:
         """One empty answer when the row is held."""
         return _ONE if row in self.rows else _NONE
 
-    def exact_item(self, row: Row) -> Iterable[tuple[Row, tuple[Term, ...]]]:
+    def exact_item(self, row: Row) -> Iterable[Item]:
         """The row with its annotations when it is held."""
         held = self.rows.get(row)
         return _NOTHING if held is None else ((row, held),)
-
-    def find_items(self, positions: tuple[int, ...], key: Any) -> Iterable[tuple[Row, tuple[Term, ...]]]:
-        """What `find` finds, each row with its annotations."""
-        rows = self.rows
-        return [(row, rows[row]) for row in self.find(positions, key)]
 
     def find(self, positions: tuple[int, ...], key: Any) -> Iterable[Row]:
         """The rows whose arguments at *positions* are *key* (one value, or a tuple), newest first."""
@@ -140,17 +88,27 @@ class Table:
         if index is None:
             index = self._build_index(positions)
         bucket = index.get(key)
-        return _NONE if bucket is None else reversed(bucket)
+        if bucket is None:
+            return _NONE
+        return (bucket,) if bucket.__class__ is tuple else reversed(bucket)
 
-    def _build_index(self, positions: tuple[int, ...]) -> dict[Any, dict[Row, None]]:
-        index = self._indexes[positions] = {}
+    def find_items(self, positions: tuple[int, ...], key: Any) -> Iterable[Item]:
+        """What `find` finds, each row with its annotations."""
+        held = self.rows.__getitem__
+        return zip(self.find(positions, key), map(held, self.find(positions, key)), strict=True)
+
+    def _build_index(self, positions: tuple[int, ...]) -> Index:
+        index: Index = {}
         for row in self.rows:
             if row.__class__ is tuple:
-                index.setdefault(_key(row, positions), {})[row] = None
+                _put(index, _key(row, positions), row)
+        self._indexes[positions] = index
         return index
 
     def aside(self, row: Row) -> "OpenFact | None":
         """The ground belief with these arguments among those that are no keys."""
+        if self.plain:
+            return None
         for entry in (*self.rows, *self.late):
             if isinstance(entry, OpenFact) and equal(entry.literal, literal(self.functor, row)):
                 return entry
@@ -173,62 +131,89 @@ class Table:
         """
         if last:
             self.late[row] = annotations
-            self.plain = False
+            self._changed()
             return annotations
+        if self._base is not None and self._base.searching:
+            self._part(self._base.searching)
         self.rows[row] = annotations
         if row.__class__ is not tuple:
-            self.plain = False
+            self.others += 1
+            self._changed()
             return annotations
+        if self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before):
+            self._changed()  # no rule answers before the newest fact
         if self._indexes:
             self._add_to_indexes(row)
         return annotations
 
     def _add_to_indexes(self, row: Row) -> None:
         for positions, index in self._indexes.items():
-            key = _key(row, positions)
-            bucket = index.get(key)
-            if bucket is None:
-                index[key] = {row: None}
-            else:
-                bucket[row] = None
+            _put(index, row[positions[0]] if len(positions) == 1 else _key(row, positions), row)
 
     def begin(self, row: Row, annotations: tuple[Term, ...]) -> bool:
         """Put in a row of numbers, strings and atoms; False when it is held already."""
         if row in self.rows or (self.late and row in self.late):
             return False
-        self.rows[row] = annotations
-        if self._indexes:
-            self._add_to_indexes(row)
+        self.add(row, annotations)
         return True
 
     def end(self, row: Row, annotations: tuple[Term, ...]) -> bool:
         """Take out a row; False when it is not held with this very tuple of annotations."""
         if self.rows.get(row) is not annotations:
             return False
-        del self.rows[row]
-        if self._indexes:
-            self._remove_from_indexes(row)
+        self.remove(row)
         return True
 
     def remove(self, row: Any) -> bool:
         """Take out a row, rule or open belief that is held; False when the base refuses."""
         if row in self.late:
             del self.late[row]
-        else:
-            del self.rows[row]
-            if self._indexes and row.__class__ is tuple:
-                self._remove_from_indexes(row)
-        if not self.plain:
-            self.plain = not self.late and all(r.__class__ is tuple for r in self.rows)
-        return True
-
-    def _remove_from_indexes(self, row: Row) -> None:
+            self._changed()
+            return True
+        if self._base is not None and self._base.searching:
+            self._part(self._base.searching)
+        _discard(self.rows, row)
+        if row.__class__ is not tuple:
+            self.others -= 1
+            self._changed()
+            return True
         for positions, index in self._indexes.items():
             key = _key(row, positions)
             bucket = index[key]
-            del bucket[row]
-            if not bucket:
+            if bucket.__class__ is tuple or len(bucket) == 1:
                 del index[key]
+            else:
+                _discard(bucket, row)
+        return True
+
+    def _changed(self) -> None:
+        """Rules, or facts among them, came or went: another function searches for them from now on."""
+        self.plain = not self.others and not self.late
+        self.searches = None if self.plain else Searches(self)
+        self.deep = None if self.plain else Searches(self, deep=True)
+
+    def _part(self, serial: int) -> None:
+        """An internal action in a condition changes beliefs: what the search is reading stays as it is."""
+        if self._parted != serial:
+            self._parted = serial
+            self.rows = dict(self.rows)
+            self._indexes = {}
+
+    def around(self) -> tuple[list[Any], list[Any]] | None:
+        """The rules and beliefs with variables that answer before all facts, and those behind all facts.
+
+        None when they are mixed.
+        """
+        before = list(itertools.islice(reversed(self.rows), self.others))
+        while before and before[-1].__class__ is tuple:
+            before.pop()
+        after = list(itertools.islice(self.rows, self.others - len(before)))
+        if any(entry.__class__ is tuple for entry in (*before, *after, *self.late)):
+            return None
+        after.reverse()
+        if self.others == len(self.rows):
+            before, after = [], before
+        return before, [*after, *self.late]
 
     def entries(self) -> list[tuple[Any, tuple[Term, ...]]]:
         """All entries with their annotations, in the order in which they answer."""
@@ -242,22 +227,60 @@ class Table:
         yield from reversed(self.rows.items())
         yield from self.late.items()
 
-    def candidates(self, arguments: Row) -> Iterable[tuple[Any, tuple[Term, ...]]]:
-        """The entries that may unify with the arguments, in order; an index is used where one helps."""
-        if not self.plain:
+    def candidates(self, arguments: Row) -> Iterable[Item]:
+        """The entries that may unify with the arguments, in order, until something changes; an index is used where one
+        helps."""
+        if self.plain:
+            return self._rows_for(arguments)
+        around = self.around()
+        if around is None:
             return self.entries()
-        ground = [(i, a) for i, a in enumerate(map(resolve, arguments)) if is_key(a)]
-        if len(ground) == len(arguments):
-            row = tuple(a for _, a in ground)
-            held = self.rows.get(row)
-            return () if held is None else ((row, held),)
-        if not ground or len(self.rows) < 8:
-            return self.entries()
-        position, key = ground[0]
-        return [(row, self.rows[row]) for row in self.find((position,), key)]
+        before, after = around
+        return [
+            *((entry, self.rows[entry]) for entry in before),
+            *(item for item in self._rows_for(arguments) if item[0].__class__ is tuple),
+            *((entry, self.rows[entry] if entry in self.rows else self.late[entry]) for entry in after),
+        ]
+
+    def _rows_for(self, arguments: Row) -> Iterable[Item]:
+        """The rows that may unify with the arguments; perhaps others too."""
+        places: list[int] = []
+        keys: list[Term] = []
+        for place, argument in enumerate(arguments):
+            if argument.__class__ not in ATOMIC:
+                argument = resolve(argument)
+                if not is_key(argument):
+                    continue
+            places.append(place)
+            keys.append(argument)
+        if len(keys) == len(arguments):
+            return self.exact_item(tuple(keys))
+        if not keys or len(self.rows) < _FEW:
+            return reversed(self.rows.items())
+        return self.find_items(tuple(places), keys[0] if len(keys) == 1 else tuple(keys))
 
     def __len__(self) -> int:
         return len(self.rows) + len(self.late)
+
+
+def _put(index: Index, key: Any, row: Row) -> None:
+    """Put a row into an index.  Most keys have one row: it is its own bucket until there is a second."""
+    bucket = index.get(key)
+    if bucket is None:
+        index[key] = row
+    elif bucket.__class__ is tuple:
+        index[key] = {bucket: None, row: None}
+    else:
+        bucket[row] = None
+
+
+def _discard(rows: dict[Any, Any], row: Any) -> None:
+    """Take a key out of a dictionary that is read backwards: at its end no gaps are left, which would have to be passed
+    over at every reading."""
+    last, value = rows.popitem()
+    if last is not row and last != row:
+        rows[last] = value
+        del rows[row]
 
 
 def _key(row: Row, positions: tuple[int, ...]) -> Any:
@@ -265,10 +288,20 @@ def _key(row: Row, positions: tuple[int, ...]) -> Any:
 
 
 class BeliefBase(dict[Functor, Table]):
-    """Tables by functor, made when first asked for."""
+    """Tables by functor, made when first asked for.
+
+    Attributes:
+        searching: number of the internal action that a search is calling, 0 while none is.
+        next_call: gives the number of the next one.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.searching = 0
+        self.next_call = itertools.count(1).__next__
 
     def __missing__(self, functor: Functor) -> Table:
-        table = self[functor] = Table(functor)
+        table = self[functor] = Table(functor, self)
         return table
 
     def literals(self) -> Iterator[Term]:

@@ -6,9 +6,10 @@ The functions for body formulae return the event to be handled by the same inten
 from typing import Any
 
 from jacaros.bdi.act import Percept
-from jacaros.bdi.belief_base import OpenFact, Row, Rule, Table, literal, parts, with_source
+from jacaros.bdi.belief_base import Row, Table, literal, parts, with_source
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
+from jacaros.bdi.rules import OpenFact, Rule
 from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
 from jacaros.errors import InternalError
@@ -312,7 +313,7 @@ def abolish(agent: Circumstance, pattern: Term) -> None:
     symbol, arguments, annotations = parts(pattern)
     tables = list(agent.beliefs.items()) if symbol is None else [(symbol, agent.beliefs[symbol])]
     for functor_, table in tables:
-        for entry, held in table.entries():
+        for entry, held in list(table.candidates(arguments) if symbol else table.entries()):
             _abolish_entry(agent, functor_, table, entry, held, arguments if symbol else None, annotations)
 
 

@@ -6,8 +6,9 @@ Formulae of the program itself are compiled (`jacaros.compiler.conditions`); the
 from collections.abc import Generator
 from typing import Any
 
-from jacaros.bdi.belief_base import OpenFact, literal
+from jacaros.bdi.belief_base import literal
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.rules import OpenFact
 from jacaros.compiler.runtime import (
     answers_of,
     cannot_wait,

@@ -4,11 +4,11 @@ from jacaros.asl import nodes
 from jacaros.asl.labels import shape
 from jacaros.asl.loader import parse_plans
 from jacaros.bdi import belief_update, urgency
-from jacaros.bdi.belief_base import Rule
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.edge_signals import AWAKING, SLEEPING
 from jacaros.bdi.functions import known_names
 from jacaros.bdi.internal_action import ActionError
+from jacaros.bdi.rules import Rule
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.compiler.plan import Plan, label_of, with_subplans
 from jacaros.compiler.reflection import Reflection

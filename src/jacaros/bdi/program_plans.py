@@ -20,6 +20,7 @@ class ProgramPlans:
         actions: the internal actions that the plans may call.
 
     Attributes:
+        rule_functions: what is generated for the rules of the program, see `jacaros.bdi.rules`.
         has_subplans: whether any plan has plans of its own.
         has_goal_conditions: whether any plan, or plan of a plan, has a goal condition.
         has_meta_plans: whether any plan reacts to changes of goal states (``^!g``).
@@ -40,6 +41,7 @@ class ProgramPlans:
         self.has_goal_conditions = any(has_goal_condition(plan) for plan in self.plans)
         self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
         self.sources: dict[Trigger, str] = {}
+        self.rule_functions: dict[Any, Any] = {}
         self._selects: dict[Trigger, Select | None] = {}
 
     def select(self, trigger: Trigger, report: Callable[[str], None]) -> Select | None:

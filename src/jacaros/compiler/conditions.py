@@ -6,7 +6,8 @@ literal becomes a loop over rows, a comparison an ``if``.  What is bound on the 
 
 Predicates with rules are searched by generators.  Two ways of running them:
 
-* in an ordinary function the generator is driven by ``run`` and looks like a loop over rows;
+* in an ordinary function the generator looks like a loop over rows: it is nested (see `predicates`), or driven by ``run``
+  where it goes deep, or where its answers are taken one by one while other things happen;
 * in the body of a rule (``fn.trampoline``) the function is itself such a generator: it yields another generator to have
   it run and is sent its next answer, so that rules of any depth need no Python recursion.
 """
@@ -19,6 +20,7 @@ from jacaros.compiler.building import (
     annotation_parts,
     as_name,
     build,
+    constant_value,
     functor_of_literal,
     is_number,
     is_static,
@@ -26,10 +28,11 @@ from jacaros.compiler.building import (
     tuple_of,
 )
 from jacaros.compiler.constant import Constant
-from jacaros.compiler.function import FunctionBuilder
+from jacaros.compiler.function import TOP, FunctionBuilder
 from jacaros.compiler.matching import MAX_DEPTH, Then, match, match_all, settle_fresh
 from jacaros.compiler.runtime import takes_time
 from jacaros.compiler.variables import names_in
+from jacaros.terms.unifier import is_key
 
 _MAX_LOOPS = 12
 _COMPARE = {
@@ -39,6 +42,7 @@ _COMPARE = {
     ">=": "at_most({1}, {0})",
 }
 _TRUE = ("true", "false")
+_BINDING_NOTHING = (*_COMPARE, "==", "\\==")
 
 
 def condition(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
@@ -63,6 +67,10 @@ def _or(fn: FunctionBuilder, node: nodes.Or, then: Then) -> None:
 
 
 def _not(fn: FunctionBuilder, node: nodes.Not, then: Then) -> None:
+    if not (fn.trampoline or fn.snapshot or fn.writer.loops > _MAX_LOOPS) and _not_in_place(
+        fn, node.operand, then
+    ):
+        return
     call = question(fn, node.operand, [])
     if fn.trampoline:
         mark, found = fn.local("n"), fn.local("m")
@@ -74,6 +82,36 @@ def _not(fn: FunctionBuilder, node: nodes.Not, then: Then) -> None:
         head = f"if not exists({call}, t):"
     with fn.writer.block(head):
         then()
+
+
+def _not_in_place(fn: FunctionBuilder, node: nodes.Node, then: Then) -> bool:
+    """Write the search for something that must have no answer right here, if it is a simple one."""
+    if isinstance(node, nodes.Relation) and node.operator in _BINDING_NOTHING:
+        with fn.writer.block(f"if not ({comparison(fn, node)}):"):
+            then()
+        return True
+    if not isinstance(node, nodes.Literal) or node.functor in _TRUE:
+        return False
+    if node.annotations is not None or isinstance(node.namespace, nodes.Variable):
+        return False
+    found, mark, room = fn.local("f"), fn.local("n"), fn.local("r")
+
+    def answered() -> None:
+        fn.line(f"{found} = True")
+        if fn.depth != TOP:
+            fn.line(f"t.room = {room}")
+        fn.line("break")
+
+    fn.line(f"{found} = False")
+    fn.line(f"{mark} = len(t)")
+    if fn.depth != TOP:
+        fn.line(f"{room} = t.room")
+    with fn.branch():
+        query(fn, node, answered)
+    fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+    with fn.writer.block(f"if not {found}:"):
+        then()
+    return True
 
 
 def in_own_function(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
@@ -110,11 +148,11 @@ def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
     It yields the values of the variables *results*.  It runs the way its caller does (plain or trampolined).
     """
     captured = [name for name in names_in(node) if name in fn.values]
-    inner = type(fn)(fn.unit, trampoline=fn.trampoline, snapshot=fn.snapshot)
+    inner = fn.inner()
     name = fn.unit.fresh_function("answers")
     inner.values = {c: f"v_{c}" for c in captured}
     inner.at(node)
-    with inner.writer.block(f"def {name}(agent, t{''.join(f', v_{c}' for c in captured)}):"):
+    with inner.writer.block(f"def {name}(agent, t, d{''.join(f', v_{c}' for c in captured)}):"):
         if isinstance(node, nodes.Or):
             for side in (node.left, node.right):
                 with inner.branch():
@@ -124,7 +162,14 @@ def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
         inner.line("return")
         inner.line("yield")
     fn.unit.add(inner.writer)
-    return f"{name}(agent, t{''.join(f', {fn.values[c]}' for c in captured)})"
+    return _called(fn, name, captured)
+
+
+def _called(fn: FunctionBuilder, name: str, captured: list[str]) -> str:
+    """The call of a function that searches on behalf of this one."""
+    if fn.depth == TOP:
+        fn.line("t.room = agent.rule_depth")
+    return f"{name}(agent, t, {fn.depth}{''.join(f', {fn.values[c]}' for c in captured)})"
 
 
 def _yield(fn: FunctionBuilder, results: list[str]) -> None:
@@ -235,13 +280,35 @@ def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
         else f"solve(agent, {table}, (), t)"
     )
     test = " and ".join([f"{table}.plain", *arguments.tests])
+    given = "".join(f", {arguments.terms[i]}" for i in arguments.given)
+    pattern = sum(1 << i for i in arguments.given)
+    deep = f"{table}.deep[{pattern}](agent, t, 0{given})"
+    if arguments.tests:
+        deep = f"{general} if {table}.plain else {deep}"
     if fn.trampoline:
-        _trampolined_rows(fn, arguments, rows, general, test, then)
+        _trampolined_rows(fn, arguments, rows, deep, test, then)
+        return
+    if fn.snapshot:
+        source = f"{rows} if {test} else run({deep}, agent.rule_depth)"
     else:
-        with fn.writer.block(
-            f"for {arguments.target} in ({rows} if {test} else run({general}, agent.rule_depth)):"
-        ):
-            arguments.match_rest(then)
+        source = _rows_at_once(fn, table, arguments, rows)
+    with fn.writer.block(f"for {arguments.target} in ({source}):"):
+        arguments.match_rest(then)
+
+
+def _rows_at_once(fn: FunctionBuilder, table: str, arguments: "_Arguments", rows: str) -> str:
+    """An expression for the rows of a search that is over before anything else happens."""
+    terms = tuple_of(arguments.terms) if arguments.terms else "()"
+    if arguments.tests:
+        rows = f"{rows} if {' and '.join(arguments.tests)} else facts({table}, {terms}, t)"
+    given = "".join(f", {arguments.terms[i]}" for i in arguments.given)
+    pattern = sum(1 << i for i in arguments.given)
+    if fn.depth == TOP:
+        search = f"{table}.search({pattern}, agent, t)(agent, t, {TOP}{given})"
+    else:
+        rest = f"deeper(agent, t, {table}.deep[{pattern}](agent, t, 0{given}))"
+        search = f"{table}.searches[{pattern}](agent, t, {fn.depth}{given}) if d > 0 else {rest}"
+    return f"({rows}) if {table}.plain else {search}"
 
 
 def _trampolined_rows(
@@ -259,13 +326,22 @@ def _trampolined_rows(
 
 
 class _Arguments:
-    """The arguments of a queried literal: which are known, which are read from the rows."""
+    """The arguments of a queried literal: which are known, which are read from the rows.
+
+    Attributes:
+        terms: an expression for each argument, as rules are asked with.
+        tests: what has to hold for the known ones to be keys.
+        known: places of the known arguments.
+        given: places of those of which at least something is known.
+        target: what a row is unpacked into.
+    """
 
     def __init__(self, fn: FunctionBuilder, patterns: tuple[nodes.Term, ...]) -> None:
         self.fn = fn
         self.terms: list[str] = []
         self.tests: list[str] = []
         self.known: list[int] = []
+        self.given: list[int] = []
         self.parts: list[str] = []
         self.rest: list[tuple[nodes.Node, str]] = []
         for index, pattern in enumerate(patterns):
@@ -274,22 +350,25 @@ class _Arguments:
 
     def _add(self, index: int, pattern: nodes.Node) -> None:
         fn = self.fn
-        unknown = [n for n in names_in(pattern) if n not in fn.values]
+        tests = self._key_tests(pattern)
         if isinstance(pattern, nodes.Variable) and pattern.unnamed and pattern.annotations is None:
             self.terms.append("Var()")
             self.parts.append("_")
-        elif unknown or not self._is_value(pattern):
+        elif tests is None:
             part = fn.local("c")
             self.terms.append(self._pattern_term(pattern))
             self.parts.append(part)
+            if not isinstance(pattern, nodes.Variable):
+                self.given.append(index)
             self.rest.append((pattern, part))
         else:
             value = as_name(fn, build(fn, pattern))
             self.terms.append(value)
             self.parts.append("_")
             self.known.append(index)
-            if not (is_number(value) or is_static(pattern)):
-                self.tests.append(f"{value}.__class__ in ATOMIC")
+            self.given.append(index)
+            computed = [f"{value}.__class__ in ATOMIC"] if self._is_computed(pattern, value) else []
+            self.tests.extend([*tests, *computed])
 
     def _pattern_term(self, pattern: nodes.Node) -> str:
         """What rules are asked with: as much of the pattern as is known, so that they do not search for more."""
@@ -298,13 +377,44 @@ class _Arguments:
         with self.fn.branch():
             return as_name(self.fn, build(self.fn, pattern))
 
-    def _is_value(self, pattern: nodes.Node) -> bool:
-        """Whether the pattern can be a key: structures with annotations or anonymous parts cannot."""
-        if isinstance(
-            pattern, (nodes.Variable, nodes.Number, nodes.String, nodes.Arithmetic, nodes.FunctionCall)
-        ):
-            return not isinstance(pattern, nodes.Variable) or pattern.annotations is None
-        return isinstance(pattern, nodes.Literal) and not pattern.arguments and pattern.annotations is None
+    @staticmethod
+    def _is_computed(pattern: nodes.Node, value: str) -> bool:
+        """Whether it is known only at run time that the pattern has a value."""
+        if isinstance(pattern, nodes.Literal | nodes.ListTerm):
+            return False
+        return not (is_number(value) or is_static(pattern))
+
+    def _key_tests(self, pattern: nodes.Node) -> list[str] | None:
+        """What has to hold for the pattern to be a key, besides that it has a value; None when it cannot be one."""
+        if any(name not in self.fn.values for name in names_in(pattern)):
+            return None
+        if isinstance(pattern, nodes.Variable):
+            return None if pattern.unnamed or pattern.annotations is not None else []
+        if isinstance(pattern, nodes.Number | nodes.String | nodes.Arithmetic | nodes.FunctionCall):
+            return []
+        return self._part_tests(pattern)
+
+    def _part_tests(self, pattern: nodes.Node) -> list[str] | None:
+        """The tests for a structure or list, or a part of one: annotations and anonymous parts make it no key."""
+        if is_static(pattern):
+            return [] if is_key(constant_value(pattern)) else None
+        if isinstance(pattern, nodes.Variable):
+            if pattern.unnamed or pattern.negated or pattern.annotations or pattern.namespace is not None:
+                return None
+            return [f"{self.fn.values[pattern.name]}.__class__ in ATOMIC"]
+        if isinstance(pattern, nodes.Literal) and pattern.annotations is None:
+            parts = None if isinstance(pattern.namespace, nodes.Variable) else pattern.arguments
+        elif isinstance(pattern, nodes.ListTerm) and pattern.tail is None:
+            parts = pattern.items
+        else:
+            parts = None
+        found: list[str] = []
+        for part in parts or ():
+            tests = self._part_tests(part)
+            if tests is None:
+                return None
+            found.extend(tests)
+        return found or None
 
     def fast_rows(self, table: str) -> str:
         """An expression for the rows of a table that holds only facts."""
@@ -444,16 +554,23 @@ def accepts(action: object, count: int) -> bool:
 def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> str:
     """Write a function that gives the list of all instances of *template*; returns the call."""
     captured = [n for n in names_in(template, formula) if n in fn.values]
-    inner = type(fn)(fn.unit)
+    inner = fn.inner(searching=False)
     name = fn.unit.fresh_function("collect")
     inner.values = {c: f"v_{c}" for c in captured}
     inner.at(formula)
-    with inner.writer.block(f"def {name}(agent, t{''.join(f', v_{c}' for c in captured)}):"):
+    with inner.writer.block(f"def {name}(agent, t, d{''.join(f', v_{c}' for c in captured)}):"):
         inner.line("found = []")
-        condition(inner, formula, lambda: inner.line(f"found.append(copy({build(inner, template)}))"))
+
+        def found() -> None:
+            value = as_name(inner, build(inner, template))
+            is_copied = not (is_number(value) or is_static(template))
+            copy = f"{value} if {value}.__class__ in ATOMIC else copy({value})" if is_copied else value
+            inner.line(f"found.append({copy})")
+
+        condition(inner, formula, found)
         inner.line("return found")
     fn.unit.add(inner.writer)
-    return f"{name}(agent, t{''.join(f', {fn.values[c]}' for c in captured)})"
+    return _called(fn, name, captured)
 
 
 def _result(fn: FunctionBuilder, target: nodes.Node, value: str, then: Then) -> None:

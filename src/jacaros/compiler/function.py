@@ -44,6 +44,10 @@ class ActionInfo(Protocol):
         """Asked for a quicker function for a call with the arguments that are written out; None when there is none."""
 
 
+TOP = "NESTED"
+"""The `FunctionBuilder.depth` of a function that no other search has called."""
+
+
 class Unit(Protocol):
     """The unit that the function becomes part of: constants, and further functions."""
 
@@ -107,10 +111,13 @@ class FunctionBuilder:
         fresh: variables that got their value in this function, in order.
         trampoline: the function is a generator that yields generators to have them run (see `conditions`).
         snapshot: answers are taken while beliefs may change in between, so tables are copied first.
+        depth: expression for how many generators may be nested in those that the function asks (see `predicates`).
         quiet: an internal action that cannot be done does not hold; a step of its own fails with the reason.
     """
 
-    def __init__(self, unit: Unit, *, trampoline: bool = False, snapshot: bool = False) -> None:
+    def __init__(
+        self, unit: Unit, *, trampoline: bool = False, snapshot: bool = False, depth: str = TOP
+    ) -> None:
         self.unit = unit
         self.writer = Writer()
         self.values: dict[str, str] = {}
@@ -118,6 +125,7 @@ class FunctionBuilder:
         self.asked: set[str] = set()
         self.trampoline = trampoline
         self.snapshot = snapshot
+        self.depth = "0" if trampoline else depth
         self.quiet = True
 
     def line(self, text: str) -> None:
@@ -151,6 +159,12 @@ class FunctionBuilder:
         if expression is not None and expression.startswith("Var("):
             self.asked.add(name)
         return target
+
+    def inner(self, *, depth: str = "d - 1", searching: bool = True) -> "FunctionBuilder":
+        """A builder for a function that this one calls; *searching* the way this one does, or plainly and at once."""
+        if not searching:
+            return type(self)(self.unit, depth=depth)
+        return type(self)(self.unit, trampoline=self.trampoline, snapshot=self.snapshot, depth=depth)
 
     @contextmanager
     def branch(self) -> Iterator[None]:

@@ -4,7 +4,7 @@ Nothing here knows of agents beyond what is passed in: tables of beliefs, the tr
 """
 
 from collections.abc import Generator, Iterator
-from typing import Any
+from typing import Any, NoReturn
 
 from jacaros.errors import InternalError
 from jacaros.terms import plans
@@ -63,34 +63,44 @@ class NextPlan(Exception):
     """Among all applicable plans, one answer of a plan's context is enough."""
 
 
+NESTED = 100
+"""So many generators may be nested: each is a level of Python's stack, of which a thousand are allowed."""
+
 SUSPENDED = object()
 """What a step returns when its intention has to wait."""
 
 Answers = Generator[Any, Any, None]
 
 
-def run(question: Answers, limit: int) -> Iterator[Any]:
+def run(question: Answers, limit: int, allowed: int | None = None) -> Iterator[Any]:
     """Drive a search generator: a tuple it yields is an answer, a generator is to be run for it.
 
     The stack of generators is a list, so depth costs no Python recursion.
 
+    Args:
+        question: the generator.
+        limit: how many rules and conditions may be open at the same time.
+        allowed: the limit to name when it is passed, where *limit* is what is left of it.
+
     Raises:
-        RecursionError: more than *limit* rules and conditions are open at the same time.
+        RecursionError: more of them are open.
     """
     stack: list[Answers] = []
     opened = [question]
     current, answer = question, None
     try:
         while True:
-            item = _resume(current, answer)
-            if item is None:
+            try:
+                item = current.send(answer)
+            except StopIteration:
                 # Whatever was opened after it was opened on its behalf.
                 while (last := opened.pop()) is not current:
                     last.close()
                 if not stack:
                     return
-                current, answer = stack.pop(), _NO_MORE
-            elif item.__class__ is tuple:
+                current, answer = stack.pop(), None
+                continue
+            if item.__class__ is tuple:
                 if stack:
                     current, answer = stack.pop(), item
                 else:
@@ -101,9 +111,7 @@ def run(question: Answers, limit: int) -> Iterator[Any]:
                 if not item.gi_suspended:
                     opened.append(item)
                     if len(opened) > limit:
-                        raise RecursionError(
-                            f"more than {limit} rules and conditions are open at once (option rule_depth)"
-                        )
+                        too_many_open(limit if allowed is None else allowed)
                 current, answer = item, None
     finally:
         # A generator holds the one it asks: freed from the first on, a long chain would overflow the C stack.
@@ -111,30 +119,33 @@ def run(question: Answers, limit: int) -> Iterator[Any]:
             opened.pop().close()
 
 
-_NO_MORE = object()
+def deeper(agent: Any, trail: Trail, question: Answers) -> Iterator[Any]:
+    """The rest of a search that is nested too deeply to go on by Python's stack."""
+    return run(question, trail.room, agent.rule_depth)
 
 
-def _resume(generator: Answers, answer: Any) -> Any:
-    try:
-        if answer is None:
-            return next(generator)
-        return generator.send(None if answer is _NO_MORE else answer)
-    except StopIteration:
-        return None
+def too_many_open(limit: int) -> NoReturn:
+    """A search has no room left.
+
+    Raises:
+        RecursionError: always.
+    """
+    raise RecursionError(f"more than {limit} rules and conditions are open at once (option rule_depth)")
 
 
 def exists(answers: Iterator[Any], trail: Trail) -> bool:
     """Whether there is an answer; bindings are taken back."""
-    mark = len(trail)
+    mark, room = len(trail), trail.room
     for _ in answers:
         undo(trail, mark)
+        trail.room = room
         return True
     return False
 
 
 def solve(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
     """Answers of a predicate in the order of its base: facts by unification, rules by their functions."""
-    for entry, _ in table.candidates(arguments):
+    for entry, _ in list(table.candidates(arguments)):
         mark = len(trail)
         if entry.__class__ is tuple:
             if unify_rows(arguments, entry, trail):
@@ -150,7 +161,7 @@ def solve_annotated(
     agent: Any, table: Any, arguments: tuple[Term, ...], items: tuple[Term, ...], tail: Term, trail: Trail
 ) -> Answers:
     """Answers of a predicate that is asked with annotations."""
-    for entry, annotations in table.candidates(arguments):
+    for entry, annotations in list(table.candidates(arguments)):
         mark = len(trail)
         if entry.__class__ is tuple:
             if unify_rows(arguments, entry, trail):
@@ -163,6 +174,19 @@ def solve_annotated(
                 for _ in each_annotation_match(items, tail, held, None, trail):
                     yield arguments
         undo(trail, mark)
+
+
+def facts(
+    table: Any, arguments: tuple[Term, ...], trail: Trail, lasting: bool = False
+) -> Iterator[tuple[Term, ...]]:
+    """The answers of a predicate that are facts, by unification; *lasting* ones stay when beliefs change."""
+    candidates = table.candidates(arguments)
+    for entry, _ in list(candidates) if lasting else candidates:
+        if entry.__class__ is tuple:
+            mark = len(trail)
+            if unify_rows(arguments, entry, trail):
+                yield arguments
+            undo(trail, mark)
 
 
 def solve_held(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
@@ -181,7 +205,10 @@ def solve_held(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail
 
 def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) -> bool:
     """Unify arguments pairwise."""
-    return all(a is b or unify(a, b, trail) for a, b in zip(left, right, strict=True))
+    for a, b in zip(left, right, strict=True):  # noqa: SIM110 - a generator would cost as much as the rest
+        if a is not b and not unify(a, b, trail):
+            return False
+    return True
 
 
 def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Iterator[None]:
@@ -191,8 +218,10 @@ def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Ite
     """
     mark = len(trail)
     generator = action.function(context, *arguments)
+    beliefs = context.agent.beliefs
     while True:
         outer, context.trail = context.trail, trail
+        within, beliefs.searching = beliefs.searching, beliefs.next_call()
         try:
             found = next(generator, generator)
         except InternalError:
@@ -202,6 +231,7 @@ def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Ite
             return
         finally:
             context.trail = outer
+            beliefs.searching = within
         if found is generator:
             return
         yield
@@ -217,6 +247,8 @@ def first_answer_of(context: Any, trail: Trail, action: Any, *arguments: Term) -
 def holds(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
     """Whether an internal action succeeds as a condition, on the given trail; an error is reported and counts as no."""
     outer, context.trail = context.trail, trail
+    beliefs = context.agent.beliefs
+    within, beliefs.searching = beliefs.searching, beliefs.next_call()
     try:
         return action.function(context, *arguments) is not False
     except InternalError:
@@ -226,6 +258,7 @@ def holds(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
         return False
     finally:
         context.trail = outer
+        beliefs.searching = within
 
 
 def wrong_arity(action: Any, count: int) -> str:
@@ -451,10 +484,12 @@ _FUNCTIONS = (
     cannot_wait,
     deconstruct,
     deconstruct_in,
+    deeper,
     deref,
     divide,
     equal,
     exists,
+    facts,
     first_answer_of,
     free_variables,
     holds,
@@ -482,6 +517,7 @@ _FUNCTIONS = (
     solve_annotated,
     solve_held,
     still_held,
+    too_many_open,
     undo,
     unify,
     unify_annotations,
@@ -496,6 +532,7 @@ NAMES: dict[str, Any] = {
     "BY_SELF": BY_SELF,
     "CLOSED": CLOSED,
     "CONS": CONS,
+    "NESTED": NESTED,
     "copy": rename,
     "new": object.__new__,
 }

@@ -9,6 +9,7 @@ from jacaros.compiler import runtime
 from jacaros.compiler.bodies import BodyCompiler
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
+from jacaros.compiler.predicates import compile_search
 from jacaros.compiler.selection import SelectCompiler, compile_goal_condition, compile_rule
 from jacaros.compiler.triggers import Trigger
 from jacaros.compiler.writer import Writer, compile_all
@@ -105,11 +106,30 @@ def install_body(unit: CodeUnit, plan: Plan, body: BodyCompiler, first: str) -> 
         function.info, function.steps = info, body.infos
 
 
+def compile_search_function(
+    symbol: Functor,
+    pattern: int,
+    before: Sequence[nodes.Rule],
+    after: Sequence[nodes.Rule],
+    actions: Mapping[str, ActionInfo],
+    trampoline: bool,
+) -> FunctionType:
+    """The generator function of a predicate for one pattern of use, see `jacaros.compiler.predicates`."""
+    unit = CodeUnit(_file_of((*before, *after)[0]), actions)
+    name = compile_search(unit, symbol, pattern, before, after, trampoline)
+    unit.execute()
+    function: FunctionType = unit.globals[name]
+    return function
+
+
 def compile_rule_function(rule: nodes.Rule, actions: Mapping[str, ActionInfo]) -> FunctionType:
     """The generator function of a rule."""
-    span = rule.span
-    unit = CodeUnit(span.file.name if span is not None else "<run time>", actions)
+    unit = CodeUnit(_file_of(rule), actions)
     name = compile_rule(unit, rule)
     unit.execute()
     function: FunctionType = unit.globals[name]
     return function
+
+
+def _file_of(rule: nodes.Rule) -> str:
+    return rule.span.file.name if rule.span is not None else "<run time>"

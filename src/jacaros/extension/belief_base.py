@@ -204,7 +204,7 @@ class AskingTable(Table):
     __slots__ = ("_tables",)
 
     def __init__(self, functor: Functor, tables: Tables) -> None:
-        super().__init__(functor)
+        super().__init__(functor, tables)
         self._tables = tables
 
     def add(self, row: Any, annotations: Annotations, last: bool = False) -> Annotations | None:
@@ -241,6 +241,14 @@ class LookingTable(AskingTable):
     """A table that has further beliefs, which the class looks up for each question."""
 
     __slots__ = ()
+
+    def __init__(self, functor: Functor, tables: Tables) -> None:
+        super().__init__(functor, tables)
+        self._changed()
+
+    def around(self) -> None:
+        """What is looked up belongs between the others: questions take the general way."""
+        return
 
     @property
     def plain(self) -> bool:

@@ -36,14 +36,16 @@ class Trail(list[Var]):
         serial: number of goals posted so far; stamped on every binding, so that those made for a failed goal
             can be told from older ones.
         deep: a unification is under way that does without Python's stack.
+        room: how many more rules the search under way may open.
     """
 
-    __slots__ = ("deep", "serial")
+    __slots__ = ("deep", "room", "serial")
 
     def __init__(self) -> None:
         super().__init__()
         self.serial = 0
         self.deep = False
+        self.room = 0
 
 
 ATOMIC = frozenset({float, String, Functor})

@@ -4,9 +4,10 @@ from collections.abc import Iterator
 
 from jacaros.asl import nodes
 from jacaros.bdi import belief_update
-from jacaros.bdi.belief_base import Rule, parts
+from jacaros.bdi.belief_base import parts
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.bdi.rules import Rule
 from jacaros.bdi.stdlib.terms import without_sources
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.compiler.runtime import own_annotations
