@@ -1,11 +1,12 @@
 """Python source being written: indentation, fresh names, and the AgentSpeak line behind each line."""
 
-import ast
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from types import CodeType
+
+from jacaros.compiler.line_numbers import compile_text
 
 _READ = re.compile(r" +(v\d+) = deref\(\w+\)")
 _SETTLED = re.compile(r"\bv\d+\b")
@@ -74,24 +75,5 @@ def compile_all(writers: Iterable[Writer], filename: str) -> CodeType:
     for writer in writers:
         lines += writer.lines
         origins += writer.origins
-    tree = ast.parse("\n".join(lines) + "\n")
-    _move(tree, origins)
-    return compile(tree, filename, "exec")
-
-
-def _move(tree: ast.AST, origins: Sequence[int]) -> None:
-    """Give each node the line that its own line comes from: *origins* by line.
-
-    Written without `ast.walk`, which takes longer than the compiler.
-    """
-    stack: list[ast.AST] = [tree]
-    while stack:
-        parts = stack.pop().__dict__
-        if "lineno" in parts:
-            parts["lineno"] = parts["end_lineno"] = origins[parts["lineno"]]
-            parts["col_offset"] = parts["end_col_offset"] = 0
-        for part in parts.values():
-            if part.__class__ is list:
-                stack += [item for item in part if isinstance(item, ast.AST)]
-            elif isinstance(part, ast.AST):
-                stack.append(part)
+    origins.append(origins[-1])
+    return compile_text("\n".join(lines) + "\n", origins, filename)
