@@ -8,6 +8,7 @@ from jacaros.bdi.act import Percept
 from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.belief_base import BeliefBase
 from jacaros.bdi.event import EVENT_GOAL, Event, event_literal
+from jacaros.bdi.event_waits import EventWaits
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.internal_action import InternalAction
 from jacaros.bdi.options import Options
@@ -45,7 +46,7 @@ class Circumstance:
         tasks: housekeeping for the beginning of the next cycle.
         suspended_events: goal events whose goal was suspended before it became an intention.
         delayed_events: timers of the events that ``.at`` is to post.
-        event_waits: waits for an event, with the pattern; the last item has `resume`.
+        event_waits: those who wait for an event.
         condition_waits: waits for a condition; the last item has `resume`, `fail` and `ended`.
         pending_acts: external actions under way, by number.
         pending_asks: questions whose answer is awaited, by message id.
@@ -176,7 +177,7 @@ class Circumstance:
         self.tasks: deque[Callable[[], None]] = deque()
         self.suspended_events: list[Event] = []
         self.delayed_events: dict[Timer, None] = {}
-        self.event_waits: list[tuple[Trigger | None, Term, Any]] = []
+        self.event_waits = EventWaits()
         self.condition_waits: list[tuple[Any, Any]] = []
         self.pending_acts: dict[int, Waiting] = {}
         self.pending_asks: dict[str, Any] = {}
@@ -258,17 +259,14 @@ class Circumstance:
 
     def notify_event_waits(self, event: Event) -> None:
         """Resume the intentions that wait for this event."""
-        for entry in list(self.event_waits):
-            trigger, pattern, waiting = entry
-            if trigger is not None and trigger is not event[EVENT_GOAL][0]:
-                continue
+        for wait in self.event_waits.candidates(event[EVENT_GOAL][0]):
             mark = len(self.trail)
-            found = unify(pattern, rename(event_literal(event)), self.trail)
+            found = unify(wait.pattern, rename(event_literal(event)), self.trail)
             if found:
                 # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
                 del self.trail[mark:]
-                self.event_waits.remove(entry)
-                waiting.resume()
+                self.event_waits.remove(wait)
+                wait.waiting.resume()
             else:
                 while len(self.trail) > mark:
                     self.trail.pop().ref = None

@@ -148,7 +148,7 @@ class Storm:
         assert sorted(self.agent.pending_acts) == sorted(self.under_way())
         agent = self.agent
         waits = [*agent.pending_acts.values(), *(entry[1].waiting for entry in agent.condition_waits)]
-        waits += [entry[2].waiting for entry in agent.event_waits]
+        waits += [each.waiting.waiting for held in agent.event_waits.values() for each in held.values()]
         assert not any(waiting.intention.dropped for waiting in waits)
         ready = [intention for intention in agent.intentions if not intention.dropped]
         assert len(ready) == len(set(ready))

@@ -6,6 +6,7 @@ from typing import Any
 from jacaros.asl.loader import parse_trigger
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.context import Context
+from jacaros.bdi.event_waits import EventWait
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.lowering import fresh_names, lower_trigger
@@ -90,8 +91,10 @@ class _Wait:
         agent = self.ctx.agent
         if self.timer is not None:
             self.timer.cancel()
-        for waits in (agent.event_waits, agent.condition_waits):
-            waits[:] = [entry for entry in waits if entry is not self.entry]
+        if isinstance(self.entry, EventWait):
+            agent.event_waits.remove(self.entry)
+        elif self.entry is not None:
+            agent.condition_waits[:] = [each for each in agent.condition_waits if each is not self.entry]
 
 
 @internal_action(".wait", arity=(1, 3), suspends=True)
@@ -111,8 +114,8 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     if found is None:
         return _wait_for_condition(ctx, what, limit, elapsed)
     waited = _Wait(ctx, elapsed)
-    waited.entry = (found[0], found[1], waited)
-    ctx.agent.event_waits.append(waited.entry)
+    waited.entry = EventWait(found[0], found[1], waited)
+    ctx.agent.event_waits.add(waited.entry)
     if limit is not None:
         waited.limit(limit, fails=True)
     return waited.waiting
