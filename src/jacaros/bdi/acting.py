@@ -119,7 +119,12 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
                     while frames and frames[-1][0] is None:
                         frames.pop()
                     if not frames:
-                        agent.finish(intention)
+                        if intention.waiting is None:
+                            # `finish`, written out.
+                            intention.dropped = True
+                            agent.alive.pop(intention.id, None)
+                        else:
+                            agent.finish(intention)
                         break
             if intentions or events or agent.called or fuel <= 0:
                 if intention.suspended is None:

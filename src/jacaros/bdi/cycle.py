@@ -12,9 +12,8 @@ from jacaros.bdi.deliberation import handle_atomic_event, handle_event
 from jacaros.bdi.event import EVENT_INTENTION
 from jacaros.bdi.finishing import end_achieved_goals
 from jacaros.bdi.intention import Intention
-from jacaros.bdi.sensing import housekeeping, looks_around
-from jacaros.bdi.speech_acts import read_message
-from jacaros.bdi.urgency import handle_urgent_event, read_urgent_messages
+from jacaros.bdi.sensing import look_around
+from jacaros.bdi.urgency import handle_urgent_event
 from jacaros.errors import InternalError
 
 
@@ -23,32 +22,26 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     begun = fuel
     if agent.asleep:
         edge_signals.awake(agent)
-    percepts, tasks, inbox = agent.percepts, agent.tasks, agent.inbox
     events, intentions = agent.events, agent.intentions
-    handle, read = (
-        (handle_event, read_message) if agent.urgency is None else (handle_urgent_event, read_urgent_messages)
-    )
     always = agent.options.percept_interval == 1
     while fuel > 0 and not agent.stopped:
         if agent.called or not always:
-            looks = always or looks_around(agent, agent.cycles + begun - fuel)
-            if percepts or tasks or agent.condition_waits:
-                housekeeping(agent, looks)
-                if agent.urgency is not None:
-                    # The queues may have been put in order of urgency just now.
-                    events, intentions = agent.events, agent.intentions
-                    handle, read = handle_urgent_event, read_urgent_messages
-            if inbox and looks:
-                read(agent)
-            agent.called = bool(inbox or percepts or tasks or agent.condition_waits or agent.special)
+            look_around(agent, agent.cycles + begun - fuel)
+            if agent.urgency is not None:
+                # The queues may have been put in order of urgency just now.
+                events, intentions = agent.events, agent.intentions
+        intention: Intention | None = None
         if events:
-            if agent.atomic is None:
-                handle(agent)
-            else:
+            if agent.atomic is not None:
                 handle_atomic_event(agent, agent.atomic)
+            elif agent.urgency is not None:
+                handle_urgent_event(agent)
+            else:
+                intention = handle_event(agent)
         if agent.goal_conditions:
             end_achieved_goals(agent)
-        intention = _select_intention(agent) if intentions else None
+        if intention is None and intentions:
+            intention = _select_intention(agent)
         if intention is not None:
             try:
                 fuel = (execute_plainly if is_plain(agent) else execute)(agent, intention, fuel)
@@ -60,19 +53,25 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
             if agent.requeued:
                 events.extendleft(reversed(agent.requeued))
                 agent.requeued.clear()
-        elif (events and agent.atomic is None) or inbox:
+            elif not (events or intentions or agent.called or agent.edges):
+                # That was all: the next cycle would find nothing to do.
+                agent.cycles += begun - fuel
+                return False
+        elif (events and agent.atomic is None) or agent.inbox:
             fuel -= 1
-        elif not (percepts or tasks or (agent.edges and edge_signals.fall_asleep(agent))):
+        elif not (agent.percepts or agent.tasks or (agent.edges and edge_signals.fall_asleep(agent))):
             break
     agent.cycles += begun - fuel
-    if agent.stopped:
-        return False
-    if inbox or percepts or tasks:
+    return not agent.stopped and _has_work(agent)
+
+
+def _has_work(agent: Circumstance) -> bool:
+    if agent.inbox or agent.percepts or agent.tasks:
         return True
     if agent.atomic is not None:
         atomic = agent.atomic
-        return atomic in intentions or any(e[EVENT_INTENTION] is atomic for e in events)
-    return bool(events or intentions)
+        return atomic in agent.intentions or any(e[EVENT_INTENTION] is atomic for e in agent.events)
+    return bool(agent.events or agent.intentions)
 
 
 def _select_intention(agent: Circumstance) -> Intention | None:

@@ -11,8 +11,11 @@ from jacaros.bdi.stack import remove_event
 from jacaros.errors import InternalError
 
 
-def handle_event(agent: Circumstance) -> None:
-    """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
+def handle_event(agent: Circumstance) -> Intention | None:
+    """Rule SelEv and what follows: one event is handled; external events without plan are passed over.
+
+    When this begins an intention and there is no other, it need not queue: it is given back, and has its turn now.
+    """
     events = agent.events
     while events:
         event = events.popleft()
@@ -26,31 +29,34 @@ def handle_event(agent: Circumstance) -> None:
                         agent.intentions.append(intention)
                     else:
                         intention.parked = True
-                return
+                return None
             if agent.special or agent.option_filter.rows:
                 if _external(agent, event):
-                    return
+                    return None
                 continue
             # `_external`, written out for what is usual.
-            trail = agent.trail
+            trail, kind = agent.trail, goal[0]
             trail.serial += 1
-            select = agent.selects[goal[0]]
+            select = agent.selects[kind]
             frame: Frame | None = None if select is None else select(agent, goal, annotations)
             if trail:
                 trail.clear()
-            if frame is None or frame[4].atomic or goal[0].failing:
+            if frame is None or frame[4].atomic or kind.failing:
                 if _begin(agent, event, frame, False):
-                    return
+                    return None
                 continue
             agent.intentions_made = number = agent.intentions_made + 1
             agent.alive[number] = intention = Intention(number, cause)
             intention.frames.append(frame)
+            if not agent.intentions:
+                return intention
             agent.intentions.append(intention)
-            return
+            return None
         except InternalError:
             raise
         except Exception as fault:
             _pass_over(agent, event, fault)
+    return None
 
 
 def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:

@@ -3,11 +3,37 @@
 from jacaros.bdi import rescue
 from jacaros.bdi.belief_update import apply_percepts
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.speech_acts import read_message
+from jacaros.bdi.urgency import read_urgent_messages
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
 
 
-def looks_around(agent: Circumstance, cycle: int) -> bool:
+def look_around(agent: Circumstance, cycle: int) -> None:
+    """Take in what has come since the last look: percepts, ends of waits, one message."""
+    if (
+        agent.percepts
+        or agent.tasks
+        or agent.condition_waits
+        or agent.urgency is not None
+        or agent.options.percept_interval != 1
+    ):
+        looks = agent.options.percept_interval == 1 or _looks_now(agent, cycle)
+        housekeeping(agent, looks)
+        if agent.inbox and looks:
+            (read_message if agent.urgency is None else read_urgent_messages)(agent)
+        agent.called = bool(
+            agent.inbox or agent.percepts or agent.tasks or agent.condition_waits or agent.special
+        )
+    else:
+        # What is usual when agents talk: there is a message, and nothing else.
+        waiting = len(agent.inbox)
+        agent.called = waiting > 1 or agent.special
+        if waiting:
+            read_message(agent)
+
+
+def _looks_now(agent: Circumstance, cycle: int) -> bool:
     """Whether an agent that does not look at percepts and messages in every cycle (``nrcbp``) does in this one."""
     if cycle < agent.next_look and (agent.events or agent.intentions or agent.tasks):
         return False

@@ -169,7 +169,8 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
     content = message.content
     if message.flat and content.__class__ is tuple and content[0] is not CONS and not agent.meta:
         # The most frequent message, written out: there is nothing in it to be looked at.
-        event = ((ACHIEVED[content[0]], *content[1:]), None, _ONLY_FROM[message.sender], None)
+        goal = (ACHIEVED[content[0]],) + content[1:]  # noqa: RUF005 - twice as fast
+        event = (goal, None, _ONLY_FROM[message.sender], None)
         agent.events.append(event)
         if agent.event_waits:
             agent.notify_event_waits(event)

@@ -218,4 +218,6 @@ def read_urgent_messages(agent: Any) -> None:
 def handle_urgent_event(agent: Any) -> None:
     """Take an event up, unless a more urgent intention is ready."""
     if agent.urgency.may_take_event():
-        handle_event(agent)
+        begun = handle_event(agent)
+        if begun is not None:
+            agent.intentions.append(begun)

@@ -72,11 +72,11 @@ def _direct(written: Written) -> Any:
     act, to = _known_name(written[1]), _known_name(written[0])
     if act is None or (to is None and written[0] is not None):
         return None
-    if to is not None:
+    if to is not None and to != "self":
 
         def send_on(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
             # `_say` and `is_flat`, written out for the most frequent message; the others are left to it.
-            if content.__class__ is tuple and not content[0].kind and to != "self" and to != agent.name:
+            if content.__class__ is tuple and not content[0].kind and to != agent.name:
                 for part in content:
                     if part.__class__ not in ATOMIC:
                         break
@@ -90,6 +90,7 @@ def _direct(written: Written) -> Any:
         return send_on
 
     def send_to(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
+        # To one or several agents that become known at run time, or to oneself.
         for name in _receivers(resolve(receiver)):
             _say(agent, name, act, content)
 
