@@ -152,16 +152,34 @@ def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annot
     """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
     if agent.special or agent.option_filter.rows:
         frame = select_plan(agent, goal, annotations, intention)
-    else:  # `select_plan`, written out
-        trail = agent.trail
-        trail.serial += 1
-        select = agent.selects[goal[0]]
-        frame = None if select is None else select(agent, goal, annotations)
-        if trail:
-            trail.clear()
-    if frame is not None and add_frame(agent, intention, frame):
+        return (frame is not None and add_frame(agent, intention, frame)) or go_without(
+            agent, intention, goal, annotations, frame
+        )
+    # What is usual: `select_plan` and `add_frame`, written out.
+    trail = agent.trail
+    trail.serial += 1
+    kind = goal[0]
+    select = agent.selects[kind]
+    made: Frame | None = None if select is None else select(agent, goal, annotations)
+    if trail:
+        trail.clear()
+    if made is None:
+        return go_without(agent, intention, goal, annotations, None)
+    frames = intention.frames
+    if agent.atomic is None and not made[4].atomic and len(frames) < agent.goal_depth:
+        if (
+            frames
+            and (caller := frames[-1])[0] is None
+            and caller[1][0] is kind
+            and kind.on_fail is not None
+            and caller[4].replaceable
+            and agent.options.tail_calls
+        ):
+            frames[-1] = made
+        else:
+            frames.append(made)
         return True
-    return go_without(agent, intention, goal, annotations, frame)
+    return add_frame(agent, intention, made) or go_without(agent, intention, goal, annotations, made)
 
 
 def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
