@@ -293,7 +293,10 @@ class BeliefBase(dict[Functor, Table]):
     Attributes:
         searching: number of the internal action that a search is calling, 0 while none is.
         next_call: gives the number of the next one.
+        refusals: how many beliefs from outside were refused (`jacaros.bdi.bounded_beliefs`).
     """
+
+    refusals = 0
 
     def __init__(self) -> None:
         super().__init__()

@@ -356,7 +356,8 @@ def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
                 or not _is_flat(row)
                 or not table.begin(row, annotations)
             ):
-                _take_percept(agent, symbol, row, literal, annotations)
+                if not _take_percept(agent, symbol, row, literal, annotations):
+                    continue
             else:
                 holders[literal] = annotations
         elif kind == "remove":
@@ -394,14 +395,21 @@ def _parts(literal: Term) -> tuple[Functor, Row]:
 
 def _take_percept(
     agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations
-) -> None:
-    """Add a percept whose literal may be held already; several properties may have the same values."""
+) -> bool:
+    """Add a percept whose literal may be held already; several properties may have the same values.
+
+    False when the base has no room for it.
+    """
+    refusals = agent.beliefs.refusals
+    insert(agent, symbol, row, annotations)
+    if agent.beliefs.refusals != refusals:
+        return False
     held_by = agent.held_percepts.get(literal)
     if held_by.__class__ is list:
         held_by.append(annotations)
     else:
         agent.held_percepts[literal] = annotations if held_by is None else [held_by, annotations]
-    insert(agent, symbol, row, annotations)
+    return True
 
 
 def _forget_percept(

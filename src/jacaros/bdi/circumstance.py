@@ -7,6 +7,7 @@ from typing import Any
 from jacaros.bdi.act import Percept
 from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.belief_base import BeliefBase
+from jacaros.bdi.bounded_beliefs import BoundedBeliefs
 from jacaros.bdi.event import EVENT_GOAL, Event, event_literal
 from jacaros.bdi.event_waits import EventWaits
 from jacaros.bdi.intention import Intention
@@ -156,7 +157,8 @@ class Circumstance:
         self.actions = actions
         self.options = options
         self.trail = Trail()
-        self.beliefs = BeliefBase()
+        limit = options.belief_limit
+        self.beliefs: BeliefBase = BoundedBeliefs(self, limit) if limit else BeliefBase()
         self.usual_events = options.events == "discard" and not options.new_focus
         self.option_filter = self.beliefs[functor("select__option", 4)]
         self.refused_options = False

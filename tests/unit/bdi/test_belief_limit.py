@@ -1,0 +1,93 @@
+"""The agent option ``belief_limit``: a belief base that grows without end costs an agent some of its goals, and no more."""
+
+from recording_host import RecordingHost, believed, mind
+
+from jacaros.bdi.act import Percept
+from jacaros.bdi.options import Options
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.terms.values import SOURCE_PERCEPT, structure
+
+GROW = """
+known(1). known(2).
+!fill(1).
++!fill(N)
+  <- +grown(N);
+     !fill(N + 1).
+-!fill(N)[error(E), error_msg(M), code_line(L)] <- .print(N, " ", E, " in line ", L); .print(M).
+"""
+
+
+def limited(program: str, limit: int) -> RecordingHost:
+    host = mind(program, options=Options(belief_limit=limit))
+    host.run()
+    return host
+
+
+def test_the_step_that_adds_one_too_many_fails_with_the_reason() -> None:
+    host = limited(GROW, 10)
+    assert host.printed == [
+        "9 belief_limit in line 5",
+        "there are 10 beliefs (option belief_limit), most of them grown/1 (8)",
+    ]
+    assert len(believed(host, "grown")) == 8
+
+
+def test_without_the_option_there_is_no_limit() -> None:
+    host = limited(GROW.replace("!fill(N + 1)", "if (N < 2000) { !fill(N + 1) }"), 0)
+    assert host.printed == []
+    assert len(believed(host, "grown")) == 2000
+
+
+def test_what_is_replaced_or_deleted_makes_room() -> None:
+    program = """
+    a(0). b(0).
+    !s.
+    +!s <- -+a(1); -+a(2); +a(2); -b(0); +c(X); -c(_); +c(f(Y)); .abolish(c(_)); +b(1); .print(full); +b(2).
+    -!s[error(E)] <- .print(E).
+    """
+    assert limited(program, 2).printed == ["full", "belief_limit"]
+
+
+def test_beliefs_from_outside_are_refused_and_that_is_told_once() -> None:
+    host = mind("+p(X) <- .print(X).", options=Options(belief_limit=3))
+    host.run()
+    percepts = [Percept("add", structure("p", float(n)), (SOURCE_PERCEPT,)) for n in range(4)]
+    host.agent.perceive(percepts)
+    for n in range(4, 6):
+        host.agent.receive(SpeechAct("tell", "bob", "tester", structure("p", float(n)), f"m{n}"))
+    host.run()
+    assert host.printed == ["0", "1", "2"]
+    assert host.logged == [
+        (
+            "error",
+            "beliefs from outside are refused: there are 3 beliefs (option belief_limit), most of them p/1 (3)",
+        )
+    ]
+    host.agent.perceive([Percept("remove", structure("p", 0.0), (SOURCE_PERCEPT,))])
+    host.agent.perceive([Percept("remove", structure("p", 3.0), (SOURCE_PERCEPT,))])
+    host.agent.perceive([Percept("add", structure("p", 7.0), (SOURCE_PERCEPT,))])
+    host.run()
+    assert host.printed[3:] == ["7"]
+    assert len(believed(host, "p")) == 3
+
+
+def test_internal_actions_that_add_beliefs_meet_it_too() -> None:
+    program = """
+    a. b.
+    !s.
+    +!s <- .asserta(c); .print(never).
+    -!s[error(E)] <- .print(E).
+    """
+    assert limited(program, 2).printed == ["belief_limit"]
+
+
+def test_a_rule_counts_as_a_belief() -> None:
+    program = """
+    a :- b.
+    !s.
+    +!s <- +c; +d.
+    -!s[error(E)] <- .print(E).
+    """
+    host = limited(program, 2)
+    assert host.printed == ["belief_limit"]
+    assert believed(host, "c") == ["c[source(self)]"]
