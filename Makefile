@@ -1,7 +1,8 @@
 # make demo    a venv, the package, and a robot that patrols on the embedded world; under two minutes
 # make test    everything, ROS 1 and ROS 2 included (installs what that needs on Debian 12)
 # make quick   what to run before a commit: style, types, layers, unit tests
-# make bench   figures of speed
+# make bench   figures of speed, beside those of other engines, in some ten minutes; renews docs/benchmarks.md
+#              make bench BENCH=--quick   in some three minutes, and changes nothing; JASON=/path/to/jason takes part, too
 # make reference   the reference pages and pictures that follow from the code
 #
 # PYTHON=python3.12 make demo     with another interpreter (3.11 or newer)
@@ -26,8 +27,8 @@ reference: $(VENV)/.installed
 	$(VENV)/bin/python tools/make_reference.py
 	$(VENV)/bin/python tools/make_pictures.py
 
-bench: $(VENV)/.installed
-	tools/bench.sh
+bench: $(VENV)/.installed $(VENV)-bench/.installed
+	$(VENV)/bin/python benchmarks/bench.py $(BENCH)
 
 clean:
 	rm -rf $(VENV) $(VENV)-* runs build dist
@@ -43,3 +44,9 @@ $(VENV)/.installed: pyproject.toml setup.cfg setup.py | $(VENV)/bin/python
 $(VENV)/.installed-dev: pyproject.toml setup.cfg setup.py | $(VENV)/bin/python
 	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
 	touch $@ $(VENV)/.installed
+
+# Apart, as what it holds is under the GPL, or for pictures only.
+$(VENV)-bench/.installed: benchmarks/requirements.txt | $(VENV)/bin/python
+	$(VENV)/bin/python -m venv $(VENV)-bench
+	$(VENV)-bench/bin/python -m pip install --quiet --disable-pip-version-check -r benchmarks/requirements.txt
+	touch $@

@@ -17,7 +17,8 @@ def main() -> None:
         result = run_project(PATROL)
         speeds.append(result.seconds / (time.perf_counter() - began))
     print(
-        f"patrol   {result.seconds:.0f} simulated seconds, {max(speeds):.0f} times as fast as life (best of {RUNS})"
+        f"The patrol of the examples: {result.seconds:.0f} simulated seconds, {max(speeds):.0f} times as fast as life "
+        f"on the virtual clock (best of {RUNS})."
     )
 
 

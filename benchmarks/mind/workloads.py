@@ -1,99 +1,140 @@
 """What is measured: the programs, their sizes, and what can run them."""
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from string import Template
 
 PROGRAMS = Path(__file__).parent / "programs"
+ARTIFACT = "board.py"
+TIMES = 4
+"""How often a program does its work in one process; the first time is not counted where there are more."""
 
 
 @dataclass(frozen=True)
 class Workload:
-    """A program of one size.
+    """A program of one size.  It does its work ``$times`` times, and prints ``begin`` and ``end`` around it.
 
     Attributes:
         name: shown in the table.
         agents: name, program file and number of instances of each.
         n, k: what ``$n`` and ``$k`` stand for in the programs.
-        unit: what one of `count` is.
-        count: how many units a run does; None to take the reasoning cycles.
+        unit: what is counted.
+        units_of: how many units the work has, for ``n`` and ``k``.
         goal: the most that a unit may cost, in empty Python calls with three arguments; None for no goal.
-        agentspeak: ``n`` for python-agentspeak, smaller where it would take for ever; None where it lacks something.
-        lacks: what it lacks.
-        ratio: how many times faster than python-agentspeak a unit has to be; None for no goal.
-        jason: whether Jason runs it; what needs our artifacts it cannot.
+        faster: how many times faster than python-agentspeak it has to be; None for no goal.
+        faster_jason: the same for Jason.
+        sizes: ``n`` for engines that would take too long.
+        lacks: by engine, what it lacks to run the program at all.
+        artifact: whether it needs the artifact ``board.Board``.
     """
 
     name: str
     agents: tuple[tuple[str, str, int], ...]
     n: int
+    units_of: Callable[[int, int], int]
     k: int = 0
     unit: str = "cycle"
-    count: int | None = None
     goal: float | None = 50
-    agentspeak: int | None = None
-    lacks: str = ""
-    ratio: float | None = 12
-    jason: bool = True
+    faster: float | None = 12
+    faster_jason: float | None = None
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    lacks: Mapping[str, str] = field(default_factory=dict)
+    artifact: bool = False
 
-    def write(self, folder: Path, n: int | None = None) -> Path:
+    def size_on(self, engine: str) -> int:
+        """``n`` on that engine."""
+        return self.sizes.get(engine, self.n)
+
+    @property
+    def count(self) -> int:
+        """Units of the work at the size of the table."""
+        return self.units_of(self.n, self.k)
+
+    def write(self, folder: Path, n: int | None = None, times: int = TIMES) -> Path:
         """Write the project into *folder*; its .mas2j file."""
-        n = self.n if n is None else n
+        values = {"n": self.n if n is None else n, "k": self.k, "times": times, "plans": self._plans()}
         for file in {file for _, file, _ in self.agents}:
             source = Template((PROGRAMS / f"{file}.asl").read_text(encoding="utf-8"))
-            (folder / f"{file}.asl").write_text(
-                source.substitute(n=n, k=self.k, plans=_plans(self.name)), encoding="utf-8"
-            )
-        if self.name == "percepts":
-            (folder / "board.py").write_text(
-                (PROGRAMS / "board.py").read_text(encoding="utf-8"), encoding="utf-8"
-            )
+            (folder / f"{file}.asl").write_text(source.substitute(values), encoding="utf-8")
+        if self.artifact:
+            text = (PROGRAMS / ARTIFACT).read_text(encoding="utf-8")
+            (folder / ARTIFACT).write_text(text, encoding="utf-8")
         lines = [
             f"    {name} {file}.asl{f' #{many}' if many > 1 else ''};" for name, file, many in self.agents
         ]
         project = folder / "bench.mas2j"
-        world = "  environment: jacaros.Environment\n" if self.name == "percepts" else ""
+        world = "  environment: jacaros.Environment\n" if self.artifact else ""
         project.write_text(f"MAS bench {{\n{world}  agents:\n" + "\n".join(lines) + "\n}\n", encoding="utf-8")
         return project
 
-
-def _plans(name: str) -> str:
-    if name == "100 plans":
+    def _plans(self) -> str:
+        """What ``$plans`` stands for: plans by the dozen that nobody wants to read in the program."""
+        if self.artifact:
+            return "\n".join(f"+value{i}(X) : X > 0 <- Y = X + 1." for i in range(10))
         return "\n".join(f"+!do(kind{i}, X)." for i in range(1, 101))
-    if name == "percepts":
-        return "\n".join(f"+value{i}(X) : X > 0 <- Y = X + 1." for i in range(10))
-    return ""
 
 
-def single(name: str, file: str, n: int, **rest: object) -> Workload:
+def single(name: str, file: str, n: int, units_of: Callable[[int, int], int], **rest: object) -> Workload:
     """A workload of one agent."""
-    return Workload(name, (("bench", file, 1),), n, **rest)  # type: ignore[arg-type]
+    return Workload(name, (("bench", file, 1),), n, units_of, **rest)  # type: ignore[arg-type]
 
+
+def fibonacci_calls(n: int, k: int) -> int:
+    """How many calls the naive Fibonacci number of *n* takes."""
+    return 1 if n < 2 else 1 + fibonacci_calls(n - 1, k) + fibonacci_calls(n - 2, k)
+
+
+def crowd(size: int, n: int, **rest: object) -> Workload:
+    """Many agents that count at the same time."""
+    agents = (("worker", "worker", size), ("boss", "boss", 1))
+    return Workload(f"{size:,} agents", agents, n, lambda n, k: k * n + 7 * k + 7, k=size, **rest)  # type: ignore[arg-type]
+
+
+ARTIFACTS = {"agentspeak": "an environment", "jason": "our artifacts"}
 
 WORKLOADS = (
-    single("goals", "count", 200_000, goal=25, agentspeak=20_000, ratio=15),
-    single("goals, 1M", "count", 1_000_000, goal=25),
-    single("while", "while", 100_000, agentspeak=20_000),
-    single("for", "for", 200_000, lacks=".range with three arguments"),
-    single("facts", "facts", 50_000, agentspeak=10_000),
-    single("look-ups in 200 facts", "lookups_again", 20_000, k=200, agentspeak=2_000, ratio=None),
-    single("look-ups in 20k facts", "lookups_again", 20_000, k=20_000),
-    single("facts and look-ups", "lookups", 20_000, agentspeak=1_000),
-    single("join", "join", 5_000, unit="answer", count=5_000, agentspeak=500, ratio=12),
-    single("fib(20) by goals", "fib_goals", 20, agentspeak=16, ratio=15, goal=25),
-    single("fib(18) by rules", "fib_rules", 18, unit="call", count=8_361, goal=None, agentspeak=14),
-    single("belief events", "events", 50_000, agentspeak=10_000, ratio=15),
-    single("1000 intentions", "intentions", 100, k=1000, agentspeak=10, ratio=15),
-    single("failures", "failures", 50_000, lacks="plans for failure", goal=None),
-    single("list of 1000, 20 times", "lists", 20, k=1000, lacks="an end: over 170 s"),
-    Workload(
-        "messages", (("ping", "ping", 1), ("pong", "pong", 1)), 20_000,
-        unit="message", count=20_000, goal=150, agentspeak=5_000,
+    single("goals", "count", 200_000, lambda n, k: n + 5, goal=25, faster=15, faster_jason=3, sizes={"agentspeak": 50_000}),
+    single("while", "while", 100_000, lambda n, k: 2 * n + 6),
+    single(
+        "for", "for", 200_000, lambda n, k: 2 * n + 4,
+        faster_jason=1.5, lacks={"agentspeak": ".range with three arguments"},
     ),
-    Workload("1000 agents", (("worker", "worker", 1000), ("boss", "boss", 1)), 100, k=1000, agentspeak=10, ratio=15),
-    Workload("10,000 agents", (("worker", "worker", 10_000), ("boss", "boss", 1)), 10, k=10_000),
-    single("percepts", "percepts", 2_000, unit="change", count=20_000, goal=None, lacks="an environment", jason=False),
-    single("100 plans", "plans", 20_000, agentspeak=1_000),
-    single("annotations", "annotations", 5_000, agentspeak=500),
-    single("namespaces", "namespaces", 20_000, lacks="namespaces"),
+    single("facts", "facts", 50_000, lambda n, k: 2 * n + 6, faster_jason=3),
+    single("look-ups in 200 facts", "lookups_again", 100_000, lambda n, k: n + 5, k=200, sizes={"agentspeak": 5_000}),
+    single(
+        "look-ups in 20,000 facts", "lookups_again", 100_000, lambda n, k: n + 5, k=20_000,
+        sizes={"agentspeak": 50, "jason": 1_000},
+    ),
+    single("facts and look-ups", "lookups", 50_000, lambda n, k: 3 * n + 8, sizes={"agentspeak": 1_000, "jason": 5_000}),
+    single(
+        "join", "join", 50_000, lambda n, k: n, unit="answer", goal=None, sizes={"agentspeak": 700, "jason": 2_000},
+    ),
+    single("fib by goals", "fib_goals", 22, lambda n, k: 2 * fibonacci_calls(n, k) + 3, goal=25, faster=15, faster_jason=3),
+    single("fib by rules", "fib_rules", 20, fibonacci_calls, unit="call", goal=None, faster_jason=1.5),
+    single("belief events", "events", 50_000, lambda n, k: 3 * n + 6, faster=15, faster_jason=1.5),
+    single(
+        "1000 intentions", "intentions", 100, lambda n, k: k * n + 7 * k + 8, k=1000,
+        faster=15, sizes={"agentspeak": 50},
+    ),
+    single("failures", "failures", 50_000, lambda n, k: 5 * n + 5, lacks={"agentspeak": "plans for failure"}),
+    single("list of 1000", "lists", 100, lambda n, k: n * (k + 3) + k + 5, k=1000),
+    Workload(
+        "messages", (("ping", "ping", 1), ("pong", "pong", 1)), 50_000, lambda n, k: n,
+        unit="message", goal=150, faster_jason=3,
+    ),
+    crowd(1000, 100, faster=15, sizes={"agentspeak": 50}),
+    crowd(10_000, 20, faster=15),
+    single(
+        "percepts", "percepts", 2_000, lambda n, k: 10 * n, unit="change", goal=None, artifact=True, lacks=ARTIFACTS,
+    ),
+    single(
+        "operations", "operations", 10_000, lambda n, k: n, unit="call", goal=None, artifact=True, lacks=ARTIFACTS,
+    ),
+    single("100 plans", "plans", 50_000, lambda n, k: 3 * n + 5, sizes={"agentspeak": 10_000}),
+    single("annotations", "annotations", 10_000, lambda n, k: 3 * n + 8, sizes={"agentspeak": 1_000}),
+    single(
+        "namespaces", "namespaces", 50_000, lambda n, k: 3 * n + 8,
+        lacks={"agentspeak": "namespaces"}, sizes={"jason": 5_000},
+    ),
 )  # fmt: skip

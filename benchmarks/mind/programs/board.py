@@ -1,6 +1,6 @@
-"""The artifact of the program ``percepts``: many observable properties, some of which change."""
+"""The artifact of the programs ``percepts`` and ``operations``: many observable properties, some of which change."""
 
-from jacaros.env import Artifact, operation
+from jacaros.env import Artifact, Out, operation
 
 
 class Board(Artifact):
@@ -18,3 +18,8 @@ class Board(Artifact):
         self._round += 1
         for place in range(int(count)):
             self.update_property(f"value{place}", self._round)
+
+    @operation(name="next")
+    def count_down(self, number: float, result: Out) -> None:
+        """Give back one less than *number*."""
+        result.set(number - 1)

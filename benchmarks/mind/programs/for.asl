@@ -1,3 +1,8 @@
 // A loop over numbers, and a little arithmetic.
-!start.
-+!start <- for (.range(I, 1, $n)) { Y = I * 2 + 1 - I }; .stopMAS.
+!repeat($times).
++!repeat(0) <- .stopMAS.
++!repeat(R) : R > 0
+  <- .print("begin");
+     for (.range(I, 1, $n)) { Y = I * 2 + 1 - I };
+     .print("end");
+     !repeat(R - 1).

@@ -1,6 +1,13 @@
 // Beliefs are added, and each looked up by its first argument.
-!start.
-+!start <- !fill($n); !look($n); .stopMAS.
+!repeat($times).
++!repeat(0) <- .stopMAS.
++!repeat(R) : R > 0
+  <- .print("begin");
+     !fill($n);
+     !look($n);
+     .print("end");
+     .abolish(p(_, _));
+     !repeat(R - 1).
 +!fill(0).
 +!fill(I) : I > 0 <- +p(I, I * 2); !fill(I - 1).
 +!look(0).

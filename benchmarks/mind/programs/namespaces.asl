@@ -1,6 +1,13 @@
-// As the looked-up facts, in a namespace.
-!start.
-+!start <- !fill($n); !look($n); .stopMAS.
+// As the facts that are looked up, in a namespace.
+!repeat($times).
++!repeat(0) <- .stopMAS.
++!repeat(R) : R > 0
+  <- .print("begin");
+     !fill($n);
+     !look($n);
+     .print("end");
+     .abolish(map::p(_, _));
+     !repeat(R - 1).
 +!fill(0).
 +!fill(I) : I > 0 <- +map::p(I, I * 2); !fill(I - 1).
 +!look(0).

@@ -1,2 +1,1 @@
-+!ball(0) <- .stopMAS.
 +!ball(I) : I > 0 <- .send(ping, achieve, ball(I - 1)).

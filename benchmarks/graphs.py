@@ -1,0 +1,52 @@
+"""Latencies on the ROS graphs of this machine: runs ``latency.py`` in each environment that is there."""
+
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+ENVIRONMENTS = {"ros1": "1", "ros2-jazzy": "2", "ros2-kilted": "2"}
+"""What the virtual environments of a real ROS are called behind ``.venv-``, and the ROS that they have."""
+
+_LINE = re.compile(
+    r"(\w+) +(agent|bare) +median +([\d.]+) ms +90 % +([\d.]+) ms +99 % +([\d.]+) ms +\((\d+) messages\)"
+)
+
+
+def latencies(kinds: list[str], tell: Callable[[str], None]) -> dict[str, Any]:
+    """Seconds from a message to its command in the environments of *kinds*; ``notes`` tell what was not measured."""
+    figures: list[dict[str, Any]] = []
+    notes: list[str] = []
+    for kind in kinds:
+        python = HERE.parent / f".venv-{kind}" / "bin" / "python"
+        if not python.exists():
+            script = f"tools/install_ros{ENVIRONMENTS[kind]}.sh"
+            notes.append(f"{kind}: not measured; there is no `.venv-{kind}` (`{script}` makes it).")
+            continue
+        tell(f"latency: {kind}")
+        done = subprocess.run(
+            [python, HERE / "latency.py", kind.partition("-")[0]], capture_output=True, text=True, check=False
+        )
+        found = figures_in(done.stdout, kind)
+        figures += found
+        if not found:
+            why = (done.stderr.strip() or "nothing came back").splitlines()[-1]
+            notes.append(f"{kind}: not measured; {why}")
+    return {"figures": figures, "notes": notes}
+
+
+def figures_in(text: str, graph: str) -> list[dict[str, Any]]:
+    """The figures in what ``latency.py`` prints, in seconds."""
+    return [
+        {
+            "graph": graph,
+            "way": match[2],
+            "median": float(match[3]) / 1000,
+            "most": float(match[4]) / 1000,
+            "nearly_all": float(match[5]) / 1000,
+            "messages": int(match[6]),
+        }
+        for match in _LINE.finditer(text)
+    ]

@@ -1,0 +1,1 @@
+"""Measuring the mind: programs, and the engines that run them."""
