@@ -39,6 +39,7 @@ class PerceptWriter:
     def __init__(self, references: References, workspace: Callable[[str], object]) -> None:
         self._references = references
         self._workspace = workspace
+        self._newest: tuple[Observation | None, str | None, list[Percept]] = (None, None, [])
         self._annotations: dict[ArtifactId, tuple[tuple[Term, ...], tuple[Term, ...]]] = {}
 
     def percepts(self, observation: Observation, namespace: str | None = None) -> list[Percept]:
@@ -47,9 +48,13 @@ class PerceptWriter:
         Signals first, then for each changed property the end of the old and the beginning of the new value,
         then what is new, then what is gone.
 
+        The list is for all who ask: nobody changes it.
+
         Args:
             namespace: of the agent's program, where the artifact was focused with ``ns::focus``.
         """
+        if observation is self._newest[0] and namespace == self._newest[1]:
+            return self._newest[2]
         about_property, about_signal = self._origin(observation.artifact)
         cause = observation.cause
         found = [
@@ -72,11 +77,16 @@ class PerceptWriter:
             found.append(Percept(ADD, *self._write(each, about_property, namespace), cause))
         for each in observation.removed:
             found.append(Percept(REMOVE, *self._write(each, about_property, namespace), cause))
+        # The next who asks is another observer of the same.
+        self._newest = observation, namespace, found
         return found
 
     def _write(
         self, each: ObservableProperty, about: Annotations, namespace: str | None
     ) -> tuple[Term, Annotations]:
+        if each.written is not None and not namespace:
+            known: tuple[Term, Annotations] = each.written
+            return known
         if each.annotations:
             own = tuple(to_term(a, self._references) for a in each.annotations)
             about = annotation_set((*about, *own))

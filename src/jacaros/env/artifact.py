@@ -134,14 +134,19 @@ class Artifact:
         self._steps.publication.properties.define(name, values, annotations)
 
     def update_property(
-        self, name: str, *values: object, annotations: tuple[object, ...] | None = None
+        self,
+        name: str,
+        *values: object,
+        annotations: tuple[object, ...] | None = None,
+        if_new: bool = False,
     ) -> None:
-        """Give the first (oldest) property called *name* new values; equal values are a change too.
+        """Give the first (oldest) property called *name* new values; equal values are a change too, as in CArtAgO.
 
         Args:
             name: name of the property.
             values: all its values.
             annotations: None keeps those it has.
+            if_new: do nothing when it has these values (and annotations) already: observers hear nothing then.
 
         Raises:
             UnknownProperty: there is none.
@@ -150,7 +155,7 @@ class Artifact:
         holder = steps.turns.holder
         if holder is None or holder.task is not None:
             steps.current("updating property", name)
-        steps.publication.properties.update(name, values, annotations)
+        steps.publication.properties.update(name, values, annotations, if_new)
 
     def remove_property(self, name: str, *values: object) -> None:
         """Remove the first property called *name*, with *values* the first that has these values.

@@ -71,8 +71,16 @@ class PropertyStore:
         new = ObservableProperty(name, _plain(values), plain_annotations(annotations or ()), key)
         self._by_name.setdefault(name, {})[key] = new
 
-    def update(self, name: str, values: tuple[object, ...], annotations: tuple[object, ...] | None) -> None:
+    def update(
+        self,
+        name: str,
+        values: tuple[object, ...],
+        annotations: tuple[object, ...] | None,
+        if_new: bool = False,
+    ) -> None:
         """Give the first property called *name* new values; None as annotations keeps the old ones.
+
+        With *if_new* nothing happens when values and annotations are equal to the old ones.
 
         Raises:
             UnknownProperty: there is none.
@@ -81,11 +89,14 @@ class PropertyStore:
         if not properties:
             raise self._unknown(name)
         old = next(iter(properties.values()))
+        values = _plain(values)
+        kept = old.annotations if annotations is None else plain_annotations(annotations)
+        if if_new and _all_equal(values, old.values) and _all_equal(kept, old.annotations):
+            return
         key = old.key
         if key not in self.changing:
             self.changing[key] = (name, old)
-        kept = old.annotations if annotations is None else plain_annotations(annotations)
-        properties[key] = ObservableProperty(name, _plain(values), kept, key)
+        properties[key] = ObservableProperty(name, values, kept, key)
 
     def remove(self, name: str, template: tuple[object, ...]) -> None:
         """Remove the first property called *name* whose values fit *template* (see `first`).
@@ -180,6 +191,11 @@ def _plain(values: tuple[object, ...]) -> tuple[object, ...]:
         if type(value) not in SCALARS:
             return tuple(map(plain, values))
     return values
+
+
+def _all_equal(new: tuple[object, ...], old: tuple[object, ...]) -> bool:
+    """Whether values are equal to an agent; what is not equal to Python is not, and that is found sooner."""
+    return new == old and all(map(equal, new, old))
 
 
 def plain_annotations(annotations: tuple[object, ...]) -> tuple[object, ...]:

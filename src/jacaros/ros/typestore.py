@@ -98,29 +98,36 @@ class RosbagsSchema:
         _store().register({type_name: next(iter(parsed.values()))})
 
     def _compile(self, type_name: str) -> Callable[[], Any]:
-        fields = self.fields(type_name)
-        kind = _store().types[type_name]
-        makers = [(name, self._maker(field)) for name, field in fields.items()]
-        defaults = DEFAULTS.get(type_name, {})
-        makers = [(name, _constant(defaults[name]) if name in defaults else make) for name, make in makers]
-        if not fields:
-            makers = [(_FILLER, _constant(0))]
-        return lambda: kind(**{name: make() for name, make in makers})
+        """A function that makes a message, written out as one expression: nested messages need no calls between."""
+        names: dict[str, Any] = {}
+        maker: Callable[[], Any] = eval(f"lambda: {self._message(type_name, names)}", names)
+        return maker
 
-    def _maker(self, field: FieldType) -> Callable[[], Any]:
+    def _message(self, type_name: str, names: dict[str, Any]) -> str:
+        """An expression that makes a message; *names* takes what it refers to."""
+        fields = self.fields(type_name)
+        defaults = DEFAULTS.get(type_name, {})
+        values = [
+            repr(defaults[name]) if name in defaults else self._value(field, names)
+            for name, field in fields.items()
+        ]
+        # By place: a field may have a name that Python keeps for itself.
+        return f"{_named(_store().types[type_name], names)}({', '.join(values) or '0'})"
+
+    def _value(self, field: FieldType, names: dict[str, Any]) -> str:
         if not field.array:
-            return self._single_maker(field)
+            return self._single(field, names)
         length = field.length if field.fixed else 0
         if field.is_numeric:
-            return lambda: zeros(field, length)
-        single = self._single_maker(field) if length else list
-        return lambda: [single() for _ in range(length)]
+            return f"{_named(zeros(field, length), names)}.copy()"
+        return f"[{self._single(field, names)} for _ in range({length})]" if length else "[]"
 
-    def _single_maker(self, field: FieldType) -> Callable[[], Any]:
-        if field.is_message:
-            return self._compile(field.base)
-        return _constant(_ZEROS.get(field.base, 0))
+    def _single(self, field: FieldType, names: dict[str, Any]) -> str:
+        return self._message(field.base, names) if field.is_message else repr(_ZEROS.get(field.base, 0))
 
 
-def _constant(value: object) -> Callable[[], object]:
-    return lambda: value
+def _named(value: object, names: dict[str, Any]) -> str:
+    """A name for a value in an expression."""
+    name = f"v{len(names)}"
+    names[name] = value
+    return name

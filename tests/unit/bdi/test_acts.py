@@ -1,6 +1,7 @@
 """External actions: waiting, outputs, failure, suspension, dropping."""
 
 import pytest
+from recording_host import printed
 
 from jacaros.bdi.act import Completion
 from jacaros.testing import ActionFailed, AgentHarness
@@ -96,3 +97,39 @@ def test_every_act_gets_one_completion_even_if_two_come() -> None:
         agent.mind.complete(1, Completion(True))
     agent.run()
     assert agent.prints == ["done"]
+
+
+TURNS = """
+    !a. !b.
+    +!a <- .print(a1); act; .print(a2); act; .print(a3).
+    +!b <- .print(b1); .print(b2); .print(b3); .print(b4); .print(b5).
+    +seen(X) <- .print(seen(X)).
+"""
+
+
+def test_an_action_that_ends_at_once_takes_one_turn() -> None:
+    agent = AgentHarness(TURNS, actions={"act": lambda: True})
+    agent.run()
+    assert agent.prints == ["a1", "b1", "a2", "b2", "b3", "a3", "b4", "b5"]
+
+
+def test_what_an_action_lets_the_agent_perceive_is_believed_when_the_plan_goes_on() -> None:
+    def look() -> bool:
+        agent.perceive("seen(cup)")
+        return True
+
+    agent = AgentHarness("!a. +!a <- look; ?seen(X); .print(X).", actions={"look": look})
+    agent.run()
+    assert agent.prints == ["cup"]
+
+
+def test_an_output_of_an_action_that_ends_at_once_is_bound_or_fails_the_step() -> None:
+    program = "!a. +!a <- get(X, X2); .print(X); get(Y, Y); .print(no). -!a[error(E), error_msg(M)] <- .print(E, ": ", M)."
+    lines = printed(program, complete=lambda act: Completion(True, tuple(zip(act.arguments, (3.0, 4.0), strict=True))))
+    assert lines == ["3", "action_failed: an output of the action does not fit"]
+
+
+def test_an_atomic_plan_keeps_its_turn_over_actions() -> None:
+    agent = AgentHarness(TURNS.replace("+!a", "@a[atomic] +!a"), actions={"act": lambda: True})
+    agent.run()
+    assert agent.prints == ["a1", "a2", "a3", "b1", "b2", "b3", "b4", "b5"]

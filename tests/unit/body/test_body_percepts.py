@@ -87,3 +87,24 @@ def test_a_percept_carries_the_cause_of_its_observation() -> None:
 def test_percepts_about_the_body_have_no_artifact() -> None:
     percept = writer().own("add", "joinedWsp", Reference(MAIN), atom("main"))
     assert [text(a) for a in percept.annotations] == ["percept_type(obs_prop)", "source(percept)"]
+
+
+def test_what_is_written_of_a_property_is_the_same_for_all_and_at_its_end() -> None:
+    one, two, write = observable("power", 1, "mains"), observable("power", 2.5, Atom("off")), writer()
+    change = Observation(LAMP, changed=((one, two),))
+    first = write.percepts(change)
+    assert write.percepts(change) is first
+    (end,) = write.percepts(Observation(LAMP, removed=(two,)))
+    assert end.literal is first[1].literal
+    assert end.annotations is first[1].annotations
+    assert [text(p.literal) for p in write.percepts(change, "lamps")] == [
+        'lamps::power(1,"mains")',
+        "lamps::power(2.5,off)",
+    ]
+    assert [text(p.literal) for p in write.percepts(change)] == ['power(1,"mains")', "power(2.5,off)"]
+
+
+def test_numbers_too_large_are_infinite() -> None:
+    assert lines(Observation(LAMP, added=(observable("n", 10**400, -(10**400)),))) == [
+        "add n(Infinity,-Infinity)"
+    ]

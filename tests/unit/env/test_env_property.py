@@ -34,6 +34,29 @@ def test_an_update_to_an_equal_value_is_a_change():
     assert len(store.commit().changed) == 1
 
 
+def test_an_update_if_new_to_equal_values_is_no_change():
+    store = store_of(("count", 0), ("place", 1, [2, True]))
+    store.update("count", (0,), None, if_new=True)
+    store.update("count", (0.0,), (), if_new=True)
+    store.update("place", (1, (2, True)), None, if_new=True)
+    assert not store.changing
+    assert store.commit() is NO_CHANGES
+
+
+def test_an_update_if_new_to_other_values_or_annotations_is_a_change():
+    for new, annotations in (((1,), None), ((False,), None), ((0, 0), None), ((0,), ("mark",))):
+        store = store_of(("count", 0))
+        store.update("count", new, annotations, if_new=True)
+        assert [change[1].values for change in store.commit().changed] == [new]
+
+
+def test_a_step_that_comes_back_to_the_old_value_has_changed_it_all_the_same():
+    store = store_of(("count", 0))
+    store.update("count", (1,), None, if_new=True)
+    store.update("count", (0,), None, if_new=True)
+    assert len(store.commit().changed) == 1
+
+
 def test_a_property_defined_and_removed_in_one_step_was_never_there():
     store = store_of()
     store.define("tmp", (1,), None)

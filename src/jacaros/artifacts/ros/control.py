@@ -6,6 +6,7 @@ newest pose and says what to command.  Lengths are metres, angles radians, count
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 DISTANCE_TOLERANCE = 0.005
 """A drive is at its end when so few metres remain."""
@@ -32,8 +33,7 @@ HOLDING_GAIN = 8.0
 """The same within the tolerances, where the least speeds do not count: wheels may stick there."""
 
 
-@dataclass(frozen=True, slots=True)
-class Pose:
+class Pose(NamedTuple):
     """Where a robot is: x and y in metres, heading in radians."""
 
     x: float
@@ -41,8 +41,7 @@ class Pose:
     heading: float
 
 
-@dataclass(frozen=True, slots=True)
-class Velocity:
+class Velocity(NamedTuple):
     """A command or a measurement: metres per second ahead, radians per second to the left."""
 
     linear: float = 0.0

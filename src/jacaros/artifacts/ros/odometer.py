@@ -13,9 +13,9 @@ STANDING = Velocity(0.02, 0.05)
 """A robot slower than this (metres and radians per second) stands still."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Odometry:
-    """One odometry message.
+    """One odometry message; nobody changes it.
 
     Attributes:
         position: x, y, z in metres.

@@ -52,9 +52,12 @@ class ReadingPolicy:
         """Whether *new* is worth passing after *old*."""
         if old == new:
             return False
-        return len(old) != len(new) or any(
-            self._field_differs(index, a, b) for index, (a, b) in enumerate(zip(old, new, strict=True))
-        )
+        if len(old) != len(new):
+            return True
+        for index, value in enumerate(new):  # noqa: SIM110 - most differ in the first field: no generator for that
+            if self._field_differs(index, old[index], value):
+                return True
+        return False
 
     def _field_differs(self, index: int, old: object, new: object) -> bool:
         if isinstance(old, int | float) and isinstance(new, int | float):
