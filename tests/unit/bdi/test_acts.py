@@ -3,7 +3,7 @@
 import pytest
 from recording_host import printed
 
-from jacaros.bdi.act import Completion
+from jacaros.bdi.act import Act, Completion
 from jacaros.testing import ActionFailed, AgentHarness
 
 MOVE = "!g. !other. +!g <- move(1, X); .print(moved(X)). +!other <- .wait(5); .print(other). -!g[R] <- .print(bad)."
@@ -124,9 +124,19 @@ def test_what_an_action_lets_the_agent_perceive_is_believed_when_the_plan_goes_o
 
 
 def test_an_output_of_an_action_that_ends_at_once_is_bound_or_fails_the_step() -> None:
-    program = "!a. +!a <- get(X, X2); .print(X); get(Y, Y); .print(no). -!a[error(E), error_msg(M)] <- .print(E, ": ", M)."
-    lines = printed(program, complete=lambda act: Completion(True, tuple(zip(act.arguments, (3.0, 4.0), strict=True))))
-    assert lines == ["3", "action_failed: an output of the action does not fit"]
+    program = """
+        !a.
+        +!a <- get(X, X2); .print(X, X2); get(Y, Y); .print(no).
+        -!a[error(E), error_msg(M)] <- .print(E, ": ", M).
+    """
+
+    def give(act: Act) -> Completion:
+        return Completion(True, tuple(zip(act.arguments, (3.0, 4.0), strict=True)))
+
+    assert printed(program, complete=give) == [
+        "34",
+        "action_failed: an output of the action does not fit",
+    ]
 
 
 def test_an_atomic_plan_keeps_its_turn_over_actions() -> None:
