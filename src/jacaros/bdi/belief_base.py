@@ -13,9 +13,11 @@ from jacaros.terms.values import (
     Annotated,
     Functor,
     Term,
+    Var,
     annotations_of,
     arguments_of,
     bare,
+    deref,
     functor_of,
 )
 
@@ -243,21 +245,30 @@ class Table:
         ]
 
     def _rows_for(self, arguments: Row) -> Iterable[Item]:
-        """The rows that may unify with the arguments; perhaps others too."""
+        """The rows that may unify with the arguments, with their annotations; perhaps others too."""
+        held = self.rows
+        return ((row, held[row]) for row in self.rows_like(arguments))
+
+    def rows_like(self, arguments: Row) -> Iterable[Row]:
+        """The rows that may unify with the arguments, newest first, until something changes."""
         places: list[int] = []
         keys: list[Term] = []
         for place, argument in enumerate(arguments):
             if argument.__class__ not in ATOMIC:
+                argument = deref(argument)
+                if argument.__class__ is Var:
+                    continue
                 argument = resolve(argument)
                 if not is_key(argument):
                     continue
             places.append(place)
             keys.append(argument)
         if len(keys) == len(arguments):
-            return self.exact_item(tuple(keys))
+            row = tuple(keys)
+            return (row,) if row in self.rows else _NONE
         if not keys or len(self.rows) < _FEW:
-            return reversed(self.rows.items())
-        return self.find_items(tuple(places), keys[0] if len(keys) == 1 else tuple(keys))
+            return reversed(self.rows)
+        return self.find(tuple(places), keys[0] if len(keys) == 1 else tuple(keys))
 
     def __len__(self) -> int:
         return len(self.rows) + len(self.late)

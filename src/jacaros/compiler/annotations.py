@@ -88,9 +88,21 @@ def each_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then:
         return
     candidate, mark = fn.local("c"), fn.local("n")
     with fn.writer.block(f"for {candidate} in {held}:"):
+        _pass_over_others(fn, patterns[0], candidate)
         fn.line(f"{mark} = len(t)")
         match(fn, patterns[0], candidate, lambda: each_match(fn, patterns[1:], held, then))
         fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+
+def _pass_over_others(fn: FunctionBuilder, pattern: nodes.Term, candidate: str) -> None:
+    """Most annotations are no answer, which their functor tells."""
+    if (
+        isinstance(pattern, nodes.Literal)
+        and pattern.arguments
+        and not isinstance(pattern.namespace, nodes.Variable)
+    ):
+        symbol = fn.constant(functor_of_literal(pattern))
+        fn.line(f"if {candidate}.__class__ is tuple and {candidate}[0] is not {symbol}: continue")
 
 
 def first_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then: Then) -> None:
@@ -112,6 +124,7 @@ def first_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then
                 known.update(fn.values)
 
         with fn.writer.block(f"for {candidate} in {held}:"):
+            _pass_over_others(fn, patterns[index], candidate)
             fn.line(f"{mark} = len(t)")
             match(fn, patterns[index], candidate, matched)
             fn.line(f"if len(t) > {mark}: undo(t, {mark})")

@@ -180,11 +180,11 @@ def facts(
     table: Any, arguments: tuple[Term, ...], trail: Trail, lasting: bool = False
 ) -> Iterator[tuple[Term, ...]]:
     """The answers of a predicate that are facts, by unification; *lasting* ones stay when beliefs change."""
-    candidates = table.candidates(arguments)
-    for entry, _ in list(candidates) if lasting else candidates:
-        if entry.__class__ is tuple:
+    rows = table.rows_like(arguments)
+    for row in list(rows) if lasting else rows:
+        if row.__class__ is tuple:
             mark = len(trail)
-            if unify_rows(arguments, entry, trail):
+            if unify_rows(arguments, row, trail):
                 yield arguments
             undo(trail, mark)
 
