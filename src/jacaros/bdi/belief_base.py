@@ -267,7 +267,8 @@ class Table:
             row = tuple(keys)
             return (row,) if row in self.rows else _NONE
         if not keys or len(self.rows) < _FEW:
-            return reversed(self.rows)
+            newest_first: Iterator[Row] = reversed(self.rows)
+            return newest_first
         return self.find(tuple(places), keys[0] if len(keys) == 1 else tuple(keys))
 
     def __len__(self) -> int:

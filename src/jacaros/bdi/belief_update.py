@@ -168,6 +168,20 @@ def _remove_first(
         if held is None or held is BY_SELF:
             return arguments if held is not None and table.remove(arguments) else None
     trail = agent.trail
+    if annotations is BY_SELF and table.plain:
+        # The same with variables, as long as the facts that may match are the agent's own.
+        for fact in table.rows_like(arguments):
+            if table.rows[fact] is not BY_SELF:
+                break
+            mark = len(trail)
+            if unify_rows(arguments, fact, trail):
+                taken = table.remove(fact)
+                if not (bind and taken):
+                    undo(trail, mark)
+                return fact if taken else None
+            undo(trail, mark)
+        else:
+            return None
     unbound = all(a.__class__ is Var and a.ref is None for a in arguments)
     for entry, held in table.in_order() if unbound else table.candidates(arguments):
         mark = len(trail)
@@ -331,11 +345,11 @@ def _abolish_entry(
         return
     trail = agent.trail
     mark = len(trail)
-    matches = (arguments is None or unify_rows(arguments, row, trail)) and unify_annotations(
-        annotations, None, held, None, trail
+    matches = (arguments is None or unify_rows(arguments, row, trail)) and (
+        not annotations or unify_annotations(annotations, None, held, None, trail)
     )
     undo(trail, mark)
-    if matches and take_away(table, entry, held, held):
+    if matches and table.remove(entry):
         external_change(agent, "-", symbol, row, held)
 
 
