@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from jacaros.bdi.act import Percept
@@ -13,7 +14,7 @@ from jacaros.bdi.event_waits import EventWaits
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.internal_action import InternalAction
 from jacaros.bdi.options import Options
-from jacaros.bdi.plan_library import PlanLibrary, Selects
+from jacaros.bdi.plan_library import PlanLibrary
 from jacaros.bdi.probe import Probe
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.speech_act import SpeechAct
@@ -162,9 +163,8 @@ class Circumstance:
         self.usual_events = options.events == "discard" and not options.new_focus
         self.option_filter = self.beliefs[functor("select__option", 4)]
         self.refused_options = False
-        self.library = PlanLibrary(plans)
-        self.library.report = lambda text: architecture.log("error", text)
-        self.selects: Selects = self.library.selects
+        self.library = PlanLibrary(plans, partial(architecture.log, "error"))
+        self.selects = self.library.selects
         self.urgency: Any = None
         self.events: deque[Event] = deque()
         self.requeued: list[Event] = []

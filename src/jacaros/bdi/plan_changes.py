@@ -39,6 +39,7 @@ def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
 
 def look_at_plans(agent: Circumstance) -> None:
     """What the mind needs to know of its plans as a whole, those included that have been removed: they may still run."""
+    agent.selects = agent.library.selects
     agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
     agent.subplans = agent.subplans or agent.library.has_subplans()
     agent.goal_conditions = agent.goal_conditions or agent.library.has_goal_conditions()
@@ -126,7 +127,7 @@ def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
         agent.library.set_sources(found, left)
     else:
         agent.library.remove(found)
-        urgency.plans_changed(agent)
+        look_at_plans(agent)
     return True
 
 

@@ -4,7 +4,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import cast
 
 from jacaros.bdi.intention import Frame
-from jacaros.bdi.program_plans import ProgramPlans, concerns, has_goal_condition, made, relevant
+from jacaros.bdi.program_plans import (
+    ProgramPlans,
+    ProgramSelects,
+    concerns,
+    has_goal_condition,
+    made,
+    relevant,
+)
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import Trigger
@@ -20,49 +27,59 @@ class PlanLibrary:
     Attributes:
         program: the plans that it began with; as long as no other plan concerns an event, their select function is shared
             with all agents of the program.
+        selects: the select functions; as long as no plan has come or gone they are those of the program.
         report: told what cannot be compiled.
     """
 
     __slots__ = ("_every", "_sources", "actions", "own", "plans", "program", "removed", "report", "selects")
 
-    def __init__(self, program: ProgramPlans) -> None:
+    def __init__(self, program: ProgramPlans, report: Callable[[str], None]) -> None:
         self.program = program
+        if program.report is None:
+            program.report = report
         self.actions: Mapping[str, ActionInfo] = program.actions
-        self.report: Callable[[str], None] = _ignore
+        self.report = report
         self.plans: list[Plan] = program.plans
         self.own: list[Plan] = []
         self.removed: list[Plan] = []
-        self.selects = Selects(self)
+        self.selects: ProgramSelects | Selects = program.selects
         self._sources: dict[Plan, tuple[Term, ...]] = {}
         self._every: dict[Trigger, Callable[..., Iterator[Frame]] | None] = {}
 
     def add(self, plan: Plan, first: bool = False) -> None:
         """Add a plan at the end, or before all others."""
-        self._have_own_list()
+        self._differ_from_program()
         self.plans.insert(0 if first else len(self.plans), plan)
         self.own.append(plan)
-        self._every.clear()
-        self.selects.forget(plan)
+        self._forget_selects(plan)
 
     def remove(self, plan: Plan) -> None:
         """Take a plan out."""
-        self._have_own_list()
+        self._differ_from_program()
         self.plans.remove(plan)
         if plan in self.own:
             self.own.remove(plan)
         else:
             self.removed.append(plan)
         self._sources.pop(plan, None)
-        self._every.clear()
-        self.selects.forget(plan)
+        self._forget_selects(plan)
 
-    def _have_own_list(self) -> None:
-        """The list of plans is that of the program, as of all its agents, until it changes."""
+    def _differ_from_program(self) -> None:
+        """The list of plans and the select functions are those of the program, as of all its agents, until they change."""
         if self.plans is self.program.plans:
             self.plans = list(self.plans)
+        if self.selects is self.program.selects:
+            self.selects = Selects(self)
+
+    def _forget_selects(self, plan: Plan) -> None:
+        """A plan came or went: the functions it concerns are made anew."""
+        self._every.clear()
+        if isinstance(self.selects, Selects):
+            self.selects.forget(plan)
 
     def take_over(self, other: "PlanLibrary") -> None:
         """Have the plans of the library of another agent that runs the same program."""
+        self._differ_from_program()
         self.plans, self.own, self.removed = list(other.plans), list(other.own), list(other.removed)
         self._sources = dict(other._sources)
 
@@ -117,24 +134,20 @@ class PlanLibrary:
         return any(plan.node.trigger.operator == "^" for plan in self.plans)
 
 
-def _ignore(text: str) -> None:
-    del text
-
-
 class Selects(dict[Trigger, Select | None]):
-    """The select function of each event kind, made at its first event; None when there is no relevant plan."""
+    """The same for an agent whose plans are not all those of its program; or one that chooses among them itself."""
 
     __slots__ = ("library", "sources")
 
     def __init__(self, library: PlanLibrary) -> None:
         super().__init__()
         self.library = library
-        self.sources: dict[Trigger, str] = library.program.sources
+        self.sources: dict[Trigger, str] = library.program.selects.sources
 
     def __missing__(self, trigger: Trigger) -> Select | None:
         library = self.library
         if library.is_as_written(trigger):
-            select = library.program.select(trigger, library.report)
+            select = library.program.selects[trigger]
         else:
             self.sources = dict(self.sources)
             plans = library.relevant(trigger)

@@ -24,6 +24,8 @@ class ProgramPlans:
         has_subplans: whether any plan has plans of its own.
         has_goal_conditions: whether any plan, or plan of a plan, has a goal condition.
         has_meta_plans: whether any plan reacts to changes of goal states (``^!g``).
+        selects: the select functions.
+        report: told what cannot be compiled; the first agent of the program puts itself here.
     """
 
     def __init__(self, plan_nodes: Sequence[nodes.Plan], actions: Mapping[str, ActionInfo]) -> None:
@@ -40,22 +42,41 @@ class ProgramPlans:
         self.has_subplans = any(plan.subplans for plan in self.plans)
         self.has_goal_conditions = any(has_goal_condition(plan) for plan in self.plans)
         self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
-        self.sources: dict[Trigger, str] = {}
         self.rule_functions: dict[Any, Any] = {}
-        self._selects: dict[Trigger, Select | None] = {}
+        self.selects = ProgramSelects(self)
+        self.report: Callable[[str], None] | None = None
 
-    def select(self, trigger: Trigger, report: Callable[[str], None]) -> Select | None:
-        """The select function of an event kind; None when no plan concerns it."""
-        if trigger not in self._selects:
-            plans = self._relevant(trigger)
-            self._selects[trigger] = made(trigger, plans, self.actions, self.sources, report)
-        return self._selects[trigger]
-
-    def _relevant(self, trigger: Trigger) -> Sequence[Plan]:
+    def relevant(self, trigger: Trigger) -> Sequence[Plan]:
         """The candidate plans of an event kind, found without a look at each of a thousand plans."""
         if (trigger.operator, trigger.kind, None) in self._by_head:
             return relevant(self.plans, trigger)
         return self._by_head.get((trigger.operator, trigger.kind, trigger.functor), ())
+
+
+class ProgramSelects(dict[Trigger, Select | None]):
+    """The select function of each event kind, made at its first event; None when no plan concerns it.
+
+    Attributes:
+        sources: the text of those made, by event kind.
+    """
+
+    __slots__ = ("_program", "sources")
+
+    def __init__(self, program: ProgramPlans) -> None:
+        super().__init__()
+        self._program = program
+        self.sources: dict[Trigger, str] = {}
+
+    def __missing__(self, trigger: Trigger) -> Select | None:
+        program = self._program
+        report = program.report or _ignore
+        select = made(trigger, program.relevant(trigger), program.actions, self.sources, report)
+        self[trigger] = select
+        return select
+
+
+def _ignore(text: str) -> None:
+    del text
 
 
 def has_goal_condition(plan: Plan) -> bool:

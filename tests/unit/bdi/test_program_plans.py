@@ -15,6 +15,7 @@ PROGRAM = """
 @told +!tell(X) <- .print(told).
 +!slow <- .wait(10); .add_plan({ +!slow : other }); .wait(10); ?missing; .print(never).
 -!slow[code_line(L), error(E)] <- .print(E, " in line ", L).
++!both <- !greet(bob); !learn; !greet(bob).
 """
 
 
@@ -44,6 +45,25 @@ def test_the_select_function_is_made_once() -> None:
     assert (first.printed, second.printed) == (["hello bob"], ["hello ann"])
     kinds = [kind for kind in first.agent.selects if kind.functor.name == "greet" and kind.operator == "+"]
     assert first.agent.selects[kinds[0]] is second.agent.selects[kinds[0]]
+
+
+def test_select_functions_are_shared_until_plans_change() -> None:
+    first, second = agents("a", "b")
+    assert first.agent.selects is second.agent.selects
+    assert first.agent.library.plans is second.agent.library.plans
+    adopt(first, "learn")
+    assert first.agent.selects is not second.agent.selects
+    assert second.agent.selects is second.agent.library.program.selects
+    adopt(second, "forget")
+    assert second.agent.selects is second.agent.library.selects
+    assert second.agent.selects is not second.agent.library.program.selects
+    assert len(second.agent.library.program.plans) == len(second.agent.library.plans) + 1
+
+
+def test_a_plan_that_is_added_within_an_intention_counts_for_its_next_goal() -> None:
+    (only,) = agents("a")
+    adopt(only, "both")
+    assert only.printed == ["hello bob", "hi bob"]
 
 
 def test_an_added_plan_is_the_agents_own() -> None:
