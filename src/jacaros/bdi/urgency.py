@@ -182,18 +182,21 @@ def _with_inner(plans: Sequence[Plan]) -> Iterator[Plan]:
         yield from _with_inner(plan.subplans)
 
 
+def has_urgent_plans(agent: Circumstance) -> bool:
+    """Whether a plan, or the agent's option, says that something is urgent."""
+    return bool(agent.options.urgency) or any(plan.urgency for plan in _with_inner(agent.library.plans))
+
+
 def plans_changed(agent: Circumstance) -> None:
     """See whether an agent has urgent plans; to be called whenever its plans have changed."""
-    urgency = agent.urgency
-    if urgency is None:
-        if not agent.options.urgency and not any(plan.urgency for plan in _with_inner(agent.library.plans)):
-            return
+    if agent.urgency is not None:
+        agent.urgency.forget()
+    elif has_urgent_plans(agent):
         agent.urgency = Urgency(agent)
     else:
-        urgency.forget()
+        return
     # In the next cycle: the step that is being made has the queues in its hands.
-    agent.tasks.append(lambda: _order(agent))
-    agent.called = True
+    agent.do_soon(lambda: _order(agent))
 
 
 def _order(agent: Circumstance) -> None:

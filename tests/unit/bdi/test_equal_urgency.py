@@ -1,0 +1,40 @@
+"""Where everything is equally urgent, all goes as without urgency: programs whose order was recorded on Jason."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.bdi import urgency
+from jacaros.testing import RunResult, run_project
+
+CASES = Path(__file__).parents[2] / "conformance"
+PROGRAMS = sorted(
+    path
+    for area in ("concurrency", "failure", "intentions", "messages", "plan_selection", "programs")
+    for pattern in ("*.asl", "*/*.mas2j")
+    for path in (CASES / area).glob(pattern)
+)
+
+
+def test_there_are_programs() -> None:
+    assert len(PROGRAMS) > 50
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_a_program_prints_the_same(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    queues = []
+
+    def run() -> RunResult:
+        return run_project(
+            program,
+            seconds=120,
+            when_started=lambda mas: queues.extend(host.mind.urgency for host in mas.directory),
+        )
+
+    plain = run()
+    assert not any(queues)
+    monkeypatch.setattr(urgency, "has_urgent_plans", lambda agent: True)
+    queues.clear()
+    urgent = run()
+    assert all(queues)
+    assert (urgent.lines, urgent.errors, urgent.exit_code) == (plain.lines, plain.errors, plain.exit_code)
