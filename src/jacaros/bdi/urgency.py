@@ -54,7 +54,7 @@ class Urgency:
     def __init__(self, agent: Circumstance) -> None:
         self._agent = agent
         self._named = dict(agent.options.urgency)
-        self._by_trigger: dict[Trigger, int] = {}
+        self._by_trigger = _ByTrigger(self.of_plan, agent)
         self._looked_at = 0
         self._to_read = 0
 
@@ -72,16 +72,11 @@ class Urgency:
 
     def of_trigger(self, kind: Trigger) -> int:
         """The urgency of the most urgent plan for an event kind; sub-plans count."""
-        urgency = self._by_trigger.get(kind)
-        if urgency is None:
-            plans = _with_inner(self._agent.library.plans)
-            urgency = max((self.of_plan(plan) for plan in plans if concerns(plan, kind)), default=0)
-            self._by_trigger[kind] = urgency
-        return urgency
+        return self._by_trigger[kind]
 
     def of_event(self, event: Event) -> int:
         """The urgency of an event, not below that of the intention that posted it."""
-        urgency = self.of_trigger(event[EVENT_GOAL][0])
+        urgency = self._by_trigger[event[EVENT_GOAL][0]]
         intention = event[EVENT_INTENTION]
         return urgency if intention is None else max(urgency, self.of_intention(intention))
 
@@ -137,6 +132,20 @@ class Urgency:
         return self.of_event(events[0]) >= self.of_intention(intentions[0])
 
 
+class _ByTrigger(dict[Trigger, int]):
+    """The urgency of event kinds, worked out when it is first asked for."""
+
+    def __init__(self, of_plan: Callable[[Plan], int], agent: Circumstance) -> None:
+        super().__init__()
+        self._of_plan, self._agent = of_plan, agent
+
+    def __missing__(self, kind: Trigger) -> int:
+        plans = _with_inner(self._agent.library.plans)
+        urgency = max((self._of_plan(plan) for plan in plans if concerns(plan, kind)), default=0)
+        self[kind] = urgency
+        return urgency
+
+
 class UrgentQueue(deque[Item], Generic[Item]):
     """A queue in which the more urgent stands before the less urgent, and equals in the order in which they came."""
 
@@ -149,7 +158,8 @@ class UrgentQueue(deque[Item], Generic[Item]):
     def append(self, item: Item) -> None:
         """Put an item behind those that are as urgent, or more."""
         urgency = self._urgency(item)
-        if not self or self._urgency(self[-1]) >= urgency:
+        # Nothing is below 0: what is not urgent needs no look at the others.
+        if urgency == 0 or not self or self._urgency(self[-1]) >= urgency:
             super().append(item)
             return
         low, high = 0, len(self) - 1
