@@ -65,7 +65,7 @@ CURVES = (
         (100, 1_000, 10_000), lookups, lambda size: 500_000 // size,
     ),
     Curve(
-        "waiting", "A belief event with a plan, while other intentions wait", "event", "waiting intentions", TO_10_000,
+        "waiting", "A belief event, while other intentions wait", "event", "waiting intentions", TO_10_000,
         (1, 10, 100), waiting, lambda size: 100_000 // (10 * (10 + size)),
     ),
     Curve(

@@ -94,7 +94,9 @@ def _curve(axes: Axes, curve: dict[str, Any]) -> None:
         axes.plot(sizes, costs, marker="o", markersize=4, color=COLOURS[engine], label=NAMES[engine])
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_ylim(bottom=10)
+    # From ten to a thousand at least: a flat line has to look flat.
+    dearest = max(point["calls"] for points in curve["lines"].values() for point in points)
+    axes.set_ylim(10, max(1000, 2 * dearest))
     axes.set_title(curve["title"], fontsize=9, loc="left")
     axes.set_xlabel(curve["among"])
     axes.legend(frameon=False, fontsize=8)
