@@ -53,14 +53,15 @@ def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str
         each for each in findings.diagnostics if each.severity == "error" or each.code not in ignore
     ]
     if style == "text":
-        _tell(findings)
+        tell(findings)
     else:
         click.echo((as_json if style == "json" else as_sarif)(findings))
     counts = Counter(each.severity for each in findings.diagnostics)
     return 1 if counts["error"] or (strict and counts["warning"]) else 0
 
 
-def _tell(findings: Findings) -> None:
+def tell(findings: Findings) -> None:
+    """Print what was found, and how much."""
     coloured = has_colours()
     for diagnostic in findings.diagnostics:
         click.echo(_coloured(diagnostic) if coloured else diagnostic.render(with_code=True), color=coloured)

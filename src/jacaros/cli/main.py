@@ -24,6 +24,7 @@ COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
     "check": ("jacaros.cli.check", "Tell what is wrong in programs and projects."),
     "fmt": ("jacaros.cli.fmt", "Lay programs out in one style."),
+    "compile": ("jacaros.cli.compile", "Show the Python code that is made of a program."),
     "test": ("jacaros.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
     "describe": ("jacaros.cli.describe", "Tell what an artifact type or a project offers."),

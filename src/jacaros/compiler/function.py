@@ -135,7 +135,7 @@ class FunctionBuilder:
     def at(self, node: nodes.Node) -> None:
         """The next lines stem from this node."""
         if node.span is not None:
-            self.writer.origin = node.span.line
+            self.writer.file, self.writer.origin = node.span.file, node.span.line
 
     def constant(self, value: Term) -> str:
         """A global name for a value."""

@@ -178,6 +178,7 @@ class SelectCompiler:
         if plan.node.context is None:
             self._frame(fn, plan)
         else:
+            fn.at(plan.node.context)
             condition(fn, plan.node.context, lambda: self._frame(fn, plan))
 
     def _frame(self, fn: FunctionBuilder, plan: Plan) -> None:

@@ -1,8 +1,9 @@
 """A unit of generated code: the functions of one event kind or rule, made real."""
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import groupby
 from types import FunctionType
-from typing import Any
+from typing import Any, NamedTuple
 
 from jacaros.asl import nodes
 from jacaros.compiler import runtime
@@ -24,6 +25,7 @@ class CodeUnit:
     Attributes:
         actions: the internal actions known at compile time.
         source: the text of everything generated, for people.
+        writers: what has been written and not been executed yet.
     """
 
     def __init__(self, filename: str, actions: Mapping[str, ActionInfo]) -> None:
@@ -31,7 +33,7 @@ class CodeUnit:
         self.actions = actions
         self.globals: dict[str, Any] = dict(runtime.NAMES)
         self.source: list[str] = []
-        self._writers: list[Writer] = []
+        self.writers: list[Writer] = []
         self._constants: dict[Any, str] = {}
         self._count = 0
 
@@ -49,7 +51,7 @@ class CodeUnit:
     def add(self, writer: Writer) -> None:
         """Make a finished function part of the unit."""
         writer.prune()
-        self._writers.append(writer)
+        self.writers.append(writer)
         self.source.append(writer.text())
 
     def fresh_function(self, prefix: str) -> str:
@@ -59,8 +61,14 @@ class CodeUnit:
 
     def execute(self) -> None:
         """Make the functions: afterwards they are in `globals`."""
-        exec(compile_all(self._writers, self.filename), self.globals)  # only ever made from the syntax tree
-        self._writers.clear()
+        # A code object has but one file, and plans may be included.
+        for filename, writers in groupby(self.writers, self._file_of):
+            exec(compile_all(writers, filename), self.globals)  # only ever made from the syntax tree
+        self.writers.clear()
+
+    def _file_of(self, writer: Writer) -> str:
+        file = writer.files[0]
+        return self.filename if file is None else file.name
 
 
 def _prefix(value: Term) -> str:
@@ -80,19 +88,48 @@ def compile_select(
 
     With *every* it is a generator of the frames of all applicable plans.
     """
+    written = write_select(trigger, plans, actions, outer, every)
+    unit = written.unit
+    unit.execute()
+    for plan, achieved in written.conditions.items():
+        plan.goal_condition = unit.globals[achieved]
+    for plan, body, first in written.bodies:
+        install_body(unit, plan, body, first)
+    select: Select = unit.globals[written.name]
+    return select, "\n".join(unit.source)
+
+
+class WrittenSelect(NamedTuple):
+    """A select function that has been written, and is not executed yet.
+
+    Attributes:
+        unit: holds it, and what it needs.
+        name: of the function.
+        bodies: of each plan the body, and the name of its first step function.
+        conditions: of each plan that has one, the name of the test of its goal condition.
+    """
+
+    unit: CodeUnit
+    name: str
+    bodies: list[tuple[Plan, BodyCompiler, str]]
+    conditions: dict[Plan, str]
+
+
+def write_select(
+    trigger: Trigger,
+    plans: Sequence[Plan],
+    actions: Mapping[str, ActionInfo],
+    outer: Plan | None = None,
+    every: bool = False,
+) -> WrittenSelect:
+    """Write the select function of an event kind; see `compile_select`."""
     unit = CodeUnit(plans[0].file, actions)
     compiler = SelectCompiler(unit, trigger.functor.arity, every)
     name = compiler.select(plans, outer)
     conditions = {
         plan: compile_goal_condition(unit, plan) for plan in plans if plan.node.goal_condition is not None
     }
-    unit.execute()
-    for plan, achieved in conditions.items():
-        plan.goal_condition = unit.globals[achieved]
-    for plan, body, first in compiler.bodies:
-        install_body(unit, plan, body, first)
-    select: Select = unit.globals[name]
-    return select, "\n".join(unit.source)
+    return WrittenSelect(unit, name, compiler.bodies, conditions)
 
 
 def install_body(unit: CodeUnit, plan: Plan, body: BodyCompiler, first: str) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from types import CodeType
 
+from jacaros.asl.source import SourceFile
 from jacaros.compiler.line_numbers import compile_text
 
 _READ = re.compile(r" +(v\d+) = deref\(\w+\)")
@@ -16,13 +17,16 @@ class Writer:
     """Collects the lines of one piece of generated code.
 
     Attributes:
-        origin: line of the agent program that the next lines come from.
+        file, origin: file and line of the agent program that the next lines come from.
+        files, origins: the same of each line that is written.
         loops: how many loops are open; Python allows 20 nested ones.
     """
 
     def __init__(self) -> None:
         self.lines: list[str] = []
+        self.files: list[SourceFile | None] = []
         self.origins: list[int] = []
+        self.file: SourceFile | None = None
         self.origin = 1
         self.depth = 0
         self.loops = 0
@@ -31,6 +35,7 @@ class Writer:
     def line(self, text: str) -> None:
         """Write one line."""
         self.lines.append("    " * self.depth + text)
+        self.files.append(self.file)
         self.origins.append(self.origin)
 
     def fresh(self, prefix: str = "t") -> str:
@@ -61,6 +66,7 @@ class Writer:
             if (read := _READ.fullmatch(line)) is None or names[read[1]] > 1
         ]
         self.lines = [self.lines[i] for i in kept]
+        self.files = [self.files[i] for i in kept]
         self.origins = [self.origins[i] for i in kept]
 
     def text(self) -> str:

@@ -1,0 +1,111 @@
+"""``jacaros compile FILE``."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+from jacaros.asl import nodes
+from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.cli.check import tell
+from jacaros.cli.files import existing
+from jacaros.compiler.listing import Piece, listing, pieces
+from jacaros.compiler.plan import Plan
+from jacaros.errors import UsageError
+from jacaros.mas.checking import check_files
+from jacaros.mas.programs import Programs
+from jacaros.mas.python_code import PythonCode
+from jacaros.project_modules import ProjectModules
+from jacaros.terms.text import text
+
+
+@click.command("compile", short_help="Show the Python code that is made of a program.")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option(
+    "--show", is_flag=True, help="Print the code, below the lines of the program that it comes from."
+)
+@click.option(
+    "--plan",
+    "wanted",
+    metavar="LABEL|TRIGGER",
+    help="Only what belongs to the plan of that label, or to the plans for that event, such as `+!go` or `+!go/2`.",
+)
+def command(file: Path, show: bool, wanted: str | None) -> int:
+    """Compile all plans and rules of FILE, an agent program (.asl), and tell how much code they become.
+
+    Nothing of that is needed to run a program: an agent compiles its plans when their first event comes. What is wrong
+    in the program is told as `jacaros check` tells it, with exit code 1.
+    """  # fmt: skip
+    program, code = _read(existing(file, (".asl",)))
+    if program is None:
+        return 1
+    plans = ProgramPlans(program.plans, code.actions).plans
+    rules = [each for each in program.beliefs if isinstance(each, nodes.Rule)]
+    all_ = list(pieces(plans, rules, code.actions))
+    chosen = [(piece, None) for piece in all_] if wanted is None else _chosen(all_, wanted)
+    texts = [listing(piece, only) for piece, only in chosen]
+    too_large = [line for piece in all_ if (line := _fault(piece)) is not None]
+    if show:
+        click.echo("\n".join(texts), nl=False)
+    else:
+        functions = sum(len(re.findall("^def ", text, re.MULTILINE)) for text in texts)
+        lines = sum(
+            1 for text in texts for line in text.splitlines() if line and not line.lstrip().startswith("#")
+        )
+        click.echo(
+            f"{file}: {_count(plans, 'plan')} and {_count(rules, 'rule')}: {functions} functions, {lines} lines"
+        )
+    for line in too_large:
+        click.echo(f"{file}: error: {line}", err=True)
+    return 1 if too_large else 0
+
+
+def _read(file: Path) -> tuple[nodes.Program | None, PythonCode]:
+    """The program, or None when something is wrong in it, which has been told."""
+    findings = check_files([file])
+    errors = [each for each in findings.diagnostics if each.severity == "error"]
+    code = PythonCode(ProjectModules(file.parent))
+    if errors:
+        findings.diagnostics = errors
+        tell(findings)
+        return None, code
+    return Programs((file.parent,), lambda _: None, code).read(file), code
+
+
+def _fault(piece: Piece) -> str | None:
+    """Why Python does not take a piece; None when it does."""
+    try:
+        piece.unit.execute()
+    except (SyntaxError, RecursionError) as fault:
+        return f"{piece.title} are too large to be compiled: {fault}"
+    return None
+
+
+def _chosen(all_: Sequence[Piece], wanted: str) -> list[tuple[Piece, Plan | None]]:
+    """What `--plan` means.
+
+    Raises:
+        UsageError: there is no such plan.
+    """
+    label = wanted.removeprefix("@")
+    labelled = [(piece, plan) for piece in all_ for plan in piece.plans if text(plan.label) == label]
+    if labelled:
+        return list(labelled)
+    name = re.sub(r"\(.*", "", wanted).strip()
+    found = [(piece, None) for piece in all_ if piece.plans and name in _names(piece)]
+    if not found:
+        events = sorted({_names(piece)[0] for piece in all_ if piece.plans})
+        raise UsageError(f"there is no plan {wanted}; there are plans for {', '.join(events) or 'nothing'}")
+    return list(found)
+
+
+def _names(piece: Piece) -> list[str]:
+    """What the event of a piece may be called: with the number of its arguments, and without."""
+    whole = piece.title.removeprefix("the plans for ").partition(" ")[0]
+    return [whole, whole.partition("/")[0]]
+
+
+def _count(things: Sequence[object], word: str) -> str:
+    return f"{len(things)} {word}{'' if len(things) == 1 else 's'}"
