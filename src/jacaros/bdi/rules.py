@@ -70,6 +70,7 @@ class Rule:
         return lower(self.node.head, fresh_names())
 
 
+_TIMES_ASKED = 10
 _ALWAYS = nodes.Literal("true")
 _SOURCE_SELF = nodes.Literal("source", (nodes.Literal("self"),))
 
@@ -154,9 +155,37 @@ class Searches(dict[int, Search]):
         self.before = False
 
     def __missing__(self, pattern: int) -> Search:
-        search = self[pattern] = self._compiled(pattern) or _by_unification(
-            self.predicate, pattern, self.deep
-        )
+        new = self._new_rules()
+        search = None if new else self._compiled(pattern)
+        self[pattern] = search = search or self._by_unification(pattern, _TIMES_ASKED * new)
+        return search
+
+    def _new_rules(self) -> int:
+        """How many rules do not stem from the program: they came at run time, and others may follow."""
+        around = self.predicate.around()
+        return 0 if around is None else sum(entry.shared is None for side in around for entry in side)
+
+    def _by_unification(self, pattern: int, patience: int) -> Search:
+        """The general way: facts, rules and beliefs with variables in any order.
+
+        Rules that came at run time are worth a function of their own when it has been gone *patience* times.
+        """
+        predicate, deep = self.predicate, self.deep
+        arity = predicate.functor.arity
+        places = given_positions(pattern, arity)
+
+        def search(agent: Any, trail: Trail, depth: int, *given: Term) -> Iterator[tuple[Term, ...]]:
+            nonlocal patience
+            del depth
+            patience -= 1
+            if patience == 0:
+                self[pattern] = self._compiled(pattern) or search
+            arguments: list[Term] = [Var() for _ in range(arity)]
+            for place, value in zip(places, given, strict=True):
+                arguments[place] = value
+            found = solve(agent, predicate, tuple(arguments), trail)
+            return found if deep else run(found, agent.rule_depth)
+
         return search
 
     def _compiled(self, pattern: int) -> Search | None:
@@ -189,19 +218,3 @@ class Searches(dict[int, Search]):
 
 def _nodes(rules: Sequence[Any]) -> list[nodes.Rule]:
     return [rule.node for rule in rules]
-
-
-def _by_unification(predicate: Predicate, pattern: int, deep: bool) -> Search:
-    """The general way: facts, rules and beliefs with variables in any order."""
-    arity = predicate.functor.arity
-    places = given_positions(pattern, arity)
-
-    def search(agent: Any, trail: Trail, depth: int, *given: Term) -> Iterator[tuple[Term, ...]]:
-        del depth
-        arguments: list[Term] = [Var() for _ in range(arity)]
-        for place, value in zip(places, given, strict=True):
-            arguments[place] = value
-        found = solve(agent, predicate, tuple(arguments), trail)
-        return found if deep else run(found, agent.rule_depth)
-
-    return search

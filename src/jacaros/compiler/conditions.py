@@ -560,6 +560,8 @@ def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> s
     inner.at(formula)
     with inner.writer.block(f"def {name}(agent, t, d{''.join(f', v_{c}' for c in captured)}):"):
         inner.line("found = []")
+        inner.line("room = t.room")
+        inner.line("if d <= 0: t.room = agent.rule_depth")  # what asks counts its rules by itself
 
         def found() -> None:
             value = as_name(inner, build(inner, template))
@@ -568,6 +570,7 @@ def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> s
             inner.line(f"found.append({copy})")
 
         condition(inner, formula, found)
+        inner.line("t.room = room")
         inner.line("return found")
     fn.unit.add(inner.writer)
     return _called(fn, name, captured)

@@ -235,6 +235,31 @@ def test_rules_that_come_and_go_at_run_time() -> None:
     ]
 
 
+def test_rules_that_keep_coming_are_compiled_only_when_they_are_asked_often() -> None:
+    program = """
+    !s.
+    +!s <- for (.range(I, 1, 200)) { .asserta({p(X) :- X = I}); ?p(I) }; .count(p(_), N); .print(N); !ask(3000).
+    +!ask(0) <- .findall(X, p(X) & X > 197, L); .print(L).
+    +!ask(N) : p(200) <- !ask(N - 1).
+    """
+    host = mind(program)
+    host.run()
+    assert host.printed == ["200", "[200,199,198]"]
+    table = next(t for f, t in host.agent.beliefs.items() if f.name == "p")
+    assert table.searches[1].__code__.co_filename != table.searches[0].__code__.co_filename
+
+
+def test_a_question_from_outside_counts_the_rules_of_each_list_it_collects() -> None:
+    """Known only at run time, so driven with a list for a stack; what it collects is nested again."""
+    program = """
+    z(1). z(2).
+    w(Y) :- z(Y).
+    v(N) :- .findall(Y, w(Y), L) & .length(L, N).
+    !s. +!s <- F = v(N); .findall(N, F, L); .print(L).
+    """
+    assert printed(program) == ["[2]"]
+
+
 def test_errors_in_a_rule_are_those_of_the_question() -> None:
     program = """
     bad(X) :- X > 1 div 0.
