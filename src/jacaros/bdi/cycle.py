@@ -8,8 +8,7 @@ nothing a program can see.
 from jacaros.bdi import edge_signals, rescue
 from jacaros.bdi.acting import execute, execute_plainly, is_plain
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.deliberation import handle_atomic_event, handle_event
-from jacaros.bdi.event import EVENT_INTENTION
+from jacaros.bdi.deliberation import event_of, handle_atomic_event, handle_event, is_ready
 from jacaros.bdi.finishing import end_achieved_goals
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.sensing import look_around
@@ -69,8 +68,7 @@ def _has_work(agent: Circumstance) -> bool:
     if agent.inbox or agent.percepts or agent.tasks:
         return True
     if agent.atomic is not None:
-        atomic = agent.atomic
-        return atomic in agent.intentions or any(e[EVENT_INTENTION] is atomic for e in agent.events)
+        return is_ready(agent, agent.atomic) or event_of(agent, agent.atomic) is not None
     return bool(agent.events or agent.intentions)
 
 
@@ -78,10 +76,14 @@ def _select_intention(agent: Circumstance) -> Intention | None:
     """Rule SelInt: the atomic one, else round robin."""
     intentions = agent.intentions
     if agent.atomic is not None:
-        if agent.atomic in intentions:
-            intentions.remove(agent.atomic)
-            return agent.atomic
-        return None
+        atomic = agent.atomic
+        if not is_ready(agent, atomic):
+            return None
+        if intentions[-1] is atomic:
+            intentions.pop()
+        else:
+            intentions.remove(atomic)
+        return atomic
     while intentions:
         intention = intentions.popleft()
         if intention.dropped:

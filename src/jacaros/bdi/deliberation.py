@@ -61,7 +61,7 @@ def handle_event(agent: Circumstance) -> Intention | None:
 
 def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
     """An atomic intention's own event comes before all others, which wait."""
-    event = next((e for e in agent.events if e[EVENT_INTENTION] is intention), None)
+    event = event_of(agent, intention)
     if event is not None:
         remove_event(agent, event)
         goal, _, annotations, _ = event
@@ -72,6 +72,19 @@ def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
             raise
         except Exception as fault:
             _pass_over(agent, event, fault)
+
+
+def is_ready(agent: Circumstance, intention: Intention) -> bool:
+    """Whether an intention is among those that can run; one that has just made a step is the last of them."""
+    intentions = agent.intentions
+    return bool(intentions) and (intentions[-1] is intention or intention in intentions)
+
+
+def event_of(agent: Circumstance, intention: Intention) -> Event | None:
+    """The event that an intention has in the queue, if it is that what it waits for."""
+    if intention.waiting is not None or is_ready(agent, intention):
+        return None
+    return next((event for event in agent.events if event[EVENT_INTENTION] is intention), None)
 
 
 def _pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:

@@ -22,6 +22,7 @@ from jacaros.terms.unifier import is_flat, rename, resolve, undo
 from jacaros.terms.values import (
     BY_SELF,
     CONS,
+    NIL,
     SOURCE,
     SOURCE_SELF,
     Annotated,
@@ -150,11 +151,13 @@ def _contents(content: Term) -> list[Term]:
 
 
 def _tell(agent: Circumstance, message: SpeechAct) -> None:
-    content = message.content
-    if message.flat and content.__class__ is tuple and content[0] is not CONS:
-        # As for `_achieve`: what agents tell each other is mostly flat.
-        agent.believe(content[0], content[1:], _ONLY_FROM[message.sender])  # type: ignore[attr-defined]
-        return
+    if message.flat:
+        # What agents say to each other is mostly flat, and nothing in it has to be looked at.
+        content = message.content
+        symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
+        if symbol is not CONS and symbol is not NIL:
+            agent.believe(symbol, row, _ONLY_FROM[message.sender])  # type: ignore[attr-defined]
+            return
     for content in _contents(message.content):
         if not agent.tell(from_sender(content, message.sender)):  # type: ignore[attr-defined]
             _refuse(agent, message)
@@ -166,15 +169,17 @@ def _untell(agent: Circumstance, message: SpeechAct) -> None:
 
 
 def _achieve(agent: Circumstance, message: SpeechAct) -> None:
-    content = message.content
-    if message.flat and content.__class__ is tuple and content[0] is not CONS and not agent.meta:
-        # The most frequent message, written out: there is nothing in it to be looked at.
-        goal = (ACHIEVED[content[0]],) + content[1:]  # noqa: RUF005 - twice as fast
-        event = (goal, None, _ONLY_FROM[message.sender], None)
-        agent.events.append(event)
-        if agent.event_waits:
-            agent.notify_event_waits(event)
-        return
+    if message.flat and not agent.meta:
+        # As above.
+        content = message.content
+        symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
+        if symbol is not CONS and symbol is not NIL:
+            goal = (ACHIEVED[symbol],) + row  # noqa: RUF005 - without a list in between
+            event = (goal, None, _ONLY_FROM[message.sender], None)
+            agent.events.append(event)
+            if agent.event_waits:
+                agent.notify_event_waits(event)
+            return
     for content in _contents(message.content):
         symbol, arguments, annotations = literal_from(content, message.sender)
         if symbol is None:

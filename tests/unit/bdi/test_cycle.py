@@ -5,7 +5,10 @@ from pathlib import Path
 import pytest
 from recording_host import mind, printed
 
+from jacaros.bdi.deliberation import event_of, is_ready
 from jacaros.bdi.meta_events import observe_goals
+from jacaros.compiler.triggers import trigger
+from jacaros.terms.values import BY_SELF, atom, functor
 
 CASES = Path(__file__).parents[2] / "conformance"
 AREAS = ("beliefs", "plan_selection", "body_statements", "failure", "intentions", "rules_and_queries", "time")
@@ -603,3 +606,27 @@ def test_a_goal_in_a_variable_has_a_deadline_too() -> None:
         -!late[error(E)] <- .print(late, E).
         """
     ) == ["latedeadline_reached", "adeadline_reached"]
+
+
+def test_an_atomic_intention_finds_its_own_event_behind_others() -> None:
+    host = mind("+!a <- .wait(10). +!b.")
+    host.agent.post_goal(atom("a"))
+    host.agent.run(10)
+    (intention,) = host.agent.alive.values()
+    host.agent.post_goal(atom("b"))
+    assert event_of(host.agent, intention) is None
+    own = ((trigger("+", "!", functor("b", 0)),), intention, BY_SELF, None)
+    host.agent.events.append(own)
+    assert event_of(host.agent, intention) is None  # it waits for something else
+    intention.waiting = None
+    assert event_of(host.agent, intention) is own
+    host.agent.intentions.append(intention)
+    assert is_ready(host.agent, intention)
+    assert event_of(host.agent, intention) is None
+
+
+def test_an_atomic_intention_goes_on_wherever_it_stands() -> None:
+    plans = "@a[atomic] +!a <- !b; .print(a). +!b <- !c; .print(b). @c[atomic] +!c <- .print(c). +!d(X) <- .print(X)."
+    goals = [*(f"!d({number})." for number in range(3)), "!a.", *(f"!d({number})." for number in range(3, 6))]
+    lines = printed(" ".join([*goals, plans]))
+    assert "".join(lines).count("cba") == 1

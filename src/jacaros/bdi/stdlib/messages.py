@@ -72,25 +72,38 @@ def _direct(written: Written) -> Any:
     act, to = _known_name(written[1]), _known_name(written[0])
     if act is None or (to is None and written[0] is not None):
         return None
-    if to is not None and to != "self":
+    if to is None or to == "self":
+        return _sender_to_some(act)
+    return _sender_to_one(act, to, written[2] is not None and is_flat(written[2]))
 
-        def send_on(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
-            # `_say` and `is_flat`, written out for the most frequent message; the others are left to it.
-            if content.__class__ is tuple and not content[0].kind and to != agent.name:
-                for part in content:
-                    if part.__class__ not in ATOMIC:
-                        break
-                else:
-                    agent.messages = number = agent.messages + 1
-                    if agent.architecture.send(SpeechAct(act, agent.name, to, content, number, None, True)):
-                        return
-                    raise _nobody(to)
+
+def _sender_to_one(act: str, to: str, flat: bool) -> Any:
+    """Sends to one agent that is written out; *flat* if the content is known to be."""
+
+    def send_on(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
+        # `_say` and `is_flat`, written out for the most frequent messages; the others are left to it.
+        if not flat:
+            if content.__class__ is not tuple or content[0].kind:
+                _say(agent, to, act, content)
+                return
+            for part in content:
+                if part.__class__ not in ATOMIC:
+                    _say(agent, to, act, content)
+                    return
+        if to == agent.name:
             _say(agent, to, act, content)
+            return
+        agent.messages = number = agent.messages + 1
+        if not agent.architecture.send(SpeechAct(act, agent.name, to, content, number, None, True)):
+            raise _nobody(to)
 
-        return send_on
+    return send_on
+
+
+def _sender_to_some(act: str) -> Any:
+    """Sends to one or several agents that become known at run time, or to the agent itself."""
 
     def send_to(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
-        # To one or several agents that become known at run time, or to oneself.
         for name in _receivers(resolve(receiver)):
             _say(agent, name, act, content)
 
