@@ -90,7 +90,7 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
     agent.current = intention
     frames, trail, selects = intention.frames, agent.trail, agent.selects
     events, intentions = agent.events, agent.intentions
-    filters, depth, tail_calls = agent.option_filter.rows, agent.goal_depth, agent.options.tail_calls
+    option_filter, depth, tail_calls = agent.option_filter, agent.goal_depth, agent.options.tail_calls
     frame: Frame = frames[-1]
     while True:
         fuel -= 1
@@ -142,7 +142,7 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
         annotations: Any = BY_SELF
         if goal.__class__ is Posted:
             goal, annotations = goal
-        if intentions or events or agent.called or filters or fuel <= 0:
+        if intentions or events or agent.called or option_filter.rows or fuel <= 0:
             _announce(agent, intention, goal, annotations)
             events.append((goal, intention, annotations, None))
             break

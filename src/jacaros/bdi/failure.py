@@ -101,29 +101,37 @@ class _Nowhere:
 
 
 class _StepPlace:
-    """The formula of a step that failed; its term is made at once, because variables are given back afterwards."""
+    """The formula of a step that failed.  The frame stays as it is: its plan goes no further."""
 
-    __slots__ = ("code", "node", "plan")
+    __slots__ = ("_frame", "_info", "_slots")
 
     def __init__(self, frame: Frame, info: StepInfo) -> None:
-        self.node = _failed_formula(info.node)
-        self.plan = frame[PLAN]
-        self.code: Any = None
-        slots = self.plan.slots
-        lookup = {
-            name: frame[slot] for name, slot in slots.items() if slot < len(frame) and frame[slot] is not None
-        }
-        self.code = (lookup, frame)
+        self._frame, self._info = frame, info
+        self._slots = frame[PLAN].slots
+
+    @property
+    def node(self) -> nodes.Node:
+        return _failed_formula(self._info.node)
+
+    @property
+    def plan(self) -> Any:
+        return self._frame[PLAN]
 
     def annotations(self) -> tuple[Term, ...]:
-        lookup, _ = self.code
-        term = lower(self.node, lambda name: lookup[name] if name in lookup else Var(name))
+        node = self.node
+        term = lower(node, self._value)
         try:
             term = resolve(term)
         except (ArithmeticFault, CyclicTerm, RecursionError):
             # The formula holds the very expression that has no value: it is shown as it is written.
-            term = String(format_term(self.node)) if isinstance(self.node, nodes.Term) else String("")
-        return _code(term, self.node.span, self.plan.file)
+            term = String(format_term(node)) if isinstance(node, nodes.Term) else String("")
+        return _code(term, node.span, self.plan.file)
+
+    def _value(self, name: str) -> Term:
+        """The value of a variable, as far as it has one."""
+        slot = self._slots.get(name, len(self._frame))
+        value = self._frame[slot] if slot < len(self._frame) else None
+        return Var(name) if value is None else value
 
     def span(self) -> Span | None:
         return self.node.span
@@ -225,11 +233,15 @@ def step_failure(frame: Frame, fault: Exception) -> FailureReason:
     Raises:
         InternalError: when the fault is a defect of ours.
     """
-    plan = frame[PLAN]
-    info = getattr(frame[STEP], "info", None)
+    info: StepInfo | None = getattr(frame[STEP], "info", None)
     if info is None:
-        raise InternalError(f"a step of plan {plan!r} is unknown") from fault
-    return FailureReason(_terms_of(fault, info), _StepPlace(frame, info))
+        raise InternalError(f"a step of plan {frame[PLAN]!r} is unknown") from fault
+    if fault.__class__ is not Fail:
+        return FailureReason(_terms_of(fault, info), _StepPlace(frame, info))
+    terms = info.failure
+    if terms is None:
+        terms = info.failure = error_terms(*_plain_failure(info.node))
+    return FailureReason(terms, _StepPlace(frame, info))
 
 
 def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
@@ -350,11 +362,12 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
             handlers -= 1
             index = intention.handlers[handlers] - 1
             continue
-        if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
+        kind = trigger.on_fail
+        if kind is not None and (agent.selects[kind] is not None or handles(agent, intention, index, kind)):
             event = reason.with_goal(frame[ANNOTATIONS])
             release_bindings(frame[GOAL], frame[SERIAL])
             intention.handlers.append(index)
-            return Posted((trigger.on_fail, *frame[GOAL][1:]), event)
+            return Posted((kind, *frame[GOAL][1:]), event)
         index -= 1
     return None
 

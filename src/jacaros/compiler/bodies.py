@@ -18,7 +18,7 @@ from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.triggers import trigger
 from jacaros.compiler.variables import names_in, nodes_in
 from jacaros.terms.unifier import ATOMIC
-from jacaros.terms.values import functor
+from jacaros.terms.values import Term, functor
 
 
 @dataclass
@@ -28,10 +28,12 @@ class StepInfo:
     Attributes:
         node: the formula.
         next: name of the step that follows, ``"None"`` at the end.
+        failure: the terms of its plain failure, once it has failed so.
     """
 
     node: nodes.Node
     next: str
+    failure: tuple[Term, ...] | None = None
 
 
 @dataclass
