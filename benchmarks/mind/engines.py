@@ -24,7 +24,7 @@ PATIENCE = {OURS: 120.0, AGENTSPEAK: 30.0, JASON: 120.0}
 WAITING = 4
 """A process that waits, for another one or for ever, may take so many times as long by the clock."""
 
-MOST_TIMES = 20
+MOST_TIMES = 10
 
 
 def available() -> list[str]:
