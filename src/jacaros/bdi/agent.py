@@ -35,6 +35,7 @@ from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.rules import OpenFact, Rule
+from jacaros.bdi.search_budget import SearchBudget
 from jacaros.bdi.speech_act import SpeechAct, message_id
 from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
@@ -206,10 +207,20 @@ class Agent(Circumstance):
         before, arithmetic.agent_call = arithmetic.agent_call, self._call_own
         self.running = True
         try:
+            if self.beliefs.budget is not None:
+                return self._run_limited(self.beliefs.budget, fuel)
             return cycle.run(self, fuel)
         finally:
             self.running = False
             arithmetic.agent_call = before
+
+    def _run_limited(self, budget: SearchBudget, fuel: int) -> bool:
+        """Make the cycles one by one, each with the whole budget of searches."""
+        for _ in range(fuel):
+            budget.renew()
+            if not cycle.run(self, 1):
+                return False
+        return True
 
     # --- from outside --------------------------------------------------------------------------------------
 

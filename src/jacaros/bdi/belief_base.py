@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from jacaros.bdi.rules import OpenFact, Search, Searches
+from jacaros.bdi.search_budget import SearchBudget
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import ATOMIC, Trail, equal, is_key, resolve
 from jacaros.terms.values import (
@@ -68,6 +69,11 @@ class Table:
         self._indexes: dict[tuple[int, ...], Index] = {}
         self._base = base
         self._parted = 0
+
+    @property
+    def budget(self) -> SearchBudget | None:
+        """How much may be searched; None for any amount."""
+        return None if self._base is None else self._base.budget
 
     def search(self, pattern: int, agent: Any, trail: Trail) -> Search:
         """The generator function for a search that begins here; *pattern* tells which arguments are given."""
@@ -306,9 +312,11 @@ class BeliefBase(dict[Functor, Table]):
         searching: number of the internal action that a search is calling, 0 while none is.
         next_call: gives the number of the next one.
         refusals: how many beliefs from outside were refused (`jacaros.bdi.bounded_beliefs`).
+        budget: how much may be searched; None for any amount.
     """
 
     refusals = 0
+    budget: SearchBudget | None = None
 
     def __init__(self) -> None:
         super().__init__()

@@ -17,6 +17,7 @@ from jacaros.bdi.options import Options
 from jacaros.bdi.plan_library import PlanLibrary
 from jacaros.bdi.probe import Probe
 from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.bdi.search_budget import SearchBudget
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.triggers import Trigger
@@ -160,6 +161,8 @@ class Circumstance:
         self.trail = Trail()
         limit = options.belief_limit
         self.beliefs: BeliefBase = BoundedBeliefs(self, limit) if limit else BeliefBase()
+        if options.search_limit:
+            self.beliefs.budget = SearchBudget(options.search_limit)
         self.usual_events = options.events == "discard" and not options.new_focus
         self.option_filter = self.beliefs[functor("select__option", 4)]
         self.refused_options = False

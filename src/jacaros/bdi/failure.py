@@ -10,6 +10,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
 from jacaros.bdi.internal_action import ActionError, WrongArguments
+from jacaros.bdi.search_budget import SearchLimit
 from jacaros.bdi.subplans import handles
 from jacaros.compiler.bodies import StepInfo
 from jacaros.compiler.lowering import lower
@@ -259,6 +260,8 @@ def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
         return (*error, *given, *_message_unless_given(given, str(fault)))
     if isinstance(fault, ArithmeticFault):
         return error_terms("arithmetic_error", str(fault))
+    if isinstance(fault, SearchLimit):
+        return error_terms("search_limit", str(fault))
     if isinstance(fault, RecursionError):
         return error_terms("too_deep", str(fault))
     if isinstance(fault, CyclicTerm):

@@ -20,6 +20,7 @@ class Options:
             (some kilobytes each).
         goal_depth: how many plans may be on the stack of an intention; a goal that would be one more fails (a quarter
             of a kilobyte each, and what the plans hold).
+        search_limit: how many rules may be called, and answers of internal actions taken, in one cycle; 0 for any number.
         belief_limit: how many beliefs there may be; 0 for any number.
     """
 
@@ -28,6 +29,7 @@ class Options:
     tail_calls: bool = True
     rule_depth: int = 500_000
     goal_depth: int = 1_000_000
+    search_limit: int = 0
     belief_limit: int = 0
     verbose: int = 1
     percept_interval: int = 1

@@ -4,6 +4,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from jacaros.asl import nodes
+from jacaros.bdi.search_budget import SearchBudget
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.lowering import fresh_names, lower, lower_value
 from jacaros.compiler.predicates import given_positions
@@ -41,6 +42,9 @@ class Rule:
         """A generator of the answers, see `jacaros.compiler.runtime.run`."""
         if self._function is None:
             self._function = self._shared_function()
+        budget = agent.beliefs.budget
+        if budget is not None:
+            budget.spend()
         found: Generator[Any, Any, None] = self._function(agent, arguments, trail)
         return found
 
@@ -136,6 +140,10 @@ class Predicate(Protocol):
     def functor(self) -> Functor:
         """The name of the predicate."""
 
+    @property
+    def budget(self) -> SearchBudget | None:
+        """How much may be searched; None for any amount."""
+
     def around(self) -> tuple[list[Any], list[Any]] | None:
         """What answers before all facts, and what behind all facts; None when they are mixed."""
 
@@ -213,7 +221,8 @@ class Searches(dict[int, Search]):
                 return None  # Python's limits for one function
             shared[key] = (search, [rule.written for rule in (*before, *after)])
         found: Search = shared[key][0]
-        return found
+        budget = self.predicate.budget
+        return found if budget is None else budget.counting(found)
 
 
 def _nodes(rules: Sequence[Any]) -> list[nodes.Rule]:

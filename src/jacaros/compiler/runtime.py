@@ -234,6 +234,8 @@ def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Ite
             beliefs.searching = within
         if found is generator:
             return
+        if beliefs.budget is not None:
+            beliefs.budget.spend()
         yield
         undo(trail, mark)
 

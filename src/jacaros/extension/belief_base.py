@@ -109,6 +109,7 @@ class Tables(belief_base.BeliefBase):
     def __init__(self, base: BeliefBase, mind: Circumstance) -> None:
         super().__init__()
         self.base, self.mind = base, mind
+        self.budget = mind.beliefs.budget
         # The change that is under way, as the mind has it: the same literal need not be turned back into terms.
         self._change: tuple[Literal, AskingTable, Row, Annotations, bool] | None = None
         looked_up = type(base).candidates is not BeliefBase.candidates

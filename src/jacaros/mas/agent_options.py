@@ -29,6 +29,7 @@ _NUMBERS: Final = (
     "cycles_act",
     "rule_depth",
     "goal_depth",
+    "search_limit",
     "belief_limit",
 )
 _WITHOUT_EFFECT: Final = {
@@ -79,6 +80,7 @@ def mind_options(given: Mapping[str, str]) -> Options:
         percept_interval=_number(given, "nrcbp", options.percept_interval),
         rule_depth=_number(given, "rule_depth", options.rule_depth),
         goal_depth=_number(given, "goal_depth", options.goal_depth),
+        search_limit=_number(given, "search_limit", options.search_limit),
         belief_limit=_number(given, "belief_limit", options.belief_limit),
         urgency=read_urgencies(given.get("urgency", "")) or (),
     )
