@@ -61,7 +61,8 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         elif not (agent.percepts or agent.tasks or (agent.edges and edge_signals.fall_asleep(agent))):
             break
     agent.cycles += begun - fuel
-    return not agent.stopped and _has_work(agent)
+    # Without fuel it was not seen yet that nothing is left to do: that takes another look.
+    return not agent.stopped and (fuel <= 0 or _has_work(agent))
 
 
 def _has_work(agent: Circumstance) -> bool:
