@@ -3,8 +3,8 @@
     bench.py [--quick] [--rounds N] [--only NAME ...] [--output FOLDER] [--page]
 
 The figures go to FOLDER/benchmarks.json (runs/bench unless given) and to the standard output, pictures beside them.  A
-complete run renews the page docs/benchmarks.md with its pictures; ``--page`` does so from the last figures, without
-measuring.  Jason takes part where the variable JASON names its command.
+complete run renews the page docs/benchmarks.md with its figures (docs/benchmarks.json) and pictures; ``--page`` writes the
+page from those figures once more, without measuring.  Jason takes part where the variable JASON names its command.
 """
 
 import argparse
@@ -26,6 +26,7 @@ from report.tables import parts_of
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "benchmarks.md"
+DATA = ROOT / "docs" / "benchmarks.json"
 PICTURES = ROOT / "docs" / "images"
 FILE = "benchmarks.json"
 
@@ -34,7 +35,7 @@ def main() -> None:
     """Measure, print, write."""
     arguments = _arguments()
     arguments.output.mkdir(parents=True, exist_ok=True)
-    file = arguments.output / FILE
+    file = DATA if arguments.page else arguments.output / FILE
     if not arguments.page:
         report = measured(arguments)
         file.write_text(json.dumps(report, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
@@ -46,6 +47,7 @@ def main() -> None:
     if whole:
         page = filled(PAGE.read_text(encoding="utf-8"), parts_of(report))
         PAGE.write_text(page, encoding="utf-8")
+        DATA.write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
     print(f"\nfigures: {file}" + (f"\npage: {PAGE}" if whole else ""))
 
 
@@ -132,7 +134,7 @@ def _arguments() -> argparse.Namespace:
         "--only", nargs="+", metavar="NAME", help="programs to measure; the page is left as it is"
     )
     parser.add_argument("--output", type=Path, default=ROOT / "runs" / "bench", help="folder of the figures")
-    parser.add_argument("--page", action="store_true", help="renew the page from the last figures")
+    parser.add_argument("--page", action="store_true", help="write the page from its figures once more")
     arguments = parser.parse_args()
     arguments.rounds = arguments.rounds or (1 if arguments.quick else 3)
     return arguments

@@ -121,6 +121,14 @@ def test_the_page_has_a_place_for_everything(report: dict[str, Any]) -> None:
     assert [part for part, text in parts.items() if text not in new] == []
 
 
+def test_the_page_shows_its_figures() -> None:
+    docs = ROOT / "docs"
+    figures = json.loads((docs / "benchmarks.json").read_text(encoding="utf-8"))
+    page = (docs / "benchmarks.md").read_text(encoding="utf-8")
+    same = filled(page, parts_of(figures)) == page
+    assert same, "docs/benchmarks.md is out of date: run `.venv/bin/python benchmarks/bench.py --page`"
+
+
 def test_latencies_are_read_from_what_is_printed() -> None:
     text = "ros2     agent  median   1.25 ms  90 %   2.00 ms  99 %  12.50 ms   (600 messages)\nros2     3 messages lost\n"
     assert figures_in(text, "ros2-jazzy") == [
