@@ -50,7 +50,8 @@ def _has_calls(node: object) -> bool:
     if isinstance(node, (nodes.FunctionCall, Constant)):
         return True
     if isinstance(node, nodes.Arithmetic):
-        return _has_calls(node.operands)
+        # A division may have no result, which is for the plan to see when it comes to it.
+        return node.operator == "div" or _has_calls(node.operands)
     if isinstance(node, tuple):
         return any(_has_calls(item) for item in node)
     if isinstance(node, nodes.Literal):
