@@ -1,5 +1,7 @@
 """Whatever a program does, its agent lives on: what cannot be done fails, with a reason, and only that."""
 
+import gc
+
 import pytest
 from recording_host import believed, mind, printed
 
@@ -7,6 +9,12 @@ from jacaros.bdi.internal_action import STANDARD, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.terms.values import String, Term, Var, atom, structure
+
+
+@pytest.fixture(autouse=True)
+def without_garbage() -> None:
+    """What earlier tests left behind is not cleared away in the depths of a recursion, where there is no room for it."""
+    gc.collect()
 
 
 def test_a_context_may_end_with_a_difference() -> None:
