@@ -1,8 +1,10 @@
 """The artifact that talks to ROS: topics and services under the robot's name, closed when it is disposed."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, ClassVar, Protocol, TypeVar
 
+from jacaros.artifacts.ros.listener import Listener
 from jacaros.artifacts.ros.missing import MissingTopic
 from jacaros.artifacts.ros.options import Reader, WrongOption, read_arguments, text
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
@@ -116,9 +118,12 @@ class RosArtifact(Artifact):
         """Have *callback* called for the messages of the robot's *topic* until the artifact is disposed.
 
         The callback runs on the loop but outside of any operation: it changes properties by `start`.  A topic
-        that nobody publishes is told in the log after a few seconds; listening goes on.
+        that nobody publishes is told in the log after a few seconds; listening goes on.  So it does when the callback
+        raises an exception, which is logged.
         """
-        made = self._kept(self.ros.subscription(self.robot_topic(topic), type_name, callback, qos))
+        name = self.robot_topic(topic)
+        listener = Listener(name, callback, partial(self._steps.setting.log_error, self.name))
+        made = self._kept(self.ros.subscription(name, type_name, listener, qos))
         self._kept(MissingTopic(self.ros, self.clock, made, type_name, self.log))
         return made
 
