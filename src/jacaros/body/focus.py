@@ -52,9 +52,9 @@ class FocusedArtifacts:
     def __contains__(self, artifact: ArtifactId) -> bool:
         return artifact in self._focused
 
-    def rank(self, artifact: ArtifactId) -> int:
-        """How many artifacts were focused before this one, which must be focused."""
-        return list(self._focused).index(artifact)
+    def in_order(self) -> tuple[ArtifactId, ...]:
+        """The focused artifacts, in the order of focusing."""
+        return tuple(self._focused)
 
     def in_namespace(self, namespace: str) -> tuple[ArtifactId, ...]:
         """The artifacts focused in a namespace, in the order of focusing."""

@@ -3,8 +3,7 @@
 An annotation of the action directs it: ``artifact_id`` (``aid``) before ``artifact_name`` (``art``), inside
 the workspace given by ``wid`` or ``wsp``.  A namespace in front of the action means the artifacts focused in
 that namespace first.  Otherwise the workspaces are gone through: the current one of the intention, the
-agent's home, then the others that it has joined.  In a workspace with several candidates the order is: made
-by the agent itself (the oldest first), focused by it (in the order of focusing), any (the oldest first).
+agent's home, then the others that it has joined (see `jacaros.env.choice` for several candidates in one).
 """
 
 import difflib
@@ -14,7 +13,8 @@ from jacaros.bdi.internal_action import STANDARD
 from jacaros.body.call import ANYWHERE, Call
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.whereabouts import Whereabouts, not_joined
-from jacaros.env.errors import OperationFailed, UnknownArtifact
+from jacaros.env.choice import artifact_named, chosen_artifact
+from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
@@ -58,10 +58,11 @@ class Selection:
             for artifact in self._focused.in_namespace(call.namespace):
                 if self._offers(artifact, call):
                     return artifact
-        for workspace in places:
-            candidates = workspace.providers(call.name, len(call.arguments))
-            if candidates:
-                return candidates[0] if len(candidates) == 1 else self._preferred(workspace, candidates, call)
+        chosen = chosen_artifact(
+            places, call.name, len(call.arguments), self._agent, self._focused.in_order()
+        )
+        if chosen is not None:
+            return chosen
         raise self._nobody(call, places)
 
     def artifact(self, wanted: ArtifactId | str, places: Sequence[Workspace]) -> ArtifactId:
@@ -74,13 +75,7 @@ class Selection:
             if not self._whereabouts.has_joined(wanted.workspace):
                 raise not_joined(wanted.workspace)
             return wanted
-        failures = []
-        for workspace in places:
-            try:
-                return workspace.lookup(wanted)
-            except UnknownArtifact as failure:
-                failures.append(failure)
-        raise next((f for f in failures if "did you mean" in f.message), failures[0])
+        return artifact_named(places, wanted)
 
     def _places(self, wanted: Workspace | str | None, intention: int) -> tuple[Workspace, ...]:
         if wanted is None:
@@ -96,15 +91,6 @@ class Selection:
             if workspace.path == artifact.workspace:
                 return artifact in workspace.providers(call.name, len(call.arguments))
         return False
-
-    def _preferred(self, workspace: Workspace, candidates: Sequence[ArtifactId], call: Call) -> ArtifactId:
-        """The first choice of several: an exact number of arguments wins over any number of them."""
-        candidates = [c for c in candidates if _is_exact(workspace, c, call)] or candidates
-        for candidate in candidates:
-            if candidate.creator == self._agent:
-                return candidate
-        focused = [c for c in candidates if c in self._focused]
-        return min(focused, key=self._focused.rank) if focused else candidates[0]
 
     def _nobody(self, call: Call, places: Sequence[Workspace]) -> OperationFailed:
         where = "workspace" if len(places) == 1 else "the workspaces"
@@ -136,8 +122,3 @@ class Selection:
 def _internal_action_hint(name: str) -> str:
     near = difflib.get_close_matches(name, STANDARD, n=1, cutoff=0.75)
     return f"; there is no internal action {name}" + (f", did you mean {near[0]}?" if near else "")
-
-
-def _is_exact(workspace: Workspace, artifact: ArtifactId, call: Call) -> bool:
-    found = workspace.interface(artifact).operations.find(call.name, len(call.arguments))
-    return found is not None and found.signature.rest is None

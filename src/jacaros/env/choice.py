@@ -1,0 +1,69 @@
+"""Which artifact an operation is for, when several offer it: CArtAgO's rule, for agents and for sessions alike."""
+
+from collections.abc import Iterable, Sequence
+
+from jacaros.env.errors import UnknownArtifact
+from jacaros.env.ids import ArtifactId
+from jacaros.env.workspace import Workspace
+
+
+def chosen_artifact(
+    places: Iterable[Workspace], operation: str, arity: int, own: str, focused: Sequence[ArtifactId]
+) -> ArtifactId | None:
+    """The artifact that is to serve an operation; None when nobody offers it.
+
+    The first workspace that has one decides.  There, those that take exactly so many arguments come before
+    those that take any number; among them the oldest one made by *own*, else the one focused first, else the
+    oldest.
+
+    Args:
+        places: the workspaces, in the order in which they count.
+        operation: its name.
+        arity: the number of its arguments.
+        own: who asks, as it is noted as the creator of artifacts.
+        focused: what they focus, in the order of focusing.
+    """
+    for workspace in places:
+        candidates = workspace.providers(operation, arity)
+        if candidates:
+            return (
+                candidates[0]
+                if len(candidates) == 1
+                else _preferred(workspace, candidates, operation, arity, own, focused)
+            )
+    return None
+
+
+def artifact_named(places: Iterable[Workspace], name: str) -> ArtifactId:
+    """The artifact of that name in the first workspace that has one.
+
+    Raises:
+        UnknownArtifact: none has.
+    """
+    failures = []
+    for workspace in places:
+        try:
+            return workspace.lookup(name)
+        except UnknownArtifact as failure:
+            failures.append(failure)
+    raise next((f for f in failures if "did you mean" in f.message), failures[0])
+
+
+def _preferred(
+    workspace: Workspace,
+    candidates: Sequence[ArtifactId],
+    operation: str,
+    arity: int,
+    own: str,
+    focused: Sequence[ArtifactId],
+) -> ArtifactId:
+    candidates = [c for c in candidates if _is_exact(workspace, c, operation, arity)] or candidates
+    for candidate in candidates:
+        if candidate.creator == own:
+            return candidate
+    return next((artifact for artifact in focused if artifact in candidates), candidates[0])
+
+
+def _is_exact(workspace: Workspace, artifact: ArtifactId, operation: str, arity: int) -> bool:
+    found = workspace.interface(artifact).operations.find(operation, arity)
+    return found is not None and found.signature.rest is None
