@@ -8,8 +8,8 @@ from pings import PERIOD, Pings
 
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.launch import launch
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
 
@@ -22,7 +22,7 @@ class InProcess:
     def __init__(self) -> None:
         self.pings: Pings | None = None
 
-    def join(self, mas: Mas) -> None:
+    def join(self, mas: System) -> None:
         """Start when the run has started."""
         graph: Any = mas.ros.backend()
         echo, pinger = (

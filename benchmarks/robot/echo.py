@@ -6,7 +6,7 @@ from typing import Any
 
 from graph import node
 
-from jacaros.mas.mas import Mas
+from jacaros.mas.system import System
 
 ODOMETRY, TWIST = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist"
 LATENCY = Path(__file__).resolve().parent.parent / "latency"
@@ -15,7 +15,7 @@ ARTIFACTS = (LATENCY / "artifacts.py").read_text(encoding="utf-8")
 WAYS = ("agent", "bare")
 
 
-def connect(mas: Mas, returned: Callable[[str, float], None]) -> Callable[[str, float], None]:
+def connect(mas: System, returned: Callable[[str, float], None]) -> Callable[[str, float], None]:
     """Join the bare echo and whoever measures; gives what sends a numbered message by one of the `WAYS`."""
     echo, pinger = node(mas, "echo"), node(mas, "pinger")
     answers = echo.publisher("/bare/cmd_vel", TWIST)

@@ -8,8 +8,8 @@ from typing import Any
 
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.launch import launch
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
 
@@ -20,7 +20,7 @@ SETTLED = 0.5
 """Seconds after which the agent has made and focused its artifacts."""
 
 
-def run(program: str, begin: Callable[[Mas], None], artifacts: str = "", fast: bool = True) -> None:
+def run(program: str, begin: Callable[[System], None], artifacts: str = "", fast: bool = True) -> None:
     """Run an agent; *begin* is called when it has settled, and ends the run."""
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "agent.asl"
@@ -29,14 +29,14 @@ def run(program: str, begin: Callable[[Mas], None], artifacts: str = "", fast: b
         world = Path(folder) / "nobody.yaml"
         world.write_text(WORLD, encoding="utf-8")
 
-        def started(mas: Mas) -> None:
+        def started(mas: System) -> None:
             gc.freeze()
             mas.clock.call_later(SETTLED, lambda: begin(mas))
 
         launch(source, RunOptions(fast=fast, world=world), StandardConsole("error"), started)
 
 
-def node(mas: Mas, name: str) -> Backend:
+def node(mas: System, name: str) -> Backend:
     """A node of the run's graph."""
     graph: Any = mas.ros.backend()
     made = open_backend("memory", mas.clock, name, graph=graph.graph)

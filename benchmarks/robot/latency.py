@@ -8,7 +8,7 @@ from echo import ARTIFACTS, PROGRAM, WAYS, connect
 from graph import run
 from yardstick import call
 
-from jacaros.mas.mas import Mas
+from jacaros.mas.system import System
 
 COUNT = 1000
 WARM_UP = 200
@@ -23,7 +23,7 @@ class Latency:
         self._sent: dict[str, tuple[float, float]] = {}
         self._number = 0
 
-    def begin(self, mas: Mas) -> None:
+    def begin(self, mas: System) -> None:
         """Send one message after the other."""
         send = connect(mas, self.returned)
 

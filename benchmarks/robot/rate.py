@@ -7,7 +7,7 @@ from echo import ARTIFACTS, PROGRAM, WAYS, connect
 from graph import run
 from yardstick import call
 
-from jacaros.mas.mas import Mas
+from jacaros.mas.system import System
 
 COUNT = 5000
 WINDOW = 5
@@ -24,7 +24,7 @@ class Rate:
         self._expected = 0.0
         self._turns = [way for _ in range(ROUNDS) for way in WAYS]
 
-    def begin(self, mas: Mas) -> None:
+    def begin(self, mas: System) -> None:
         """Begin the first turn."""
         self._mas = mas
         self._send = connect(mas, self.returned)

@@ -11,7 +11,7 @@ import numpy as np
 from graph import node, run
 from yardstick import call
 
-from jacaros.mas.mas import Mas
+from jacaros.mas.system import System
 
 BEAMS, HERTZ, SECONDS = 720, 40, 40
 SCANS = 20
@@ -35,7 +35,7 @@ class Scanning:
         self.spent = [0.0, 0.0]
         self._ticks = 0
 
-    def begin(self, mas: Mas) -> None:
+    def begin(self, mas: System) -> None:
         """Publish until time is up."""
         publisher = node(mas, "laser").publisher("/scan", "sensor_msgs/msg/LaserScan")
         scans = [self._scan(publisher, number) for number in range(SCANS)]

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from jacaros.mas.launch import launch
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
 from jacaros.sim import GroundTruth
 from jacaros.testing import RunResult, run_project
 from jacaros.testing.paths import angle_between, distance, turns
@@ -95,9 +95,9 @@ class Odometer:
 
     def __init__(self) -> None:
         self.driven: dict[str, float] = {}
-        self.mas: Mas | None = None
+        self.mas: System | None = None
 
-    def begin(self, mas: Mas) -> None:
+    def begin(self, mas: System) -> None:
         """Take the run."""
         self.mas = mas
 

@@ -12,8 +12,8 @@ from types import ModuleType
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
 from jacaros.mas.loading import load_deployment
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
 from jacaros.sim import Event, GroundTruth, Sample
 from jacaros.testing import RunResult, run_project
 
@@ -93,9 +93,9 @@ class Stop:
     def __init__(self, beginning: str) -> None:
         self.doing = "nothing"
         self._beginning = beginning
-        self._mas: Mas | None = None
+        self._mas: System | None = None
 
-    def begin(self, mas: Mas) -> None:
+    def begin(self, mas: System) -> None:
         """Take the run."""
         self._mas = mas
 

@@ -9,8 +9,8 @@ from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
 from jacaros.mas.console import Console, StandardConsole
 from jacaros.mas.launch import launch
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import ROS_KINDS, RunOptions
+from jacaros.mas.system import System
 
 
 @click.command("run", short_help="Run an agent program or a project.")
@@ -94,7 +94,7 @@ def _launch_watched(file: Path, options: RunOptions, console: Console, outputs: 
     from jacaros.cli.watching import Watching
 
     with Watching(console, outputs) as watching:
-        begin: Callable[[Mas], None] = watching.begin
+        begin: Callable[[System], None] = watching.begin
         return launch(file, options, watching, begin)
 
 

@@ -13,7 +13,7 @@ from jacaros.inspector.replay import write_replay
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
 from jacaros.mas.console import Console
-from jacaros.mas.mas import Mas
+from jacaros.mas.system import System
 from jacaros.sim import World
 from jacaros.sim.process import GroundTruthFile
 
@@ -41,7 +41,7 @@ class Watching:
         self._view: TerminalView | None = None
         self._watch: Watch | None = None
 
-    def begin(self, mas: Mas) -> None:
+    def begin(self, mas: System) -> None:
         """Begin to watch a run that has been made.
 
         Raises:
@@ -99,7 +99,7 @@ class Watching:
             self._ground_truth.__exit__(kind, error, trace)
 
 
-def _ground_truth_file(path: Path, world: World | None, mas: Mas) -> GroundTruthFile:
+def _ground_truth_file(path: Path, world: World | None, mas: System) -> GroundTruthFile:
     if world is None:
         raise UsageError(
             "the world of this run is a process of its own, or the real one; "

@@ -12,8 +12,8 @@ from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.interruption import Interrupted, Interruption
 from jacaros.mas.loading import load_deployment
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
 from jacaros.mas.watchdog import Watchdog
 
 GARBAGE_THRESHOLD = 100_000
@@ -25,7 +25,7 @@ def launch(
     project: str | Path | Deployment,
     options: RunOptions,
     console: Console,
-    when_started: Callable[[Mas], None] | None = None,
+    when_started: Callable[[System], None] | None = None,
     own_process: bool = True,
 ) -> int:
     """Run a project to its end; the exit code.
@@ -49,7 +49,7 @@ def launch(
     clock: Clock = VirtualClock() if options.fast else WallClock()
 
     async def main() -> int:
-        mas = Mas(deployment, clock, console, options)
+        mas = System(deployment, clock, console, options)
         loop = asyncio.get_running_loop()
         loop.set_exception_handler(lambda _, context: _escaped(mas, context))
 
@@ -75,7 +75,7 @@ def launch(
         watchdog.stop()
 
 
-def _escaped(mas: Mas, context: dict[str, Any]) -> None:
+def _escaped(mas: System, context: dict[str, Any]) -> None:
     """Something raised an exception outside of anybody's care."""
     error = context.get("exception")
     if isinstance(error, Interrupted):

@@ -33,6 +33,9 @@ class Programs:
         warn: takes the text of a warning about a program.
         code: the project's Python code, which adds internal actions and functions.
         prepare: what is run of a program that was read; all of it unless given.
+
+    Attributes:
+        folders: where they are looked for.
     """
 
     def __init__(
@@ -42,7 +45,7 @@ class Programs:
         code: PythonCode,
         prepare: Callable[[nodes.Program], nodes.Program] | None = None,
     ) -> None:
-        self._folders = tuple(folders)
+        self.folders = tuple(folders)
         self._code = code
         self._warn = warn
         self._prepare = prepare or (lambda program: program)
@@ -119,7 +122,7 @@ class Programs:
             FileNotFoundError: there is none.
         """
         candidates = [name] if name.endswith(".asl") else [f"{name}.asl", name]
-        for folder in self._folders:
+        for folder in self.folders:
             for candidate in candidates:
                 if (folder / candidate).is_file():
                     return folder / candidate

@@ -8,8 +8,8 @@ from typing import Any
 from jacaros.errors import JacarosError
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
 
 
 @dataclass(slots=True)
@@ -55,7 +55,7 @@ def run_project(
     until_idle: bool = False,
     fast: bool = True,
     ros: str = "memory",
-    when_started: Callable[[Mas], None] | None = None,
+    when_started: Callable[[System], None] | None = None,
 ) -> RunResult:
     """Run a project as ``jacaros run`` does, on the virtual clock unless told otherwise.
 
@@ -76,9 +76,9 @@ def run_project(
     """
     result = RunResult()
     options = RunOptions(fast=fast, seed=seed, ros=ros, world=world, until_idle=until_idle, seconds=seconds)
-    held: list[tuple[Mas, float]] = []
+    held: list[tuple[System, float]] = []
 
-    def started(mas: Mas) -> None:
+    def started(mas: System) -> None:
         held.append((mas, mas.clock.now()))
         if when_started is not None:
             when_started(mas)

@@ -24,8 +24,8 @@ from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.compiler.lowering import lower_value
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.mas import Mas
 from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
 from jacaros.terms.text import text
 from jacaros.terms.values import Term
 from jacaros.testing.fakes import Fakes
@@ -117,7 +117,7 @@ class Trial:
         self._timers: list[Any] = []
         clock_class = _MeteredVirtualClock if options.fast else _MeteredWallClock
         self._clock: Clock = clock_class(self._busy)
-        self._mas = Mas(
+        self._mas = System(
             self._deployment,
             self._clock,
             self,

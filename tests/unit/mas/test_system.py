@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.clock import VirtualClock
 from jacaros.errors import InternalError
-from jacaros.mas.mas import Mas
+from jacaros.mas.system import System
 from jacaros.testing import RunResult, run_project
 
 Project = Callable[..., Path]
@@ -147,7 +147,7 @@ def test_agents_have_generators_of_their_own(project: Project) -> None:
 def test_a_defect_ends_the_run(project: Project) -> None:
     file = project(a_asl="!go. +!go <- .wait(1000); .print(late).")
 
-    def break_it(mas: Mas) -> None:
+    def break_it(mas: System) -> None:
         mas.clock.call_later(0.5, lambda: mas.fail(InternalError("broken")))
 
     with pytest.raises(InternalError, match="broken"):

@@ -2,26 +2,23 @@
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.clock import Clock
-from jacaros.errors import JacarosError
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_options import mind_options
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import Directory
+from jacaros.mas.idleness import Idleness
 from jacaros.mas.mailboxes import Mailboxes
 from jacaros.mas.options import RunOptions
+from jacaros.mas.population import Population, begin
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
@@ -37,13 +34,9 @@ if TYPE_CHECKING:
     from jacaros.env.environment import Environment
     from jacaros.mas.surroundings import Surroundings
 
-_HOPS = 8
-"""Turns of the loop that must pass without anything to do before a run counts as idle: a message of a ROS
-graph inside the process takes a few to become a belief."""
 
-
-class Mas:
-    """One run of a project; `run` brings it from its start to its end.
+class System:
+    """One run of a project; `run` brings it from its start to its end, or `start` and `close` do.
 
     Args:
         deployment: what to run.
@@ -59,6 +52,8 @@ class Mas:
         ros: the ROS graph and the embedded world.
         scheduler: gives the agents their turns.
         activity: what the agents wait for.
+        idleness: tells when nobody has anything to do.
+        population: makes and ends agents.
         deliver: brings a message to its receiver; False when there is none.
         services: the directory facilitator.
     """
@@ -80,31 +75,34 @@ class Mas:
         self.options.check()
         self.directory: Directory[AgentHost] = Directory()
         self.activity = Activity()
-        self.scheduler = Scheduler(clock, self._when_idle, self.fail)
+        self.idleness = Idleness(self.activity)
+        self.scheduler = Scheduler(clock, self.idleness.look, self.fail)
+        self.idleness.turns = self.scheduler
         self._surroundings: Surroundings | None = None
         log = self.console.log
         self.ros = RosGraph(self.options, clock, deployment.name, deployment.world, log)
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
-        self._code = PythonCode(self._modules)
-        self._programs = Programs(
-            deployment.source_paths, lambda text: log(text, "warning"), self._code, prepare
-        )
-        self._classes = AgentClasses(
-            self._modules, deployment.base_path, lambda warning: log(warning.render(), "warning")
-        )
-        self._when_made = when_made
-        self._tell_idle = when_idle or (lambda: self.end(0))
-        self._watches_idle = self.options.until_idle or when_idle is not None
+        if self.options.until_idle or when_idle is not None:
+            self.idleness.watch(when_idle or (lambda: self.end(0)))
         self.deliver = Mailboxes(self.directory.find).deliver
         self.services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
-        self._specs: dict[str, AgentSpec] = {}
+        self.population = self._found(prepare, when_made)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
         self._error: BaseException | None = None
-        self._idle_looks = 0
-        self._plans: dict[int, ProgramPlans] = {}
+
+    def _found(
+        self, prepare: Callable[[Program], Program] | None, when_made: Callable[[AgentHost], None] | None
+    ) -> Population:
+        def warn(text: str) -> None:
+            self.console.log(text, "warning")
+
+        deployment, code = self.deployment, PythonCode(self._modules)
+        programs = Programs(deployment.source_paths, warn, code, prepare)
+        classes = AgentClasses(self._modules, deployment.base_path, lambda warning: warn(warning.render()))
+        return Population(self, self.directory, programs, classes, code, self._seed, self._situate, when_made)
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
         """Run the project until it ends; the exit code.
@@ -116,15 +114,13 @@ class Mas:
             JacarosError: the project cannot be started; the text tells what is wrong.
             InternalError: a defect of JaCaROS showed itself.
         """
-        self._ended = asyncio.get_running_loop().create_future()
-        arithmetic.warn = self._warn_of_operand
         try:
-            await self._start()
+            await self.start()
             if when_started is not None:
                 when_started()
-            code = await self._ended
+            code = await self.ended()
         finally:
-            await self._close()
+            await self.close()
         if self._error is not None:
             raise self._error
         return code
@@ -139,21 +135,29 @@ class Mas:
 
     # ---- the start
 
-    async def _start(self) -> None:
+    async def start(self) -> None:
+        """Make everything that the project declares; `close` is to follow, also when this fails.
+
+        Raises:
+            JacarosError: the project cannot be started; the text tells what is wrong.
+        """
+        self._ended = asyncio.get_running_loop().create_future()
+        arithmetic.warn = self._warn_of_operand
         for diagnostic in self.deployment.ignored:
             self.console.log(diagnostic.render(), "warning")
-        programs = self._programs.load_all(self.deployment.agents)
-        self._classes.check(self.deployment.agents)
+        population = self.population
+        programs = population.programs.load_all(self.deployment.agents)
+        population.check(self.deployment.agents)
         await self.ros.start()
         if self._has_environment and self._is_furnished():
             await self.surroundings().furnish(self.deployment)
         agents = list(zip(self.deployment.agents, programs, strict=True))
-        hosts = [self._add(spec, program) for spec, program in agents]
+        hosts = [population.add(spec, program) for spec, program in agents]
         for host, (spec, program) in zip(hosts, agents, strict=True):
-            _begin(host, spec, program)
+            begin(host, spec, program)
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
-        self._when_idle()
+        self.idleness.look()
 
     def _is_furnished(self) -> bool:
         """Whether the environment is made at the start, also to tell mistakes in the project's own artifacts."""
@@ -174,29 +178,11 @@ class Mas:
             )
         return self._surroundings
 
-    def _add(self, spec: AgentSpec, program: Program) -> AgentHost:
-        name = spec.name
-        self._specs[name] = spec
-        seed = f"{self._seed}/{name}"
-        options = mind_options(spec.options)
-        plans = self._plans_of(program)
-        host = self._classes.make(spec, _initial(spec, program), self, seed, options, self._code, plans)
-        self.directory.add(name, host)
+    def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
         if self._surroundings is not None:
             host.body = self._surroundings.situated_body(host, spec)
-        if self._when_made is not None:
-            self._when_made(host)
-        return host
-
-    def _plans_of(self, program: Program) -> ProgramPlans:
-        """The plans of a program: agents that run the same one share them, compiled."""
-        made = self._plans.get(id(program.plans))
-        if made is None:
-            made = ProgramPlans(program.plans, self._code.actions)
-            self._plans[id(program.plans)] = made
-        return made
 
     def _make_directory_agent(self) -> Agent:
         """The agent of the directory facilitator; an agent of the project that has its name takes its place."""
@@ -217,10 +203,21 @@ class Mas:
             return
         self._ending = True
         self.scheduler.stop()
+        self.idleness.stop()
         for host in self.directory:
             host.halt()
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(exit_code)
+
+    async def ended(self) -> int:
+        """Wait for the end of the run; the exit code."""
+        assert self._ended is not None, "the run has not been started"
+        return await asyncio.shield(self._ended)
+
+    @property
+    def error(self) -> BaseException | None:
+        """The defect of JaCaROS that ended the run, if one did."""
+        return self._error
 
     def fail(self, error: BaseException) -> None:
         """End the run because of a defect of JaCaROS itself."""
@@ -228,7 +225,8 @@ class Mas:
             self._error = error
         self.end(1)
 
-    async def _close(self) -> None:
+    async def close(self) -> None:
+        """Give everything back: operations are cancelled, robots stand still."""
         self.end(1)
         for host in self.directory:
             host.end()
@@ -237,19 +235,6 @@ class Mas:
         if self._surroundings is not None:
             await self._surroundings.environment.close()
         await self.ros.close()
-
-    def _when_idle(self) -> None:
-        if self._watches_idle and not self._ending:
-            self._idle_looks += 1
-            self._look_again(self._idle_looks, _HOPS)
-
-    def _look_again(self, look: int, hops: int) -> None:
-        if look != self._idle_looks or self.activity.pending or not self.scheduler.idle or self._ending:
-            return
-        if hops == 0:
-            self._tell_idle()
-            return
-        asyncio.get_running_loop().call_soon(self._look_again, look, hops - 1)
 
     # ---- what agents ask for
 
@@ -268,55 +253,18 @@ class Mas:
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make and start an agent; its final name, or None with the reason logged."""
-        wanted = source if source is not None else f"{name}.asl"
-        try:
-            path = self._programs.find(wanted)
-            spec = _spec(self.directory.free_name(name), name, path, classes)
-            program = self._programs.load(spec)
-            host = self._add(spec, program)
-        except FileNotFoundError:
-            folders = ", ".join(str(folder) for folder in self.deployment.source_paths)
-            self.console.log(f"error: agent {name}: there is no program {wanted} in {folders}", "error")
-            return None
-        except JacarosError as wrong:
-            self.console.log(str(wrong), "error")
-            return None
-        _begin(host, spec, program)
-        return host.name
+        return self.population.create(name, source, classes)
 
     def clone_agent(self, original: str, name: str) -> str | None:
         """Make an agent with a copy of the mind of *original*; its final name, or None with the reason logged."""
-        host = self.directory.find(original)
-        spec = self._specs.get(original)
-        if host is None or spec is None or not isinstance(host.mind, Agent):
-            self.console.log(f"error: agent {name}: there is no agent {original} to be cloned", "error")
-            return None
-        empty = replace(host.mind.program, beliefs=(), goals=())
-        copy = self._add(replace(spec, name=self.directory.free_name(name)), empty)
-        assert isinstance(copy.mind, Agent)
-        copy.mind.copy_mind_of(host.mind)
-        return copy.name
+        return self.population.clone(original, name)
 
     def kill_agent(self, name: str, delay: float, killer: str) -> bool:
         """End an agent after *delay* seconds, of which it is told, on behalf of another one.
 
         False when there is none of that name, or it does not accept its end.
         """
-        host = self.directory.find(name)
-        if host is None or not host.mind.accept_kill(killer):
-            return False
-        if delay > 0:
-            host.mind.shut_down_in(delay * 1000)
-            AgentTimer(self.clock, self.activity, delay, lambda: self._kill(host))
-        else:
-            self._kill(host)
-        return True
-
-    def _kill(self, host: AgentHost) -> None:
-        if self.directory.find(host.name) is host:
-            self.directory.remove(host.name)
-        host.halt()
-        host.end()
+        return self.population.kill(name, delay, killer)
 
     def list_files(self, folder: str) -> Sequence[str]:
         """The files in a folder and in the folders in it, as paths that begin with *folder*, sorted.
@@ -324,7 +272,7 @@ class Mas:
         Raises:
             OSError: when it cannot be read.
         """
-        return self._programs.list_files(folder, self.deployment.base_path)
+        return self.population.programs.list_files(folder, self.deployment.base_path)
 
     def write_file(self, path: str, text: str) -> None:
         """Write a text file; a path that is not absolute is one of the project's folder.
@@ -340,35 +288,4 @@ class Mas:
         Raises:
             FileNotFoundError: there is none.
         """
-        return self._programs.include(path, str(self.deployment.base_path / "."))
-
-
-def _spec(name: str, declared: str, path: Path, classes: Mapping[str, str]) -> AgentSpec:
-    """An agent that is made at run time."""
-    architecture = classes.get("agentArchClass")
-    return AgentSpec(
-        name,
-        path,
-        declared,
-        agent_class=classes.get("agentClass"),
-        architecture_classes=(architecture,) if architecture is not None else (),
-        belief_base_class=classes.get("beliefBaseClass"),
-    )
-
-
-def _is_situated(spec: AgentSpec) -> bool:
-    """Whether an agent begins with workspaces joined or artifacts focused."""
-    return bool(spec.join or spec.focus)
-
-
-def _initial(spec: AgentSpec, program: Program) -> Program:
-    """What the mind begins with; the goals of a situated agent come later, see `_begin`."""
-    return replace(program, goals=()) if _is_situated(spec) else program
-
-
-def _begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:
-    """Let a mind begin: as in JaCaMo, what it focuses is noticed before it adopts its goals."""
-    host.mind.start()
-    if _is_situated(spec):
-        host.mind.run(1)
-        host.mind.adopt(program.goals)
+        return self.population.programs.include(path, str(self.deployment.base_path / "."))

@@ -1,0 +1,186 @@
+"""The agents of a run: made, copied, ended."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Protocol
+
+from jacaros.asl.nodes import Program
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.errors import JacarosError
+from jacaros.mas.activity import AgentTimer
+from jacaros.mas.agent_classes import AgentClasses
+from jacaros.mas.agent_host import AgentHost, Run
+from jacaros.mas.agent_options import mind_options
+from jacaros.mas.deployment import AgentSpec
+from jacaros.mas.directory import Directory
+from jacaros.mas.programs import Programs
+from jacaros.mas.python_code import PythonCode
+
+
+class Situate(Protocol):
+    """Gives an agent that was made its place in the environment."""
+
+    def __call__(self, host: AgentHost, spec: AgentSpec) -> None:
+        """Give it a body, or what makes one."""
+
+
+class Population:
+    """Makes and ends the agents of a run.
+
+    Args:
+        run: what their hosts ask of it.
+        directory: where they are entered.
+        programs: the programs.
+        classes: makes those of the project's own classes.
+        code: the project's Python code.
+        seed: of the run.
+        situate: gives each its place in the environment.
+        when_made: called with every agent before it begins.
+
+    Attributes:
+        programs: reads what they run.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        directory: Directory[AgentHost],
+        programs: Programs,
+        classes: AgentClasses,
+        code: PythonCode,
+        seed: int,
+        situate: Situate,
+        when_made: Callable[[AgentHost], None] | None = None,
+    ) -> None:
+        self.programs = programs
+        self._run = run
+        self._directory = directory
+        self._classes = classes
+        self._code = code
+        self._seed = seed
+        self._situate = situate
+        self._when_made = when_made
+        self._specs: dict[str, AgentSpec] = {}
+        self._plans: dict[int, ProgramPlans] = {}
+
+    def check(self, agents: Iterable[AgentSpec]) -> None:
+        """Look for the classes of agents, so that mistakes are told before anything runs.
+
+        Raises:
+            ProjectError: with all that is wrong.
+        """
+        self._classes.check(agents)
+
+    def add(self, spec: AgentSpec, program: Program) -> AgentHost:
+        """Make an agent that is still to begin, see `begin`.
+
+        Raises:
+            ProjectError: its class cannot be found or begun.
+        """
+        name = spec.name
+        self._specs[name] = spec
+        seed = f"{self._seed}/{name}"
+        options = mind_options(spec.options)
+        plans = self._plans_of(program)
+        host = self._classes.make(spec, _initial(spec, program), self._run, seed, options, self._code, plans)
+        self._directory.add(name, host)
+        self._situate(host, spec)
+        if self._when_made is not None:
+            self._when_made(host)
+        return host
+
+    def _plans_of(self, program: Program) -> ProgramPlans:
+        """The plans of a program: agents that run the same one share them, compiled."""
+        made = self._plans.get(id(program.plans))
+        if made is None:
+            made = ProgramPlans(program.plans, self._code.actions)
+            self._plans[id(program.plans)] = made
+        return made
+
+    def create(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
+        """Make and start an agent for another one; its final name, or None with the reason logged."""
+        wanted = source if source is not None else f"{name}.asl"
+        log = self._run.console.log
+        try:
+            path = self.programs.find(wanted)
+            spec = _spec(self._directory.free_name(name), name, path, classes)
+            program = self.programs.load(spec)
+            host = self.add(spec, program)
+        except FileNotFoundError:
+            folders = ", ".join(str(folder) for folder in self.programs.folders)
+            log(f"error: agent {name}: there is no program {wanted} in {folders}", "error")
+            return None
+        except JacarosError as wrong:
+            log(str(wrong), "error")
+            return None
+        begin(host, spec, program)
+        return host.name
+
+    def clone(self, original: str, name: str) -> str | None:
+        """Make an agent with a copy of the mind of *original*; its final name, or None with the reason logged."""
+        host = self._directory.find(original)
+        spec = self._specs.get(original)
+        if host is None or spec is None or not isinstance(host.mind, Agent):
+            told = f"error: agent {name}: there is no agent {original} to be cloned"
+            self._run.console.log(told, "error")
+            return None
+        empty = replace(host.mind.program, beliefs=(), goals=())
+        copy = self.add(replace(spec, name=self._directory.free_name(name)), empty)
+        assert isinstance(copy.mind, Agent)
+        copy.mind.copy_mind_of(host.mind)
+        return copy.name
+
+    def kill(self, name: str, delay: float, killer: str) -> bool:
+        """End an agent after *delay* seconds, of which it is told, on behalf of another one.
+
+        False when there is none of that name, or it does not accept its end.
+        """
+        host = self._directory.find(name)
+        if host is None or not host.mind.accept_kill(killer):
+            return False
+        if delay > 0:
+            host.mind.shut_down_in(delay * 1000)
+            AgentTimer(self._run.clock, self._run.activity, delay, lambda: self.end(host))
+        else:
+            self.end(host)
+        return True
+
+    def end(self, host: AgentHost) -> None:
+        """End an agent."""
+        if self._directory.find(host.name) is host:
+            self._directory.remove(host.name)
+        host.halt()
+        host.end()
+
+
+def begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:
+    """Let a mind begin: as in JaCaMo, what it focuses is noticed before it adopts its goals."""
+    host.mind.start()
+    if _is_situated(spec):
+        host.mind.run(1)
+        host.mind.adopt(program.goals)
+
+
+def _is_situated(spec: AgentSpec) -> bool:
+    """Whether an agent begins with workspaces joined or artifacts focused."""
+    return bool(spec.join or spec.focus)
+
+
+def _initial(spec: AgentSpec, program: Program) -> Program:
+    """What the mind begins with; the goals of a situated agent come later, see `begin`."""
+    return replace(program, goals=()) if _is_situated(spec) else program
+
+
+def _spec(name: str, declared: str, path: Path, classes: Mapping[str, str]) -> AgentSpec:
+    """An agent that is made at run time."""
+    architecture = classes.get("agentArchClass")
+    return AgentSpec(
+        name,
+        path,
+        declared,
+        agent_class=classes.get("agentClass"),
+        architecture_classes=(architecture,) if architecture is not None else (),
+        belief_base_class=classes.get("beliefBaseClass"),
+    )
