@@ -27,7 +27,7 @@ from jacaros.bdi.belief_base import parts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.context import Context
 from jacaros.bdi.event import Posted
-from jacaros.bdi.failure import error_terms, step_failure
+from jacaros.bdi.failure import error_terms, output_misfit, step_failure
 from jacaros.bdi.finishing import pop_finished
 from jacaros.bdi.goal_failure import fail_intention
 from jacaros.bdi.intention import Frame
@@ -252,20 +252,23 @@ class Agent(Circumstance):
             return
         if not completion.success:
             waiting.fail("the action failed", (ERROR, atom("action_failed")), *completion.annotations)
-        elif self._take_outputs(completion):
+            return
+        misfit = self._take_outputs(completion)
+        if misfit is None:
             waiting.resume()
         else:
-            waiting.fail("", *error_terms("action_failed", "an output of the action does not fit"))
+            waiting.fail("", *misfit)
 
-    def _take_outputs(self, completion: Completion) -> bool:
-        """Bind the output variables of an act; False when one has another value already."""
+    def _take_outputs(self, completion: Completion) -> tuple[Term, ...] | None:
+        """Bind the output variables of an act; why it failed when one has another value already."""
         mark = len(self.trail)
         for variable, value in completion.outputs:
             if not unify(variable, value, self.trail):
+                misfit = output_misfit(variable, value)
                 undo(self.trail, mark)
-                return False
+                return misfit
         del self.trail[mark:]
-        return True
+        return None
 
     def shut_down_in(self, milliseconds: float) -> None:
         """The agent will be ended after so many milliseconds; its plans may prepare for it."""
@@ -420,7 +423,7 @@ class Agent(Circumstance):
             completion is not None
             and completion.success
             and not self.meta
-            and (not completion.outputs or self._take_outputs(completion))
+            and (not completion.outputs or self._take_outputs(completion) is None)
         ):
             # It would be made ready in the next cycle before all others: it may as well be ready now.
             intention.frames[-1][0] = next_step

@@ -19,12 +19,13 @@ from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.order import annotation_set
-from jacaros.terms.text import text
+from jacaros.terms.text import display, text
 from jacaros.terms.unifier import resolve
 from jacaros.terms.values import Functor, String, Term, Var, atom, functor, functor_of
 
 ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
+_ENV_FAILURE_REASON, _BIND_PARAM_ERROR = functor("env_failure_reason", 1), functor("bind_param_error", 2)
 _REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
 
 _IDS: dict[type, str] = {
@@ -226,6 +227,14 @@ def _code(term: Term, span: Any, file: str) -> tuple[Term, ...]:
 def error_terms(error: str, message: str) -> tuple[Term, ...]:
     """``error(Id)`` and ``error_msg("…")``."""
     return ((ERROR, atom(error)), (ERROR_MSG, String(message)))
+
+
+def output_misfit(output: Term, value: Term) -> tuple[Term, ...]:
+    """The reason of an external action whose *output* has another value than the one that it gave, as where the same
+    variable is written for two outputs."""
+    message = f"an output of the action would be {text(value)}, but is {text(output)} already"
+    reason = (_BIND_PARAM_ERROR, resolve(output), String(display(value)))
+    return (*error_terms("action_failed", message), (_ENV_FAILURE_REASON, reason))
 
 
 def step_failure(frame: Frame, fault: Exception) -> FailureReason:

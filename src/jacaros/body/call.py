@@ -3,17 +3,19 @@
 from dataclasses import dataclass
 
 from jacaros.bdi.act import Act
-from jacaros.body.values import symbol_name
-from jacaros.env.errors import OperationFailed
+from jacaros.body.undelivered import unknown_annotation, unreachable
+from jacaros.body.values import symbol_name, unquoted
+from jacaros.env.errors import OperationFailed, spelling_hint
 from jacaros.env.ids import ArtifactId
-from jacaros.env.values import Atom, Structure
+from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
 from jacaros.terms.text import text
 from jacaros.terms.values import Functor, Reference, String, Term, Var, bare, deref
 
 _BY_ARTIFACT = {"artifact_id": "artifact", "aid": "artifact", "artifact_name": "artifact", "art": "artifact"}
 _BY_WORKSPACE = {"wid": "workspace", "wsp": "workspace"}
-_DIRECTING = ", ".join([*_BY_ARTIFACT, *_BY_WORKSPACE])
+_DIRECTIONS = (*_BY_ARTIFACT, *_BY_WORKSPACE)
+_DIRECTING = ", ".join(_DIRECTIONS)
 
 
 @dataclass(slots=True)
@@ -61,10 +63,10 @@ def read(act: Act) -> Call:
     """Read an act.
 
     Raises:
-        OperationFailed: an annotation cannot be obeyed.
+        Undelivered: an annotation cannot be obeyed.
     """
     symbol, arguments = act.functor, act.arguments
-    name = symbol.name[1:-1] if symbol.name[0] == "'" else symbol.name
+    name = unquoted(symbol.name) if symbol.name[0] == "'" else symbol.name
     for argument in arguments:
         if argument.__class__ is Var:
             arguments = tuple(map(deref, arguments))
@@ -80,15 +82,18 @@ def _direction(act: Act) -> Direction:
         if annotation.__class__ is not tuple or name == "source":
             continue
         if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
-            raise OperationFailed(
-                f"the annotation {text(annotation)} of {act.functor!r} says nothing to the environment; "
-                f"an action can be directed by {_DIRECTING}",
-                Structure("action_failed", (symbol_name(act.functor), Atom("unknown_annotation"))),
+            message = f"the annotation {text(annotation)} of {act.functor!r} says nothing to the environment"
+            hint = spelling_hint(name, _DIRECTIONS)
+            raise unknown_annotation(
+                act, annotation, f"{message}{hint or f'; an action can be directed by {_DIRECTING}'}"
             )
-        if name in _BY_ARTIFACT:
-            direction.artifact = artifact_argument(annotation[1], name)
-        else:
-            direction.workspace = workspace_argument(annotation[1], name)
+        try:
+            if name in _BY_ARTIFACT:
+                direction.artifact = artifact_argument(annotation[1], name)
+            else:
+                direction.workspace = workspace_argument(annotation[1], name)
+        except OperationFailed as failure:
+            raise unreachable(act, failure) from None
     return direction
 
 

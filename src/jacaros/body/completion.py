@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from jacaros.bdi.act import Completion
+from jacaros.body.undelivered import Undelivered
 from jacaros.body.values import Outputs, References, to_term
 from jacaros.env.errors import OperationFailed
 from jacaros.env.operation import OperationOutcome
@@ -13,6 +14,7 @@ SUCCEEDED = Completion(True)
 
 _ERROR_MSG = functor("error_msg", 1)
 _ENV_FAILURE_REASON = functor("env_failure_reason", 1)
+_ENV_FAILURE_DETAIL = functor("env_failure_detail", 1)
 
 
 def succeeded(*outputs: tuple[Term, Term]) -> Completion:
@@ -30,7 +32,15 @@ def failed(message: str, reason: Structure | Atom | None, references: References
 
 def refused(failure: OperationFailed, references: References) -> Completion:
     """An action that failed before or outside of an operation."""
-    return failed(failure.message, failure.reason, references)
+    if not isinstance(failure, Undelivered):
+        return failed(failure.message, failure.reason, references)
+    annotations: tuple[Term, ...] = (
+        (_ERROR_MSG, String(failure.message)),
+        (_ENV_FAILURE_REASON, failure.term),
+    )
+    if failure.reason is not None:
+        annotations += ((_ENV_FAILURE_DETAIL, to_term(failure.reason, references)),)
+    return Completion(False, (), annotations)
 
 
 def of_operation(outcome: OperationOutcome, outputs: Outputs, references: References) -> Completion:

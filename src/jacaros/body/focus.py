@@ -56,9 +56,13 @@ class FocusedArtifacts:
         """The focused artifacts, in the order of focusing."""
         return tuple(self._focused)
 
-    def in_namespace(self, namespace: str) -> tuple[ArtifactId, ...]:
-        """The artifacts focused in a namespace, in the order of focusing."""
-        return tuple(a for a, namespaces in self._focused.items() if namespace in namespaces)
+    def in_namespace(self, namespace: str) -> list[tuple[Workspace, ArtifactId]]:
+        """The artifacts focused in a namespace with their workspaces, in the order of focusing."""
+        return [
+            (namespaces[namespace], artifact)
+            for artifact, namespaces in self._focused.items()
+            if namespace in namespaces
+        ]
 
     def in_workspace(self, workspace: Workspace) -> tuple[ArtifactId, ...]:
         """The focused artifacts of a workspace."""

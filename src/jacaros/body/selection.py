@@ -12,11 +12,11 @@ from collections.abc import Iterable, Sequence
 from jacaros.bdi.internal_action import STANDARD
 from jacaros.body.call import ANYWHERE, Call
 from jacaros.body.focus import FocusedArtifacts
+from jacaros.body.undelivered import nobody_offers, unreachable
 from jacaros.body.whereabouts import Whereabouts, not_joined
 from jacaros.env.choice import artifact_named, chosen_artifact
-from jacaros.env.errors import OperationFailed
-from jacaros.env.ids import ArtifactId
-from jacaros.env.values import Structure
+from jacaros.env.errors import OperationFailed, UnknownArtifact
+from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.workspace import Workspace
 
 
@@ -42,7 +42,8 @@ class Selection:
         """The artifact that is to carry out *call*.
 
         Raises:
-            OperationFailed: there is none; the message tells similar operations and where they are.
+            Undelivered: there is none; the message tells similar operations and where they are.
+            UnknownArtifact: the workspace that the action is directed to has no artifact of that name.
         """
         intention = call.act.intention
         direction = call.direction
@@ -51,22 +52,32 @@ class Selection:
             candidates = self._whereabouts.current(intention).providers(call.name, len(call.arguments))
             if len(candidates) == 1:
                 return candidates[0]
-        places = self._places(direction.workspace, intention)
         if direction.artifact is not None:
-            return self.artifact(direction.artifact, places)
-        if call.namespace is not None:
-            for artifact in self._focused.in_namespace(call.namespace):
-                if self._offers(artifact, call):
-                    return artifact
+            return self._directed(direction.artifact, call)
+        places = self._places(call)
+        if call.namespace is not None and direction.workspace is None:
+            found = self._in_namespace(call.namespace, call)
+            if found is not None:
+                return found
         chosen = chosen_artifact(
             places, call.name, len(call.arguments), self._agent, self._focused.in_order()
         )
         if chosen is not None:
             return chosen
-        raise self._nobody(call, places)
+        raise nobody_offers(call.act, self._nobody(call, places))
+
+    def _directed(self, wanted: ArtifactId | str, call: Call) -> ArtifactId:
+        # An id says all: no annotation beside it counts.
+        places = () if isinstance(wanted, ArtifactId) else self._places(call)
+        try:
+            return self.artifact(wanted, places)
+        except UnknownArtifact:
+            raise
+        except OperationFailed as failure:
+            raise unreachable(call.act, failure) from None
 
     def artifact(self, wanted: ArtifactId | str, places: Sequence[Workspace]) -> ArtifactId:
-        """The artifact *wanted*: an id, or a name in one of the *places*.
+        """The artifact *wanted*: an id, a name in one of the *places*, or a path that begins in the first of them.
 
         Raises:
             OperationFailed: there is no such artifact, or its workspace has not been joined.
@@ -75,28 +86,44 @@ class Selection:
             if not self._whereabouts.has_joined(wanted.workspace):
                 raise not_joined(wanted.workspace)
             return wanted
+        if "/" in wanted:
+            above, _, wanted = resolve_path(places[0].path, wanted).rpartition("/")
+            places = [self._whereabouts.at(above)]
         return artifact_named(places, wanted)
 
-    def _places(self, wanted: Workspace | str | None, intention: int) -> tuple[Workspace, ...]:
+    def _places(self, call: Call) -> tuple[Workspace, ...]:
+        """The workspaces where the artifact may be."""
+        wanted, intention = call.direction.workspace, call.act.intention
         if wanted is None:
             return tuple(self._whereabouts.in_order(intention))
-        if isinstance(wanted, str):
-            return (self._whereabouts.named(wanted, intention),)
-        if not self._whereabouts.has_joined(wanted.path):
-            raise not_joined(wanted.path)
+        try:
+            if isinstance(wanted, str):
+                return (self._whereabouts.named(wanted, intention),)
+            if not self._whereabouts.has_joined(wanted.path):
+                raise not_joined(wanted.path)
+        except OperationFailed as failure:
+            raise unreachable(call.act, failure) from None
         return (wanted,)
 
-    def _offers(self, artifact: ArtifactId, call: Call) -> bool:
-        for workspace in self._whereabouts.joined():
-            if workspace.path == artifact.workspace:
-                return artifact in workspace.providers(call.name, len(call.arguments))
-        return False
+    def _in_namespace(self, namespace: str, call: Call) -> ArtifactId | None:
+        """The first artifact focused in a namespace that offers the operation.
 
-    def _nobody(self, call: Call, places: Sequence[Workspace]) -> OperationFailed:
+        When there are only operations of that name with other numbers of arguments, the first of those is meant, and
+        will say so: an action for one robot does not go to another one because of a slip.
+        """
+        namesake: ArtifactId | None = None
+        for workspace, artifact in self._focused.in_namespace(namespace):
+            if artifact in workspace.providers(call.name, len(call.arguments)):
+                return artifact
+            if namesake is None:
+                operations = workspace.interface(artifact).operations
+                namesake = artifact if any(each.name == call.name for each in operations) else None
+        return namesake
+
+    def _nobody(self, call: Call, places: Sequence[Workspace]) -> str:
         where = "workspace" if len(places) == 1 else "the workspaces"
         names = ", ".join(workspace.path for workspace in places)
-        message = f"no artifact of {where} {names} has an operation {call.key}{self._hint(call, places)}"
-        return OperationFailed(message, Structure("unknown_operation", (call.name,)))
+        return f"no artifact of {where} {names} has an operation {call.key}{self._hint(call, places)}"
 
     def _hint(self, call: Call, places: Sequence[Workspace]) -> str:
         """What may have been meant: another number of arguments, another spelling, an internal action."""

@@ -12,7 +12,7 @@ list, set, queue           `list`
 map                        `dict`
 annotated term             its term, without the annotations
 opaque reference           the object
-unbound variable           `Out`, one for each variable; from the environment None comes as a fresh variable
+unbound variable           `Out`, one for each occurrence; from the environment None comes as a fresh variable
 formula, plan              its text
 =========================  ==========================================================================
 """
@@ -46,7 +46,7 @@ from jacaros.terms.values import (
 )
 
 Outputs = list[tuple[Var, Out]]
-"""The unbound variables of an action, and the places where an operation leaves their values."""
+"""Where unbound variables stand in an action, and the places where an operation leaves their values."""
 
 _WORDS_OF_THE_LANGUAGE = frozenset({"not", "div", "mod"})
 _CARRIED_AS_STRUCTURES = (PLAIN, ARITHMETIC, FUNCTION)
@@ -56,7 +56,7 @@ def to_value(term: Term, outputs: Outputs | None = None) -> Any:
     """Turn a term, with its bindings applied, into a plain value.
 
     Args:
-        outputs: takes the unbound variables met on the way, each with its `Out`.
+        outputs: takes the unbound variables met on the way, each occurrence with its `Out`.
     """
     kind = term.__class__
     if kind is float:
@@ -78,13 +78,10 @@ def _variable_to_value(variable: Var, outputs: Outputs | None) -> Any:
     bound = deref(variable)
     if bound.__class__ is not Var:
         return to_value(bound, outputs)
-    if outputs is None:
-        return Out()
-    for variable, out in outputs:
-        if variable is bound:
-            return out
-    outputs.append((bound, Out()))
-    return outputs[-1][1]
+    out = Out(bound)
+    if outputs is not None:
+        outputs.append((bound, out))
+    return out
 
 
 def _atom_to_value(symbol: Functor) -> object:
@@ -125,12 +122,15 @@ def _key(value: object) -> object:
 
 def symbol_name(symbol: Functor) -> str:
     """The name of a functor as the environment writes it: no quotes; ``~`` and the namespace in front."""
-    name = symbol.name
-    if name[:1] == "'" and name[-1:] == "'" and len(name) > 1:
-        name = name[1:-1]
+    name = unquoted(symbol.name)
     if symbol.negated:
         name = f"~{name}"
     return f"{symbol.namespace}::{name}" if symbol.namespace else name
+
+
+def unquoted(name: str) -> str:
+    """The name of a functor without the quotes of a quoted one."""
+    return name[1:-1] if name[:1] == "'" and name[-1:] == "'" and len(name) > 1 else name
 
 
 class References:

@@ -38,6 +38,16 @@ class Whereabouts:
         """Whether the agent is in the workspace with that full path."""
         return path in self._joined
 
+    def at(self, path: str) -> Workspace:
+        """The joined workspace with that full path.
+
+        Raises:
+            OperationFailed: it was not joined.
+        """
+        if path not in self._joined:
+            raise not_joined(path)
+        return self._joined[path]
+
     def current(self, intention: int) -> Workspace:
         """The workspace where an intention acts."""
         found = self._of_intention.get(intention, self._last) if self._of_intention else self._last

@@ -52,12 +52,17 @@ UNSET = Unset()
 
 
 class Out:
-    """An output parameter: the place where an operation leaves a result for its caller."""
+    """An output parameter: the place where an operation leaves a result for its caller.
 
-    __slots__ = ("_value",)
+    Attributes:
+        variable: what the caller writes there; where it writes the same twice, both results have to be equal.
+    """
 
-    def __init__(self) -> None:
+    __slots__ = ("_value", "variable")
+
+    def __init__(self, variable: object = None) -> None:
         self._value: object = UNSET
+        self.variable = variable
 
     @property
     def value(self) -> object:

@@ -127,7 +127,7 @@ def test_an_output_of_an_action_that_ends_at_once_is_bound_or_fails_the_step() -
     program = """
         !a.
         +!a <- get(X, X2); .print(X, X2); get(Y, Y); .print(no).
-        -!a[error(E), error_msg(M)] <- .print(E, ": ", M).
+        -!a[error(E), error_msg(M), env_failure_reason(R)] <- .print(E, " ", R, ": ", M).
     """
 
     def give(act: Act) -> Completion:
@@ -135,7 +135,7 @@ def test_an_output_of_an_action_that_ends_at_once_is_bound_or_fails_the_step() -
 
     assert printed(program, complete=give) == [
         "34",
-        "action_failed: an output of the action does not fit",
+        'action_failed bind_param_error(3,"4"): an output of the action would be 4, but is 3 already',
     ]
 
 

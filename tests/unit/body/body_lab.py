@@ -206,6 +206,12 @@ def reason_of(completion: Completion) -> str | None:
     return text(completion.annotations[1][1]) if len(completion.annotations) > 1 else None
 
 
+def detail_of(completion: Completion) -> str | None:
+    """What we tell about a failed action beside its reason; None when there is nothing."""
+    found = [a[1] for a in completion.annotations if a[0] is functor("env_failure_detail", 1)]
+    return text(found[0]) if found else None
+
+
 def among_artifacts(test: Callable[..., Coroutine[None, None, None]]) -> Callable[[], None]:
     """Run a test ``async def test(one, two, clock)`` with two agents in one environment, on virtual time."""
 

@@ -1,6 +1,6 @@
 """Operations on behalf of an agent: outputs, failures, order of news, dropping and suspending."""
 
-from body_lab import Robot, action, among_artifacts, message_of, reason_of
+from body_lab import Robot, action, among_artifacts, detail_of, message_of, reason_of
 
 from jacaros.clock import VirtualClock
 from jacaros.terms.values import Var, functor
@@ -44,7 +44,10 @@ async def test_an_unknown_operation_is_told_with_similar_ones(
     assert message_of(failure) == (
         "no artifact of workspace /main has an operation driv/1; did you mean drive/1 of 'motion'?"
     )
-    assert reason_of(failure) == 'unknown_operation("driv")'
+    assert reason_of(failure) == 'env_failure(action_failed(driv,op(default,"( driv 1 )")))'
+    assert detail_of(failure) == 'unknown_operation("driv/1")'
+    failure = one.do("left::driv", "far away", [1, "a b"], Var("X"))
+    assert reason_of(failure) == 'env_failure(action_failed(driv,op(left,"( driv far away [1,"a b"] X )")))'
     assert "did you mean drive/1 of 'motion'?" in message_of(one.do("drive", 1, 2))
     assert "did you mean makeArtifact/" in message_of(one.do("makeArtifat", "a", "Counter"))
 

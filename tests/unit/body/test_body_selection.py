@@ -1,6 +1,6 @@
 """Which artifact gets an action."""
 
-from body_lab import Robot, among_artifacts, message_of, reason_of
+from body_lab import Robot, among_artifacts, detail_of, message_of, reason_of
 
 from jacaros.clock import VirtualClock
 from jacaros.terms.values import Reference, Var, atom
@@ -55,7 +55,14 @@ async def test_a_directed_action_without_target_says_what_is_wrong(
     assert "says nothing to the environment" in message_of(one.do("read", Var(), artefact_name="motor"))
     assert "wants an artifact" in message_of(one.do("read", Var(), artifact_id=3))
     assert "wants a workspace" in message_of(one.do("read", Var(), wid=a))
-    assert reason_of(one.do("read", Var(), wsp="attic")) == 'workspace_not_joined("attic")'
+    for failure in (one.do("read", Var(), wsp="attic"), one.do("read", Var(), art="attic/c")):
+        assert "attic has not been joined" in message_of(failure)
+        assert reason_of(failure) == "env_failure(action_failed(read,generic_error))"
+        assert (detail_of(failure) or "").startswith("workspace_not_joined(")
+    failure = one.do("read", Var(), foo=3)
+    assert reason_of(failure) == "action_failed(read(_)[foo(3)],unknown_annotation)"
+    assert detail_of(failure) == 'unknown_annotation("foo(3)")'
+    assert "did you mean artifact_name" in message_of(one.do("read", Var(), artefact_name="motor"))
 
 
 @among_artifacts
@@ -90,6 +97,39 @@ async def test_a_namespace_means_the_artifacts_focused_in_it(
     assert one.do("ns::stopFocus", b).success
     one.do("inc", artifact_id=b)
     assert one.beliefs == ["count(3)"]
+
+
+@among_artifacts
+async def test_an_action_for_the_artifacts_of_a_namespace_does_not_go_elsewhere_for_its_number_of_arguments(
+    one: Robot, two: Robot, clock: VirtualClock
+) -> None:
+    one.make("left", "Lamp")
+    right = one.make("right", "Counter")
+    one.make("total", "Total")
+    one.do("ns::focus", right)
+    failure = one.do("ns::inc", 1, 2)
+    assert "artifact right (Counter) has no operation inc/2; there is inc/" in message_of(failure)
+    assert one.do("ns::inc", 1).success
+    assert one.do("inc", 1, 2).success
+
+
+@among_artifacts
+async def test_the_id_of_an_artifact_says_more_than_any_other_annotation(
+    one: Robot, two: Robot, clock: VirtualClock
+) -> None:
+    one.make("a", "Counter", 1)
+    b = one.make("b", "Counter", 2)
+    assert count(one, artifact_id=b, artifact_name="a", wsp="nowhere") == 2.0
+
+
+@among_artifacts
+async def test_the_name_of_an_artifact_may_be_a_path(one: Robot, two: Robot, clock: VirtualClock) -> None:
+    one.make("a", "Counter", 1)
+    one.do("createWorkspace", "lab")
+    one.do("joinWorkspace", "lab")
+    one.make("a", "Counter", 2)
+    assert count(one, artifact_name="/main/lab/a") == count(one, art="lab/a", wsp="/main") == 2.0
+    assert count(one, art="../a") == count(one, art="a", wsp="main") == 1.0
 
 
 @among_artifacts

@@ -75,7 +75,7 @@ def _fits(pattern: Entry, entry: Entry) -> bool:
     bound: dict[int, object] = {}
     for wanted, value in zip(pattern, entry, strict=True):
         if isinstance(wanted, Out):
-            wanted = bound.setdefault(id(wanted), value)
+            wanted = bound.setdefault(id(wanted.variable or wanted), value)
         if not equal(wanted, value):
             return False
     return True
