@@ -1,8 +1,12 @@
 """The environment: workspaces and artifacts in the manner of CArtAgO, usable without agents.
 
-Authors of artifacts need `Artifact`, the decorators and the plain values; a host needs `Environment`.
+Authors of artifacts need `Artifact`, the decorators and the plain values; a host needs `Environment`; who
+uses artifacts from Python needs a `Session`, which is loaded when it is first asked for.
 Nothing here knows of agents, ROS or the language.
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
@@ -30,6 +34,12 @@ from jacaros.env.property import ObservableProperty
 from jacaros.env.values import UNSET, Atom, Out, Structure, plain, text
 from jacaros.env.workspace import Workspace
 
+if TYPE_CHECKING:
+    from jacaros.env.observed import ObservedProperty, PropertyChange
+    from jacaros.env.session import Session
+    from jacaros.env.session_operation import SessionOperation
+    from jacaros.env.signal_stream import ReceivedSignal, SignalStream
+
 __all__ = [
     "UNSET",
     "Artifact",
@@ -40,13 +50,19 @@ __all__ = [
     "Manual",
     "ObservableProperty",
     "Observation",
+    "ObservedProperty",
     "Observer",
     "OperationExecution",
     "OperationFailed",
     "OperationOutcome",
     "OperationRequest",
     "Out",
+    "PropertyChange",
+    "ReceivedSignal",
+    "Session",
+    "SessionOperation",
     "Signal",
+    "SignalStream",
     "Structure",
     "UnknownArtifact",
     "UnknownArtifactType",
@@ -62,3 +78,20 @@ __all__ = [
     "resolve_path",
     "text",
 ]
+
+_LATER = {
+    "ObservedProperty": "jacaros.env.observed",
+    "PropertyChange": "jacaros.env.observed",
+    "ReceivedSignal": "jacaros.env.signal_stream",
+    "Session": "jacaros.env.session",
+    "SessionOperation": "jacaros.env.session_operation",
+    "SignalStream": "jacaros.env.signal_stream",
+}
+
+
+def __getattr__(name: str) -> object:
+    place = _LATER.get(name)
+    if place is None:
+        raise AttributeError(f"module 'jacaros.env' has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(place), name)
+    return value

@@ -121,6 +121,10 @@ class Environment:
             return self._workspaces["/main"].execute(request)
         return steps.execute(request, OPERATION)
 
+    def log_error(self, who: str, what: str, error: BaseException) -> None:
+        """Tell people that *what* went wrong in the code of *who*."""
+        self._setting.log_error(who, what, error)
+
     async def close(self) -> None:
         """Dispose every artifact, the workspaces made last first."""
         for workspace in reversed(self.workspaces()):

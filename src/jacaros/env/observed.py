@@ -1,0 +1,152 @@
+"""What one observer knows of the artifacts that it focuses: the latest values of their properties."""
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from jacaros.env.errors import UnknownProperty, spelling_hint
+from jacaros.env.ids import ArtifactId
+from jacaros.env.observation import Observation
+from jacaros.env.property import ObservableProperty
+from jacaros.env.values import equal, plain
+
+
+class ObservedProperty(NamedTuple):
+    """A property of a focused artifact, as it is now.
+
+    Attributes:
+        name: of the property.
+        values: plain values of its own.
+        artifact: which one has it.
+        annotations: what the artifact says about it.
+    """
+
+    name: str
+    values: tuple[object, ...]
+    artifact: ArtifactId
+    annotations: tuple[object, ...] = ()
+
+
+class PropertyChange(NamedTuple):
+    """What happened to one property.
+
+    Attributes:
+        name: of the property.
+        before: its values until now, None when it is new (also because the artifact is newly focused).
+        now: its values from now on, None when it is gone (also because the focus or the artifact ended).
+        artifact: which one has it.
+    """
+
+    name: str
+    before: tuple[object, ...] | None
+    now: tuple[object, ...] | None
+    artifact: ArtifactId
+
+
+class Observed:
+    """An observer that keeps the properties of what it focuses.
+
+    Args:
+        agent: the name that it observes under.
+        tell: called with every observation, after it was taken in.
+    """
+
+    def __init__(self, agent: str, tell: Callable[[Observation], None]) -> None:
+        self._agent = agent
+        self._tell = tell
+        self._properties: dict[ArtifactId, dict[int, ObservableProperty]] = {}
+        self._gone: set[ArtifactId] = set()
+
+    @property
+    def agent(self) -> str:
+        """The name that it observes under."""
+        return self._agent
+
+    @property
+    def focused(self) -> tuple[ArtifactId, ...]:
+        """The focused artifacts, in the order of focusing."""
+        return tuple(artifact for artifact in self._properties if artifact not in self._gone)
+
+    def begin(self, artifact: ArtifactId) -> None:
+        """Get ready for an artifact; its properties come as its first observation."""
+        self._properties.setdefault(artifact, {})
+
+    def end(self, artifact: ArtifactId) -> None:
+        """Forget an artifact."""
+        self._properties.pop(artifact, None)
+        self._gone.discard(artifact)
+
+    def gone(self, artifact: ArtifactId) -> None:
+        """Be told that an artifact has been disposed: it takes its properties back next, if it has any."""
+        if self._properties.get(artifact):
+            self._gone.add(artifact)
+        else:
+            self.end(artifact)
+
+    def observe(self, observation: Observation) -> None:
+        """Take in what an artifact publishes."""
+        held = self._properties.get(observation.artifact)
+        if held is None:
+            return
+        for _, new in observation.changed:
+            held[new.key] = new
+        for new in observation.added:
+            held[new.key] = new
+        for old in observation.removed:
+            held.pop(old.key, None)
+        if not held and observation.artifact in self._gone:
+            self.end(observation.artifact)
+        self._tell(observation)
+
+    def find(
+        self, name: str, template: tuple[object, ...] = (), artifact: ArtifactId | None = None
+    ) -> Iterator[ObservedProperty]:
+        """The properties called *name*: those of the artifact focused first come first, among them the oldest.
+
+        Args:
+            template: as many values as the property has, None for any value; empty fits every property.
+            artifact: None for all that are focused.
+        """
+        template = tuple(map(plain, template))
+        for owner, held in self._properties.items():
+            if artifact is not None and owner is not artifact:
+                continue
+            for each in held.values():
+                if each.name == name and (not template or _fits(template, each.values)):
+                    yield _observed(owner, each)
+
+    def unknown(self, name: str, artifact: ArtifactId | None) -> UnknownProperty:
+        """What to raise when there is no property called *name*."""
+        owners = [artifact] if artifact is not None else list(self._properties)
+        known = {each.name: None for owner in owners for each in self._properties.get(owner, {}).values()}
+        if not owners or (artifact is not None and artifact not in self._properties):
+            why = "no artifact is focused" if artifact is None else f"artifact {artifact.name} is not focused"
+        else:
+            which = ", ".join(owner.name for owner in owners)
+            why = f"what is focused ({which}) has {', '.join(known) if known else 'none'}"
+        return UnknownProperty(f"no observable property {name} is known: {why}{spelling_hint(name, known)}")
+
+
+def changes_of(observation: Observation) -> Iterator[PropertyChange]:
+    """What happened to the properties, one by one, in the order of agents' events."""
+    artifact = observation.artifact
+    for old, new in observation.changed:
+        yield PropertyChange(new.name, _copy(old.values), _copy(new.values), artifact)
+    for new in observation.added:
+        yield PropertyChange(new.name, None, _copy(new.values), artifact)
+    for old in observation.removed:
+        yield PropertyChange(old.name, _copy(old.values), None, artifact)
+
+
+def _observed(artifact: ArtifactId, found: ObservableProperty) -> ObservedProperty:
+    return ObservedProperty(found.name, _copy(found.values), artifact, _copy(found.annotations))
+
+
+def _copy(values: tuple[object, ...]) -> tuple[object, ...]:
+    """Values that share no list or dictionary with those of the artifact."""
+    return tuple(map(plain, values))
+
+
+def _fits(template: tuple[object, ...], values: tuple[object, ...]) -> bool:
+    return len(template) == len(values) and all(
+        wanted is None or equal(wanted, value) for wanted, value in zip(template, values, strict=True)
+    )

@@ -1,0 +1,103 @@
+"""The workspaces that a session has joined, and those in which it looks for things."""
+
+from jacaros.env.environment import Environment
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import ArtifactId, resolve_path
+from jacaros.env.values import Structure
+from jacaros.env.workspace import Workspace
+
+
+class SessionWorkspaces:
+    """The joined workspaces; the one joined last is the current one.
+
+    Args:
+        environment: holds the workspaces.
+        home: full path of the first one.
+
+    Raises:
+        UnknownWorkspace: there is none at *home*.
+    """
+
+    def __init__(self, environment: Environment, home: str) -> None:
+        self._environment = environment
+        self._home = environment.workspace(home)
+        self._joined: dict[str, Workspace] = {self._home.path: self._home}
+
+    @property
+    def joined(self) -> tuple[str, ...]:
+        """Full paths, in the order of joining; the current one comes last."""
+        return tuple(self._joined)
+
+    @property
+    def current(self) -> Workspace:
+        """The one joined last; home when none is left."""
+        return next(reversed(self._joined.values()), self._home)
+
+    def in_order(self) -> tuple[Workspace, ...]:
+        """Where things are looked for: the current one, home, then the others in the order of joining."""
+        first = [self.current]
+        if self._home.path in self._joined:
+            first.append(self._home)
+        return tuple(dict.fromkeys((*first, *self._joined.values())))
+
+    def join(self, path: str) -> Workspace:
+        """Make the workspace at *path*, which starts from the current one, the current one.
+
+        Raises:
+            UnknownWorkspace: there is none.
+        """
+        workspace = self._environment.workspace(resolve_path(self.current.path, path))
+        self._joined.pop(workspace.path, None)
+        self._joined[workspace.path] = workspace
+        return workspace
+
+    def quit(self, name: str) -> Workspace:
+        """Leave a joined workspace.
+
+        Raises:
+            OperationFailed: it was not joined.
+        """
+        workspace = self.named(name)
+        del self._joined[workspace.path]
+        return workspace
+
+    def named(self, name: str) -> Workspace:
+        """The joined workspace with that path or plain name.
+
+        Raises:
+            OperationFailed: it was not joined.
+        """
+        full = resolve_path(self.current.path, name)
+        for workspace in self.in_order():
+            if workspace.path == full or workspace.name == name:
+                return workspace
+        raise _not_joined(name)
+
+    def of(self, artifact: ArtifactId) -> Workspace:
+        """The joined workspace of an artifact.
+
+        Raises:
+            OperationFailed: it was not joined.
+        """
+        workspace = self._joined.get(artifact.workspace)
+        if workspace is None:
+            raise _not_joined(artifact.workspace)
+        return workspace
+
+    def place(self, path: str) -> tuple[Workspace, str]:
+        """The workspace and the plain name meant by the name or path of an artifact.
+
+        Raises:
+            UnknownWorkspace: there is no workspace of that path.
+        """
+        if "/" not in path:
+            return self.current, path
+        above, _, name = resolve_path(self.current.path, path).rpartition("/")
+        return self._environment.workspace(above), name
+
+
+def _not_joined(path: str) -> OperationFailed:
+    return OperationFailed(
+        f"workspace {path} has not been joined; join it first",
+        Structure("workspace_not_joined", (str.__str__(path),)),
+    )
