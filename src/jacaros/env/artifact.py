@@ -8,6 +8,7 @@ from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.declaration import declare_function
+from jacaros.env.kernel.faults import text_of
 from jacaros.env.kernel.interface import Interface, interface_of
 from jacaros.env.kernel.linked_call import call_all
 from jacaros.env.kernel.steps import Steps
@@ -153,7 +154,7 @@ class Artifact:
         """
         steps = self._steps
         holder = steps.turns.holder
-        if holder is None or holder.task is not None:
+        if holder is None or holder.task is not None or steps.turns.asking:
             steps.current("updating property", name)
         steps.publication.properties.update(name, values, annotations, if_new)
 
@@ -211,8 +212,13 @@ class Artifact:
         Raises:
             OperationFailed: always.
         """
+        message = message if isinstance(message, str) else text_of(message)
         if functor is None:
             raise OperationFailed(message)
+        if not isinstance(functor, str) or not functor:
+            raise InvalidArtifact(
+                f"fail({message!r}, {functor!r}): the reason begins with a name, such as too_many"
+            )
         raise OperationFailed(
             message, Structure(functor, tuple(map(plain, arguments))) if arguments else Atom(functor)
         )
@@ -230,7 +236,7 @@ class Artifact:
         Raises:
             InvalidArtifact: there is none.
         """
-        return self._steps.current("asking for the current operation")
+        return self._steps.current("asking for the current operation", changes=False)
 
     @property
     def caller(self) -> str | None:
@@ -240,7 +246,7 @@ class Artifact:
         operations None.
         """
         holder = self._steps.turns.holder
-        return holder.request.agent if holder is not None else None
+        return holder.request.agent if holder is not None and self._steps.inside() else None
 
     def commit(self) -> None:
         """Publish what the step has changed so far; from here on it cannot be undone."""

@@ -6,6 +6,7 @@ from jacaros.env.artifact import Artifact, Host
 from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
+from jacaros.env.kernel.faults import is_interruption, told
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
 from jacaros.env.operation import INTERNAL, Mark, OperationRequest
@@ -44,9 +45,11 @@ def artifact_type_of(
         raise refused("unknown_artifact_template", name, str(unknown)) from None
     except InternalError:
         raise
-    except Exception as error:
+    except BaseException as error:
+        if is_interruption(error):
+            raise
         setting.log_error(name, "the artifact type cannot be loaded:", error)
-        message = f"artifact type {name} cannot be loaded: {type(error).__name__}: {error}"
+        message = f"artifact type {name} cannot be loaded: {told(error)}"
         raise refused("unknown_artifact_template", name, message) from error
     if not (isinstance(found, type) and issubclass(found, Artifact)):
         raise refused("unknown_artifact_template", name, f"{name} is not a class derived from Artifact")
@@ -61,9 +64,11 @@ def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, s
     """
     try:
         artifact = artifact_type()
-    except Exception as error:
+    except BaseException as error:
+        if is_interruption(error):
+            raise
         setting.log_error(artifact_id.name, f"the constructor of {artifact_type.__qualname__} failed:", error)
-        raise init_failed(artifact_id, f"{type(error).__name__}: {error}") from error
+        raise init_failed(artifact_id, told(error)) from error
     steps = Steps(artifact_id, artifact, artifact_type.interface, tuple(artifact_type.ports), setting)
     artifact._join(steps, host)
     return steps

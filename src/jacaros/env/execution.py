@@ -4,9 +4,10 @@ import asyncio
 from collections.abc import Callable
 from typing import Protocol
 
-from jacaros.clock import Clock
+from jacaros.clock import Clock, Timer
 from jacaros.env.kernel.declaration import DeclaredOperation
-from jacaros.env.operation import OperationRequest
+from jacaros.env.kernel.faults import is_interruption
+from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.trace import Cause
 
 
@@ -21,7 +22,7 @@ class Turns(Protocol):
     def reconsider(self) -> None:
         """See whether somebody who waits may go on now."""
 
-    def complain(self, what: str, error: Exception) -> None:
+    def complain(self, what: str, error: BaseException) -> None:
         """Log an error of the artifact's code that harms nobody."""
 
 
@@ -35,7 +36,11 @@ class OperationExecution:
         cause: what led to it.
         begun: True once its code has run.
         cancelled: True when it was dropped; nobody is told its outcome.
-        disposed: True when it ends because its artifact is gone.
+        verdict: what its caller is told however it ends now: its artifact is gone, or its time is up; None while
+            it ends by itself.
+        told: True once its caller knows the outcome, though it may not have ended (a thread cannot be stopped).
+        limit: rings when its time is up, None without a limit.
+        thread: the thread in which it runs, None when that is the loop's.
         ended: True when all is over, code in ``finally`` included.
         task: the task of a coroutine that has been given its first turn.
         linked: executions in other artifacts that it waits for now.
@@ -49,11 +54,14 @@ class OperationExecution:
         "cancelled",
         "cause",
         "declared",
-        "disposed",
         "ended",
+        "limit",
         "linked",
         "request",
         "task",
+        "thread",
+        "told",
+        "verdict",
     )
 
     def __init__(
@@ -66,16 +74,19 @@ class OperationExecution:
     ) -> None:
         self._turns = turns
         self.request, self.declared, self.arguments, self.cause = request, declared, arguments, cause
-        self.begun = self.cancelled = self.disposed = False
+        self.begun = self.cancelled = self.told = False
         self.ended = declared is None
+        self.verdict: OperationOutcome | None = None
+        self.limit: Timer | None = None
+        self.thread: int | None = None
         self.task: asyncio.Task[None] | None = None
         self.linked: list[OperationExecution] = []
         self._pause: Pause | None = None
 
     @property
     def stopped(self) -> bool:
-        """True when it has been cancelled, or its artifact disposed."""
-        return self.cancelled or self.disposed
+        """True when it has been cancelled, its artifact disposed, or its time is up."""
+        return self.cancelled or self.verdict is not None
 
     def cancel(self) -> None:
         """Drop it: a coroutine is cancelled and its ``finally`` runs, a waiting operation is forgotten.
@@ -100,7 +111,9 @@ class OperationExecution:
         for callback in pause.callbacks:
             try:
                 callback()
-            except Exception as error:
+            except BaseException as error:
+                if is_interruption(error):
+                    raise
                 self._turns.complain(f"a pause callback of {self.request.operation} failed", error)
         self._turns.reconsider()
 

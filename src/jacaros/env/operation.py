@@ -48,6 +48,9 @@ class OperationRequest:
         agent: on whose behalf, None for the environment itself.
         cause: what led to it.
         on_done: told the outcome once, after observers were told the changes; never after a cancel.
+        timeout: seconds that the operation may take, waiting for its turn, its guard and its pauses included; then
+            it is stopped like one that is cancelled, and fails with ``operation_timeout(Operation,Milliseconds)``.
+            None: no limit.
     """
 
     artifact: ArtifactId
@@ -56,6 +59,7 @@ class OperationRequest:
     agent: str | None = None
     cause: Cause | None = None
     on_done: Callable[[OperationOutcome], None] = ignore_outcome
+    timeout: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,9 +66,11 @@ class PropertyStore:
             InvalidArtifact: *name* cannot be the name of a belief.
         """
         check_name(name)
-        self._last_key = key = self._last_key + 1
-        self.changing[key] = (name, None)
+        key = self._last_key + 1
+        # What cannot be converted raises here, before anything has changed.
         new = ObservableProperty(name, _plain(values), plain_annotations(annotations or ()), key)
+        self._last_key = key
+        self.changing[key] = (name, None)
         self._by_name.setdefault(name, {})[key] = new
 
     def update(
@@ -181,7 +183,7 @@ def check_name(name: str) -> None:
     Raises:
         InvalidArtifact: *name* does not begin with a lower-case letter.
     """
-    if not name[:1].islower():
+    if not isinstance(name, str) or not name[:1].islower():
         raise InvalidArtifact(f"{name!r} cannot name a property or signal: begin with a lower-case letter")
 
 

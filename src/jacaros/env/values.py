@@ -98,7 +98,7 @@ def plain(value: Any) -> object:
     if kind in SCALARS:
         return value
     if kind is Structure:
-        return Structure(value.functor, tuple(map(plain, value.arguments)))
+        return _plain_structure(value)
     if isinstance(value, str):
         return str.__str__(value)
     if isinstance(value, (int, float)):
@@ -114,6 +114,12 @@ def plain(value: Any) -> object:
     if hasattr(value, "tolist") and hasattr(value, "dtype"):
         return plain(value.tolist())
     return value
+
+
+def _plain_structure(value: Structure) -> Structure:
+    if not isinstance(value.functor, str) or not value.functor:
+        raise TypeError(f"the functor of a structure is a text, not {value.functor!r}")
+    return Structure(value.functor, tuple(map(plain, value.arguments)))
 
 
 def plain_key(key: Any) -> Any:

@@ -99,9 +99,9 @@ class Stage:
         self.main.focus(artifact_id, watcher)
         return watcher
 
-    def call(self, artifact_id, operation, *args, agent="main", cause=None):
+    def call(self, artifact_id, operation, *args, agent="main", cause=None, timeout=None):
         call = Call(self, operation)
-        request = OperationRequest(artifact_id, operation, args, agent, cause, call.on_done)
+        request = OperationRequest(artifact_id, operation, args, agent, cause, call.on_done, timeout)
         call.execution = self.main.execute(request)
         return call
 

@@ -1,8 +1,11 @@
 """Operations that block run in a worker thread; what they change is published when they end."""
 
+import asyncio
 import threading
 
-from jacaros.env import Artifact, Out, Structure, operation
+import pytest
+
+from jacaros.env import Artifact, InvalidArtifact, Out, Structure, operation
 
 
 class Blocking(Artifact):
@@ -48,8 +51,6 @@ def blocking_of(stage):
 
 async def until_inside(stage):
     """Let the worker thread come to its gate; virtual time stands still meanwhile."""
-    import asyncio
-
     await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 10.0)
 
 
@@ -111,7 +112,7 @@ def test_a_thread_cannot_be_dropped_and_runs_to_its_end_untold(play):
     play(scene)
 
 
-def test_disposing_waits_for_the_thread(play):
+def test_disposing_tells_the_caller_at_once_and_waits_for_the_thread(play):
     async def scene(stage):
         blocking = await blocking_of(stage)
         watcher = stage.watch(blocking)
@@ -119,10 +120,83 @@ def test_disposing_waits_for_the_thread(play):
         await until_inside(stage)
         stage.main.dispose_artifact(blocking)
         assert watcher.notes == ["+count(0)", "-count(0)"]
-        assert call.outcome is None
+        assert call.reason == Structure("artifact_disposed", ("it",)), "nobody can end a thread: why wait"
+        assert not call.execution.ended
         stage.it.gate.set()
+        await stage.environment.close()
+        assert call.execution.ended
+
+    play(scene)
+
+
+def test_a_thread_that_is_not_that_of_the_operation_changes_nothing(play):
+    class Odd(Blocking):
+        @operation(threaded=True)
+        def meddle(self):
+            errors = []
+
+            def other():
+                try:
+                    self.update_property("count", 5)
+                except InvalidArtifact as error:
+                    errors.append(str(error))
+
+            thread = threading.Thread(target=other)
+            thread.start()
+            thread.join()
+            self.fail(errors[0])
+
+    async def scene(stage):
+        odd = await stage.make(Odd)
+        call = stage.call(odd, "meddle")
         await call.wait()
-        assert call.reason == Structure("artifact_disposed", ("it",))
+        assert "self.external_session()" in call.outcome.message
+        assert stage.property(odd, "count") == (0,)
+
+    play(scene)
+
+
+@pytest.mark.parametrize("raised", [StopIteration, SystemExit, KeyboardInterrupt, GeneratorExit])
+def test_whatever_a_thread_raises_fails_its_operation(play, raised):
+    class Odd(Blocking):
+        @operation(threaded=True)
+        def burst(self):
+            self.update_property("count", 99)
+            raise raised("why")
+
+    async def scene(stage):
+        odd = await stage.make(Odd)
+        call = stage.call(odd, "burst")
+        await call.wait()
+        assert call.reason == Structure("operation_error", ("burst/0",))
+        assert call.outcome.message == f"{raised.__name__} in operation burst/0 of it: why"
+        assert stage.property(odd, "count") == (0,)
+
+    play(scene)
+
+
+def test_a_thread_that_gives_a_coroutine_is_told_so(play):
+    class Odd(Artifact):
+        @operation(threaded=True)
+        def odd(self):
+            async def later(): ...
+
+            return later()
+
+    async def scene(stage):
+        call = stage.call(await stage.make(Odd), "odd")
+        await call.wait()
+        assert "gave a coroutine, which a thread cannot run" in call.outcome.message
+
+    play(scene)
+
+
+def test_any_thread_may_start_a_process(play):
+    async def scene(stage):
+        blocking = await blocking_of(stage)
+        await asyncio.get_running_loop().run_in_executor(None, stage.it.start, "inc")
+        await stage.clock.sleep(0)
+        assert stage.property(blocking, "count") == (10,)
 
     play(scene)
 

@@ -2,6 +2,7 @@
 
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.faults import text_of
 from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.signature import WrongArguments
 from jacaros.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
@@ -47,10 +48,28 @@ def disposed(request: OperationRequest) -> OperationOutcome:
     return OperationOutcome(False, message, Structure("artifact_disposed", (request.artifact.name,)))
 
 
+def timed_out(request: OperationRequest, seconds: float) -> OperationOutcome:
+    """The operation did not end in the time that its caller gave it."""
+    milliseconds = round(seconds * 1000, 3)
+    shown = f"{milliseconds:g} ms" if milliseconds < 1000 else f"{seconds:g} s"
+    message = f"operation {key(request)} of artifact {request.artifact.name} did not end within {shown}"
+    return OperationOutcome(False, message, Structure("operation_timeout", (key(request), milliseconds)))
+
+
 def failed(request: OperationRequest, error: BaseException) -> OperationOutcome:
     """The code of the operation raised *error*."""
     if isinstance(error, OperationFailed):
-        return OperationOutcome(False, error.message, error.reason)
+        # A class of the author's own need not have called the constructor.
+        message = getattr(error, "message", None)
+        reason = getattr(error, "reason", None)
+        return OperationOutcome(False, message if isinstance(message, str) else text_of(error), reason)
     functor = "internal_error" if isinstance(error, InternalError) else "operation_error"
-    message = f"{type(error).__name__} in operation {key(request)} of {request.artifact.name}: {error}"
+    message = told_in(error, request)
     return OperationOutcome(False, message, Structure(functor, (key(request),)))
+
+
+def told_in(error: BaseException, request: OperationRequest) -> str:
+    """An exception in words, and the operation in which it was raised."""
+    where = f"in operation {key(request)} of {request.artifact.name}"
+    said = text_of(error)
+    return f"{type(error).__name__} {where}: {said}" if said else f"{type(error).__name__} {where}"

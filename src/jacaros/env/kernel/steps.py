@@ -6,6 +6,7 @@ Nothing here knows what an artifact looks like to its author (`Artifact`) or whe
 
 import asyncio
 import inspect
+import threading
 from collections.abc import Awaitable, Callable
 from functools import partial
 from typing import TypeVar
@@ -16,10 +17,12 @@ from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel import outcomes
 from jacaros.env.kernel.declaration import DeclaredOperation
+from jacaros.env.kernel.faults import is_interruption
 from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.publication import Publication
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.signature import WrongArguments
+from jacaros.env.kernel.threads import in_thread
 from jacaros.env.kernel.turns import Guard, TurnQueue
 from jacaros.env.observation import Signal
 from jacaros.env.operation import LINK, SUCCEEDED, OperationOutcome, OperationRequest, ignore_outcome
@@ -46,6 +49,7 @@ class Steps:
         initialised: True once ``init`` has succeeded.
         hook: called first when an initialised artifact ends.
         cleanups: called after that, the last one first.
+        loop: where its operations run, None before the first one.
     """
 
     def __init__(
@@ -70,6 +74,8 @@ class Steps:
         self._running: dict[OperationExecution, None] = {}
         self._started: list[OperationExecution] = []
         self._delayed: list[tuple[Signal, str | None]] = []
+        self.loop: asyncio.AbstractEventLoop | None = None
+        self._loop_thread = 0
 
     # ---- operations come
 
@@ -88,6 +94,8 @@ class Steps:
             cause = self.setting.trace("operation", f"{self.id.path} {outcomes.key(request)}", cause)
         execution = OperationExecution(self, request, declared, arguments, cause)
         self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
+        if request.timeout is not None and not execution.ended:
+            execution.limit = self.clock.call_later(request.timeout, partial(self._time_is_up, execution))
         return execution
 
     def refuse(self, request: OperationRequest, outcome: OperationOutcome) -> OperationExecution:
@@ -103,6 +111,9 @@ class Steps:
         outside, such as from a callback, as soon as the artifact is free.
         """
         inside = self.inside()
+        if not inside and self.elsewhere():
+            self.hand_over(partial(self.start, declared, request))
+            return
         if request.cause is None and inside and self.turns.holder is not None:
             request.cause = self.turns.holder.cause
         execution = OperationExecution(self, request, declared, request.arguments, request.cause)
@@ -113,6 +124,7 @@ class Steps:
 
     def initialise(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution:
         """Run the ``init`` of the artifact as its first operation; the number of arguments is right."""
+        self._know_loop()
         try:
             arguments = declared.signature.bind(request.arguments)
         except WrongArguments as wrong:
@@ -129,7 +141,7 @@ class Steps:
 
     # ---- operations begin and end
 
-    def _begin(self, execution: OperationExecution, error: Exception | None) -> None:
+    def _begin(self, execution: OperationExecution, error: BaseException | None) -> None:
         declared = execution.declared
         assert declared is not None
         execution.begun = not declared.coroutine
@@ -139,6 +151,7 @@ class Steps:
             self._run(execution, declared)
         else:
             name = f"{self.id.path} {outcomes.key(execution.request)}"
+            self._know_loop()
             execution.task = asyncio.get_running_loop().create_task(self._drive(execution), name=name)
             self._running[execution] = None
 
@@ -150,9 +163,11 @@ class Steps:
                 raise InvalidArtifact(f"{declared.function.__qualname__} gave a coroutine: write async def")
         except Exception as error:
             self._end(execution, error)
-        except BaseException:
-            self._end(execution, OperationFailed("the process was interrupted"))
-            raise
+        except BaseException as error:
+            if is_interruption(error):
+                self._end(execution, OperationFailed("the process was interrupted"))
+                raise
+            self._end(execution, error)
         else:
             self._end(execution, None)
 
@@ -162,33 +177,40 @@ class Steps:
         try:
             if not execution.stopped:
                 execution.begun = True
-                await self._call(execution)
+                error = await self._call(execution)
         except asyncio.CancelledError as cancelled:
             cancellation = cancelled
             task = asyncio.current_task()
             if not execution.stopped and task is not None and not task.cancelling():
                 error = cancelled
-        except Exception as raised:
+        except GeneratorExit as raised:
+            if _thrown_away(execution):
+                raise
             error = raised
-        except (KeyboardInterrupt, SystemExit):
-            self._end(execution, OperationFailed("the process was interrupted"))
-            raise
+        except BaseException as raised:
+            if is_interruption(raised):
+                self._end(execution, OperationFailed("the process was interrupted"))
+                raise
+            error = raised
         if cancellation is not None and error is None and not execution.stopped:
             execution.cancelled = True
             self._end(execution, None)
             raise cancellation
         self._end(execution, error)
 
-    async def _call(self, execution: OperationExecution) -> None:
+    async def _call(self, execution: OperationExecution) -> BaseException | None:
+        """Run the code of a coroutine, or of a thread; what a thread raised is given, not raised."""
         declared = execution.declared
         assert declared is not None
         if not declared.threaded:
             await declared.function(self._artifact, *execution.arguments)
-            return
+            return None
         self.publication.freeze()
         try:
-            call = partial(declared.function, self._artifact, *execution.arguments)
-            await asyncio.get_running_loop().run_in_executor(None, call)
+            work = partial(
+                in_thread, execution, partial(declared.function, self._artifact, *execution.arguments)
+            )
+            return await asyncio.get_running_loop().run_in_executor(None, work)
         finally:
             self.publication.thaw()
 
@@ -202,8 +224,8 @@ class Steps:
             self._roll_back()
             outcome = outcomes.failed(execution.request, error)
             self._note(execution, error)
-        if execution.disposed:
-            outcome = outcomes.disposed(execution.request)
+        if execution.verdict is not None:
+            outcome = execution.verdict
         if execution.task is not None:
             del self._running[execution]
         try:
@@ -216,10 +238,16 @@ class Steps:
 
     def _tell(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
         execution.ended = True
+        if execution.limit is not None:
+            execution.limit.cancel()
         if execution.cancelled:
             if not self.initialised and not self.disposed:
                 self.dispose()
-            return
+        elif not execution.told:
+            self._inform(execution, outcome)
+
+    def _inform(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
+        execution.told = True
         try:
             execution.request.on_done(outcome)
         except Exception as error:
@@ -238,32 +266,60 @@ class Steps:
     # ---- steps
 
     def inside(self) -> bool:
-        """True when called by the operation that has the turn."""
+        """True when called by the operation that has the turn, or by its guard."""
         holder = self.turns.holder
-        if holder is None or holder.task is None:
+        if holder is None or holder.task is None or self.turns.asking:
             return holder is not None
+        if holder.thread is not None:
+            return holder.thread == threading.get_ident()
         try:
             return asyncio.current_task() is holder.task
         except RuntimeError:
-            return holder.declared is not None and holder.declared.threaded
+            return False
 
-    def current(self, wanted: str, name: str = "") -> OperationExecution:
+    def current(self, wanted: str, name: str = "", changes: bool = True) -> OperationExecution:
         """The operation that makes a step now.
 
         Args:
             wanted: what the caller is about to do, for the message.
             name: and to what.
+            changes: whether that changes something, which a guard must not.
 
         Raises:
-            InvalidArtifact: the caller is not within a step, such as in a callback.
+            InvalidArtifact: the caller is not within a step, such as in a callback, or is a guard.
         """
+        if changes and self.turns.asking:
+            raise InvalidArtifact(
+                f"artifact {self.id.name}: {wanted} {name} is not possible within a guard; a guard only looks"
+            )
         holder = self.turns.holder
-        if holder is not None and (holder.task is None or self.inside()):
+        if holder is not None and self.inside():
             return holder
         raise InvalidArtifact(
-            f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; "
-            "from a callback or another task use self.start(...) to run an internal operation"
+            f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; from a callback, "
+            "another task or thread use self.start(...) to run an internal operation, or self.external_session()"
         )
+
+    def _know_loop(self) -> None:
+        if self.loop is None:
+            try:
+                self.loop = asyncio.get_running_loop()
+            except RuntimeError:
+                return
+            self._loop_thread = threading.get_ident()
+
+    def elsewhere(self) -> bool:
+        """True when called from another thread than the loop's."""
+        return self.loop is not None and self._loop_thread != threading.get_ident()
+
+    def hand_over(self, callback: Callable[[], object]) -> bool:
+        """Call *callback* on the loop, from another thread; False when the loop has ended."""
+        try:
+            if self.loop is not None:
+                self.loop.call_soon_threadsafe(callback)
+        except RuntimeError:
+            return False
+        return self.loop is not None
 
     def commit(self) -> None:
         """Publish what the step has changed so far; operations that it started may begin."""
@@ -335,7 +391,11 @@ class Steps:
     async def until(self, guard: Guard) -> None:
         """Go on as soon as *guard* is true; it is evaluated now and whenever a step has ended."""
         execution = self.boundary("waiting for a condition")
-        if not guard():
+        if not callable(guard):
+            raise InvalidArtifact(
+                f"artifact {self.id.name}: until wants a function, such as a method or lambda: ..., not {guard!r}"
+            )
+        if not self.turns.ask(guard):
             await self.turns.release_until(execution, guard)
 
     async def pause_point(self, on_pause: Callable[[], None] | None) -> float:
@@ -357,7 +417,7 @@ class Steps:
         """The operations that run or wait, in no particular order of their ends."""
         return (*self._running, *self.turns.waiting_to_begin())
 
-    def complain(self, what: str, error: Exception) -> None:
+    def complain(self, what: str, error: BaseException) -> None:
         """Log an error of the artifact's code that harms nobody."""
         self.setting.log_error(self.id.name, what, error)
 
@@ -370,6 +430,8 @@ class Steps:
             self._interrupt(execution)
         elif self.turns.withdraw(execution):
             execution.ended = True
+            if execution.limit is not None:
+                execution.limit.cancel()
 
     def _interrupt(self, execution: OperationExecution) -> None:
         task, declared = execution.task, execution.declared
@@ -389,14 +451,28 @@ class Steps:
         if survivor is not None:
             self.commit()
         self.publication.close()
-        for execution in self.turns.waiting_to_begin():
-            self.turns.withdraw(execution)
-            self._tell(execution, outcomes.disposed(execution.request))
-        for execution in tuple(self._running):
+        for execution in (*self.turns.waiting_to_begin(), *self._running):
             if execution is not survivor and not execution.stopped:
-                execution.disposed = True
-                self._interrupt(execution)
+                self._stop(execution, outcomes.disposed(execution.request))
         self._close_if_over()
+
+    def _time_is_up(self, execution: OperationExecution) -> None:
+        seconds = execution.request.timeout
+        if seconds is not None and not execution.ended and not execution.stopped:
+            self._stop(execution, outcomes.timed_out(execution.request, seconds))
+
+    def _stop(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
+        """End an operation from outside; its caller is told *outcome* when it has ended.
+
+        Nobody can end a thread: its caller is told at once.
+        """
+        execution.verdict = outcome
+        if self.turns.withdraw(execution):
+            self._tell(execution, outcome)
+        elif execution.declared is not None and execution.declared.threaded:
+            self._inform(execution, outcome)
+        else:
+            self._interrupt(execution)
 
     async def closed(self) -> None:
         """Wait until the disposed artifact has given back everything."""
@@ -413,7 +489,17 @@ class Steps:
         for callback in (*hooks, *reversed(self.cleanups)):
             try:
                 callback()
-            except Exception as error:
+            except BaseException as error:
+                if is_interruption(error):
+                    raise
                 self.complain("could not be disposed properly:", error)
         if self._closed is not None and not self._closed.done():
             self._closed.set_result(None)
+
+
+def _thrown_away(execution: OperationExecution) -> bool:
+    """True when the coroutine of *execution* is closed with the loop, and does not run any more."""
+    try:
+        return asyncio.current_task() is not execution.task
+    except RuntimeError:
+        return True

@@ -1,9 +1,12 @@
 """Whose turn it is to make a step in an artifact: first come first served, guards permitting."""
 
 import asyncio
+import inspect
 from collections.abc import Callable
 
+from jacaros.env.errors import InvalidArtifact
 from jacaros.env.execution import OperationExecution
+from jacaros.env.kernel.faults import is_interruption
 from jacaros.env.operation import OperationOutcome
 
 Guard = Callable[[], object]
@@ -25,7 +28,7 @@ class Place:
         self, execution: OperationExecution, guard: Guard | None, granted: asyncio.Future[None] | None = None
     ) -> None:
         self.execution, self.guard, self.granted = execution, guard, granted
-        self.error: Exception | None = None
+        self.error: BaseException | None = None
 
 
 class TurnQueue:
@@ -35,12 +38,14 @@ class TurnQueue:
 
     Attributes:
         holder: who has the turn, None while the artifact is free.
+        asking: True while a guard is evaluated, which must not change anything.
     """
 
-    __slots__ = ("_begin", "_changed", "_places", "_serving", "holder")
+    __slots__ = ("_begin", "_changed", "_places", "_serving", "asking", "holder")
 
-    def __init__(self, begin: Callable[[OperationExecution, Exception | None], None]) -> None:
+    def __init__(self, begin: Callable[[OperationExecution, BaseException | None], None]) -> None:
         self._begin = begin
+        self.asking = False
         self.holder: OperationExecution | None = None
         self._places: list[Place] = []
         self._changed = False
@@ -192,12 +197,26 @@ class TurnQueue:
             return True
         self.holder = place.execution
         try:
-            return bool(place.guard())
-        except Exception as error:
+            return self.ask(place.guard)
+        except BaseException as error:
+            if is_interruption(error):
+                raise
             place.error = error
             return True
         finally:
             self.holder = None
+
+    def ask(self, guard: Guard) -> bool:
+        """Evaluate *guard* for the holder of the turn."""
+        self.asking = True
+        try:
+            answer = guard()
+        finally:
+            self.asking = False
+        if inspect.iscoroutine(answer):
+            answer.close()
+            raise InvalidArtifact("a guard must be a plain def that is true or false, not async")
+        return bool(answer)
 
     def _give(self, place: Place) -> None:
         self.holder = place.execution
