@@ -322,6 +322,13 @@ def plan_term(content: Term) -> bool:
     return content.__class__ is tuple and content[0] is PLAN
 
 
+def _undelivered(agent: Circumstance, message: SpeechAct) -> None:
+    """A message of the agent was accepted, but did not reach an agent of another process."""
+    agent.architecture.log(
+        "warning", f"a message did not reach {message.sender}: {text(resolve(message.content))}"
+    )
+
+
 _ACTIONS = {
     "tell": _tell,
     "untell": _untell,
@@ -338,4 +345,5 @@ _ACTIONS = {
     "ask-how": _ask_how,
     "tell-how": _tell_how,
     "untell-how": _untell_how,
+    "undelivered": _undelivered,
 }

@@ -6,38 +6,22 @@ body does them, with the same names, arguments and reasons of failure.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 from jacaros.bdi.act import Completion
 from jacaros.body.call import Call, artifact_argument, name_argument, workspace_argument
-from jacaros.body.completion import refused, succeeded
+from jacaros.body.completion import of_operation, refused, succeeded
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.selection import Selection
 from jacaros.body.values import References, to_value
 from jacaros.body.whereabouts import Whereabouts
-from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome
+from jacaros.env.ports import Environment, Told, UnderWay, Workspace
 from jacaros.env.values import Structure
-from jacaros.env.workspace import Workspace
 from jacaros.terms.text import text
 from jacaros.terms.unifier import equal
 from jacaros.terms.values import NIL, String, Term, Var, bare, is_list, make_list
-
-
-class Handle(Protocol):
-    """Something under way."""
-
-    def cancel(self) -> None:
-        """Give it up; its end is not told."""
-
-    def pause(self) -> None:
-        """Let it rest, if it can."""
-
-    def resume(self) -> None:
-        """Let it go on."""
-
 
 Finish = Callable[[Completion], None]
 """To be told how an action ended, once."""
@@ -66,7 +50,7 @@ class Situation:
     joined: Callable[[Workspace, bool], None]
 
 
-Action = Callable[[Situation, Call, Finish], Handle | None]
+Action = Callable[[Situation, Call, Finish], UnderWay | None]
 """Carries out a call; gives a handle on what is still under way.
 
 Raises OperationFailed when it cannot be done."""
@@ -128,8 +112,13 @@ def _workspace_of(situation: Situation, artifact: ArtifactId) -> Workspace:
     return situation.environment.workspace(artifact.workspace)
 
 
+def _told(situation: Situation, finish: Finish) -> Told:
+    """Let an action end as what was asked of a workspace ended."""
+    return lambda outcome: finish(of_operation(outcome, [], situation.references))
+
+
 @_action("makeArtifact", 2, 3, 4)
-def make_artifact(situation: Situation, call: Call, finish: Finish) -> Handle | None:
+def make_artifact(situation: Situation, call: Call, finish: Finish) -> UnderWay | None:
     """``makeArtifact(Name, Type [, Parameters] [, -Id])``: make an artifact in the current workspace."""
     arguments = call.arguments
     workspace, name = _place(situation, call, name_argument(arguments[0], call.name))
@@ -189,24 +178,23 @@ def get_current_artifacts(situation: Situation, call: Call, finish: Finish) -> N
 def dispose_artifact(situation: Situation, call: Call, finish: Finish) -> None:
     """``disposeArtifact(Id)``: end an artifact."""
     artifact = _artifact(situation, call)
-    _workspace_of(situation, artifact).dispose_artifact(artifact)
-    finish(succeeded())
+    _workspace_of(situation, artifact).dispose_artifact(artifact, _told(situation, finish))
 
 
 @_action("linkArtifacts", 3)
 def link_artifacts(situation: Situation, call: Call, finish: Finish) -> None:
     """``linkArtifacts(FromId, Port, ToId)``: put an artifact behind an out port of another one."""
     source, target = _artifact(situation, call), _artifact(situation, call, 2)
-    _workspace_of(situation, source).link(source, name_argument(call.arguments[1], call.name), target)
-    finish(succeeded())
+    port = name_argument(call.arguments[1], call.name)
+    _workspace_of(situation, source).link(source, port, target, _told(situation, finish))
 
 
 @_action("focus", 1)
 def focus(situation: Situation, call: Call, finish: Finish) -> None:
     """``focus(Id)``: perceive an artifact from now on; its name will do as well."""
     artifact = _artifact(situation, call)
-    situation.focused.begin(_workspace_of(situation, artifact), artifact, call.namespace)
-    finish(succeeded())
+    workspace = _workspace_of(situation, artifact)
+    situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish))
 
 
 class _Waiting:
@@ -226,20 +214,18 @@ class _Waiting:
 
 
 @_action("focusWhenAvailable", 1)
-def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Handle | None:
+def focus_when_available(situation: Situation, call: Call, finish: Finish) -> UnderWay | None:
     """``focusWhenAvailable(Name)``: wait until the current workspace has it, and focus it."""
     workspace, wanted = _place(situation, call, name_argument(call.arguments[0], call.name))
     present = next((a for a in workspace.artifacts() if a.name == wanted), None)
     if present is not None:
-        situation.focused.begin(workspace, present, call.namespace)
-        finish(succeeded())
+        situation.focused.begin(workspace, present, call.namespace, _told(situation, finish))
         return None
 
     def look(artifact: ArtifactId, is_there: bool) -> None:
         if is_there and artifact.name == wanted:
             stop()
-            situation.focused.begin(workspace, artifact, call.namespace)
-            finish(succeeded())
+            situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish))
 
     stop = workspace.watch(look)
     return _Waiting(stop)

@@ -5,7 +5,7 @@ from functools import partial
 from typing import Protocol
 
 from jacaros.bdi.act import Act, Completion, Percept
-from jacaros.body.actions import ACTIONS, Handle, Situation, keys
+from jacaros.body.actions import ACTIONS, Situation, keys
 from jacaros.body.call import Call, read
 from jacaros.body.completion import SUCCEEDED, of_operation, refused, succeeded
 from jacaros.body.focus import FocusedArtifacts
@@ -13,11 +13,10 @@ from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.selection import Selection
 from jacaros.body.values import Outputs, References, atom_of, to_value
 from jacaros.body.whereabouts import Whereabouts
-from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.workspace import Workspace
+from jacaros.env.ports import Environment, UnderWay, Workspace
 from jacaros.terms.text import display
 from jacaros.terms.values import String
 
@@ -80,7 +79,7 @@ class AgentBody:
         self._show = show
         self._activity = activity
         # Acts under way; without a handle while the call that begins them has not returned.
-        self._pending: dict[int, Handle | None] = {}
+        self._pending: dict[int, UnderWay | None] = {}
         self._entered = self._closed = False
         self._whereabouts = Whereabouts(environment, home)
         focused = FocusedArtifacts(agent, writer, references, self._notice)
@@ -172,7 +171,7 @@ class AgentBody:
         for workspace in self._whereabouts.joined():
             self._situation.focused.end_all(workspace)
 
-    def _begin(self, call: Call) -> Handle | None:
+    def _begin(self, call: Call) -> UnderWay | None:
         if call.direction.artifact is None:
             action = ACTIONS.get((call.name, len(call.arguments)))
             if action is not None:
@@ -185,7 +184,7 @@ class AgentBody:
             return None
         return self._execute(call, artifact)
 
-    def _execute(self, call: Call, artifact: ArtifactId) -> Handle:
+    def _execute(self, call: Call, artifact: ArtifactId) -> UnderWay:
         act = call.act
         outputs: Outputs = []
         arguments = []

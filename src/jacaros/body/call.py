@@ -7,8 +7,8 @@ from jacaros.body.undelivered import unknown_annotation, unreachable
 from jacaros.body.values import symbol_name, unquoted
 from jacaros.env.errors import OperationFailed, spelling_hint
 from jacaros.env.ids import ArtifactId
+from jacaros.env.ports import Workspace
 from jacaros.env.values import Structure
-from jacaros.env.workspace import Workspace
 from jacaros.terms.text import text
 from jacaros.terms.values import Functor, Reference, String, Term, Var, bare, deref
 

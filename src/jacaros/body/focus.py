@@ -7,7 +7,8 @@ from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.values import References, atom_of
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
-from jacaros.env.workspace import Workspace
+from jacaros.env.operation import SUCCEEDED, OperationOutcome, ignore_outcome
+from jacaros.env.ports import Told, Workspace
 from jacaros.terms.values import String, Term
 
 Notice = Callable[[list[Percept]], None]
@@ -68,15 +69,30 @@ class FocusedArtifacts:
         """The focused artifacts of a workspace."""
         return tuple(a for a in self._focused if a.workspace == workspace.path)
 
-    def begin(self, workspace: Workspace, artifact: ArtifactId, namespace: str | None) -> None:
-        """Focus an artifact; without effect when it is focused in that namespace already.
+    def begin(
+        self,
+        workspace: Workspace,
+        artifact: ArtifactId,
+        namespace: str | None,
+        on_done: Told = ignore_outcome,
+    ) -> None:
+        """Focus an artifact, and tell *on_done*; without effect when it is focused in that namespace already.
 
         Raises:
-            OperationFailed: the artifact is gone.
+            OperationFailed: the artifact is known to be gone.
         """
         if namespace in self._focused.get(artifact, ()):
+            on_done(SUCCEEDED)
             return
-        workspace.focus(artifact, self._observer(namespace))
+
+        def focused(outcome: OperationOutcome) -> None:
+            if outcome.ok:
+                self._take(workspace, artifact, namespace)
+            on_done(outcome)
+
+        workspace.focus(artifact, self._observer(namespace), focused)
+
+    def _take(self, workspace: Workspace, artifact: ArtifactId, namespace: str | None) -> None:
         is_first = artifact not in self._focused
         self._focused.setdefault(artifact, {})[namespace] = workspace
         self._watch(workspace)

@@ -17,7 +17,7 @@ from jacaros.body.whereabouts import Whereabouts, not_joined
 from jacaros.env.choice import artifact_named, chosen_artifact
 from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
-from jacaros.env.workspace import Workspace
+from jacaros.env.ports import Workspace
 
 
 class Selection:
@@ -130,8 +130,7 @@ class Selection:
         offers: dict[str, str] = dict.fromkeys(self._own_actions, "")
         for workspace in places:
             for artifact in workspace.artifacts():
-                operations = workspace.interface(artifact).operations
-                for key in operations.keys():  # noqa: SIM118 - it is no dictionary
+                for key in workspace.offers(artifact):
                     offers.setdefault(key, f" of '{artifact.name}'")
         if call.name.startswith("."):
             return _internal_action_hint(call.name)

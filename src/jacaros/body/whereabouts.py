@@ -3,11 +3,10 @@
 from collections import OrderedDict
 from collections.abc import Iterator
 
-from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import resolve_path
+from jacaros.env.ports import Environment, Workspace
 from jacaros.env.values import Structure
-from jacaros.env.workspace import Workspace
 
 
 class Whereabouts:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from jacaros.env.errors import UnknownArtifact
 from jacaros.env.ids import ArtifactId
-from jacaros.env.workspace import Workspace
+from jacaros.env.ports import Workspace
 
 
 def chosen_artifact(
@@ -57,13 +57,9 @@ def _preferred(
     own: str,
     focused: Sequence[ArtifactId],
 ) -> ArtifactId:
-    candidates = [c for c in candidates if _is_exact(workspace, c, operation, arity)] or candidates
+    exact = f"{operation}/{arity}"
+    candidates = [c for c in candidates if exact in workspace.offers(c)] or candidates
     for candidate in candidates:
         if candidate.creator == own:
             return candidate
     return next((artifact for artifact in focused if artifact in candidates), candidates[0])
-
-
-def _is_exact(workspace: Workspace, artifact: ArtifactId, operation: str, arity: int) -> bool:
-    found = workspace.interface(artifact).operations.find(operation, arity)
-    return found is not None and found.signature.rest is None

@@ -3,15 +3,16 @@
 from collections.abc import Callable, Mapping
 
 from jacaros.clock import Clock
+from jacaros.env import ports
 from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType
 from jacaros.env.default.blackboard import Blackboard
 from jacaros.env.default.console import Console
 from jacaros.env.errors import OperationFailed, UnknownArtifactType, UnknownWorkspace, spelling_hint
-from jacaros.env.execution import OperationExecution
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
 from jacaros.env.operation import OPERATION, OperationRequest
+from jacaros.env.ports import UnderWay
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
 from jacaros.trace import Tracer
@@ -51,7 +52,8 @@ class Environment:
         self._setting = Setting(clock, resources or {}, log, None, on_internal_error)
         self._find_type = find_type
         self._registry = Registry()
-        self._workspaces: dict[str, Workspace] = {}
+        self._workspaces: dict[str, ports.Workspace] = {}
+        self._own: list[Workspace] = []
         self._add("/main")
 
     @property
@@ -73,11 +75,11 @@ class Environment:
     def tracer(self, tracer: Tracer | None) -> None:
         self._setting.tracer = tracer
 
-    def workspaces(self) -> tuple[Workspace, ...]:
+    def workspaces(self) -> tuple[ports.Workspace, ...]:
         """All workspaces, the oldest first."""
         return tuple(self._workspaces.values())
 
-    def workspace(self, path: str) -> Workspace:
+    def workspace(self, path: str) -> ports.Workspace:
         """The workspace with that full path.
 
         Raises:
@@ -101,24 +103,50 @@ class Environment:
             UnknownWorkspace: the workspace above it is not there.
         """
         path = str.__str__(path)
+        above = self._check_free(path)
+        if above not in self._own:
+            raise OperationFailed(
+                f"workspace {above.path} is served from elsewhere: {path} is to be made there"
+            )
+        return self._add(path)
+
+    def _check_free(self, path: str) -> ports.Workspace:
+        """See whether a workspace can be made at *path*; the workspace above it."""
         if path in self._workspaces:
             reason = Structure("workspace_already_present", (path,))
             raise OperationFailed(f"there is a workspace {path} already", reason)
-        self.workspace(path.rpartition("/")[0])
-        return self._add(path)
+        return self.workspace(path.rpartition("/")[0])
 
     def _add(self, path: str) -> Workspace:
         workspace = Workspace(path, self._registry, self._setting, self._find_type)
         self._workspaces[path] = workspace
+        self._own.append(workspace)
         for name, artifact_type in DEFAULT_ARTIFACTS:
             workspace.create(name, artifact_type)
         return workspace
 
-    def execute(self, request: OperationRequest) -> OperationExecution:
+    def mount(self, workspace: ports.Workspace) -> Callable[[], None]:
+        """Make a workspace visible here that is served from elsewhere, under its `path`; gives what ends that.
+
+        Raises:
+            OperationFailed: there is one at that path already; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the workspace above it is not there.
+        """
+        path = workspace.path
+        self._check_free(path)
+        self._workspaces[path] = workspace
+
+        def unmount() -> None:
+            if self._workspaces.get(path) is workspace:
+                del self._workspaces[path]
+
+        return unmount
+
+    def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation for an agent, wherever the artifact lives; see `Workspace.execute`."""
         steps = self._registry.find(request.artifact)
         if steps is None:
-            return self._workspaces["/main"].execute(request)
+            return self._workspaces.get(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)
 
     def log_error(self, who: str, what: str, error: BaseException) -> None:
@@ -126,6 +154,6 @@ class Environment:
         self._setting.log_error(who, what, error)
 
     async def close(self) -> None:
-        """Dispose every artifact, the workspaces made last first."""
-        for workspace in reversed(self.workspaces()):
+        """Dispose every artifact, the workspaces made last first; those served from elsewhere are left alone."""
+        for workspace in reversed(self._own):
             await workspace.close()

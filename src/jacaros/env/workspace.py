@@ -1,9 +1,10 @@
 """Workspaces: where artifacts are made, found, focused, linked, used and disposed."""
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 
+from jacaros.env import ports
 from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType, artifact_type_of, attach, init_failed, init_of, refused
 from jacaros.env.errors import OperationFailed, UnknownArtifact, spelling_hint
@@ -15,20 +16,21 @@ from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
 from jacaros.env.observation import Observer
-from jacaros.env.operation import LINK, OPERATION, SUCCEEDED, OperationOutcome, OperationRequest
+from jacaros.env.operation import (
+    LINK,
+    OPERATION,
+    SUCCEEDED,
+    OperationOutcome,
+    OperationRequest,
+    ignore_outcome,
+)
+from jacaros.env.ports import Made, Told, nobody_waits
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Structure
 from jacaros.trace import Cause
 
-Made = Callable[[ArtifactId | None, OperationOutcome], None]
-"""Told what came of making an artifact: its id, or None and why not."""
 
-
-def _nobody_waits(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
-    """Take what came of making an artifact that nobody waits for."""
-
-
-class Workspace:
+class Workspace(ports.Workspace):
     """A named place for artifacts; made by `Environment.create_workspace`.
 
     Ids are good in the whole environment: what takes an id works for artifacts of other workspaces too.
@@ -45,46 +47,10 @@ class Workspace:
         self._artifacts: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
         self._providers: dict[tuple[str, int], tuple[ArtifactId, ...]] = {}
+        self._offers: dict[ArtifactId, dict[str, None]] = {}
         self._watchers: list[Callable[[ArtifactId, bool], None]] = []
 
     # ---- artifacts come and go
-
-    async def make_artifact(
-        self,
-        name: str,
-        type_name: str | type[Artifact],
-        args: Sequence[object] = (),
-        creator: str | None = None,
-    ) -> ArtifactId:
-        """Make an artifact and wait until its ``init`` has ended.
-
-        Args:
-            name: unique in the workspace.
-            type_name: looked up by the environment's ``find_type``; or the class itself.
-            args: plain values for ``init``.
-            creator: the agent that makes it.
-
-        Raises:
-            OperationFailed: with reason ``makeArtifactFailure(Why,What)``, where Why is
-                ``"artifact_already_present"``, ``"unknown_artifact_template"`` (What is the type) or
-                ``"init_failed"``; nothing is left behind.
-        """
-        made: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
-
-        def on_done(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> None:
-            if made.done():
-                return
-            if artifact_id is not None:
-                made.set_result(artifact_id)
-            else:
-                made.set_exception(OperationFailed(outcome.message or "", outcome.reason))
-
-        execution = self.create(name, type_name, args, creator, on_done)
-        try:
-            return await made
-        except asyncio.CancelledError:
-            execution.cancel()
-            raise
 
     def create(
         self,
@@ -92,7 +58,7 @@ class Workspace:
         type_name: str | type[Artifact],
         args: Sequence[object] = (),
         creator: str | None = None,
-        on_done: Made = _nobody_waits,
+        on_done: Made = nobody_waits,
         cause: Cause | None = None,
     ) -> OperationExecution:
         """Make an artifact like `make_artifact`, and tell *on_done*.
@@ -145,7 +111,7 @@ class Workspace:
         self._changed(steps.id, True)
         on_done(steps.id, SUCCEEDED)
 
-    def dispose_artifact(self, artifact_id: ArtifactId) -> None:
+    def dispose_artifact(self, artifact_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
         """End an artifact: observers are told that its properties are gone, its operations fail.
 
         Its `Artifact.dispose` runs when the last operation has ended, which may be after this returns.
@@ -154,6 +120,7 @@ class Workspace:
             UnknownArtifact: it is gone already.
         """
         self._registry.dispose(self._steps_of(artifact_id))
+        on_done(SUCCEEDED)
 
     def _forget(self, artifact_id: ArtifactId) -> None:
         del self._artifacts[artifact_id.name]
@@ -219,9 +186,21 @@ class Workspace:
             self._providers[operation, arity] = found
         return found
 
+    def offers(self, artifact_id: ArtifactId) -> Collection[str]:
+        """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        found = self._offers.get(artifact_id)
+        if found is None:
+            found = self._offers[artifact_id] = dict.fromkeys(self.interface(artifact_id).operations.keys())
+        return found
+
     def operations_changed(self) -> None:
         """Be told that an artifact has other operations now."""
         self._providers.clear()
+        self._offers.clear()
 
     def interface(self, artifact_id: ArtifactId) -> Interface:
         """The operations of an artifact.
@@ -280,7 +259,7 @@ class Workspace:
         request.on_done(outcomes.not_available(request.artifact))
         return refused_execution
 
-    def focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
+    def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: Told = ignore_outcome) -> None:
         """Let *observer* receive what an artifact publishes, beginning with all its properties.
 
         Focusing again has no effect.
@@ -289,6 +268,7 @@ class Workspace:
             UnknownArtifact: it is gone.
         """
         self._steps_of(artifact_id).publication.add(observer)
+        on_done(SUCCEEDED)
 
     def stop_focus(self, artifact_id: ArtifactId, observer: Observer) -> None:
         """Let *observer* receive nothing more, after the removal of all properties.
@@ -299,7 +279,7 @@ class Workspace:
         if steps is not None:
             steps.publication.remove(observer)
 
-    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
+    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
         """Put an artifact behind an out port of another one, beside those that are there.
 
         Raises:
@@ -313,6 +293,7 @@ class Workspace:
             message = f"artifact {from_id.name} ({from_id.type_name}) has no out port {port}{offer}"
             raise OperationFailed(message, Structure("unknown_port", (str.__str__(port),)))
         self._registry.link(from_id, port, to_id)
+        on_done(SUCCEEDED)
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """The artifacts behind an out port, in the order of linking."""
@@ -327,6 +308,7 @@ class Workspace:
 
     def _changed(self, artifact_id: ArtifactId, present: bool) -> None:
         self._providers.clear()
+        self._offers.clear()
         for watcher in tuple(self._watchers):
             try:
                 watcher(artifact_id, present)

@@ -14,8 +14,8 @@ from jacaros.clock import Clock
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.console import Console
 from jacaros.mas.coroutines import Coroutines, Ended
+from jacaros.mas.ports import Services
 from jacaros.mas.scheduler import Scheduler
-from jacaros.mas.service_directory import ServiceDirectory
 from jacaros.terms.values import String, Term, atom, functor
 
 OUTPUT_GONE = 141
@@ -91,7 +91,7 @@ class Run(Protocol):
     console: Console
 
     @property
-    def services(self) -> ServiceDirectory:
+    def services(self) -> Services:
         """The directory facilitator."""
 
     def deliver(self, message: SpeechAct) -> bool:

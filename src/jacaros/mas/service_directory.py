@@ -13,9 +13,12 @@ from jacaros.terms.values import BY_SELF, Annotated, String, Term, atom, functor
 NAME = "df"
 _PROVIDER, _SUBSCRIBE = functor("provider", 2), functor("subscribe", 2)
 
+Watcher = Callable[[str, str, bool], None]
+"""Told of an agent, a service, and whether the agent provides it from now on."""
+
 
 class ServiceDirectory:
-    """Keeps providers and subscribers of services.
+    """Keeps providers and subscribers of services; it is the `jacaros.mas.ports.Services` of a run.
 
     Args:
         make: makes the agent that keeps them.
@@ -26,6 +29,7 @@ class ServiceDirectory:
         self._make = make
         self._deliver = deliver
         self._agent: Agent | None = None
+        self._watchers: list[Watcher] = []
 
     @property
     def agent(self) -> Agent:
@@ -38,6 +42,7 @@ class ServiceDirectory:
         """An agent provides a service; its subscribers are told."""
         if name not in self.providers(service):
             belief_update.tell(self.agent, (_PROVIDER, atom(name), String(service)))
+            self._changed(name, service, True)
         for subscriber in self._held(_SUBSCRIBE, service):
             self._tell(subscriber, name, service)
 
@@ -45,6 +50,7 @@ class ServiceDirectory:
         """It does not any more."""
         believed = Annotated((_PROVIDER, atom(name), String(service)), BY_SELF)
         belief_update.untell(self.agent, believed)
+        self._changed(name, service, False)
 
     def providers(self, service: str) -> Sequence[str]:
         """The agents that provide a service, in the order of their registration."""
@@ -56,6 +62,18 @@ class ServiceDirectory:
             belief_update.tell(self.agent, (_SUBSCRIBE, atom(name), String(service)))
         for provider in self.providers(service):
             self._tell(name, provider, service)
+
+    def watch(self, watcher: Watcher) -> Callable[[], None]:
+        """Call *watcher* whenever an agent begins (True) or ceases (False) to provide a service; gives what ends that.
+
+        For those that keep a copy elsewhere.
+        """
+        self._watchers.append(watcher)
+        return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None
+
+    def _changed(self, name: str, service: str, provides: bool) -> None:
+        for watcher in tuple(self._watchers):
+            watcher(name, service, provides)
 
     def _held(self, symbol: Term, service: str) -> list[str]:
         found = [row for row, _ in self.agent.beliefs[symbol].entries() if row[1] == String(service)]

@@ -11,7 +11,7 @@ from jacaros.body.values import References
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
-from jacaros.env.workspace import Workspace
+from jacaros.env.ports import Workspace
 from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console

@@ -19,6 +19,7 @@ from jacaros.mas.idleness import Idleness
 from jacaros.mas.mailboxes import Mailboxes
 from jacaros.mas.options import RunOptions
 from jacaros.mas.population import Population, begin
+from jacaros.mas.ports import Services
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
@@ -48,14 +49,15 @@ class System:
         when_idle: called whenever no agent has anything to do or to wait for.
 
     Attributes:
-        directory: the agents by name.
+        directory: the agents by name, and other participants.
         ros: the ROS graph and the embedded world.
         scheduler: gives the agents their turns.
         activity: what the agents wait for.
         idleness: tells when nobody has anything to do.
         population: makes and ends agents.
+        mailboxes: the messages between agents.
         deliver: brings a message to its receiver; False when there is none.
-        services: the directory facilitator.
+        services: the directory facilitator; another one may be put here before the run starts.
     """
 
     def __init__(
@@ -84,8 +86,9 @@ class System:
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
         if self.options.until_idle or when_idle is not None:
             self.idleness.watch(when_idle or (lambda: self.end(0)))
-        self.deliver = Mailboxes(self.directory.find).deliver
-        self.services = ServiceDirectory(self._make_directory_agent, self.deliver)
+        self.mailboxes = Mailboxes(self.directory.find, self.directory.find_other)
+        self.deliver = self.mailboxes.deliver
+        self.services: Services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
         self.population = self._found(prepare, when_made)

@@ -62,7 +62,11 @@ def _say(
 
 
 def _nobody(receiver: str) -> ActionError:
-    return ActionError(f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found")))
+    return ActionError(*_nobody_there(receiver))
+
+
+def _nobody_there(receiver: str) -> tuple[str, Term]:
+    return f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
 
 
 def _direct(written: Written) -> Any:
@@ -142,6 +146,10 @@ class _Question:
     def answered(self, message: SpeechAct) -> None:
         """An answer has come."""
         self.ctx.agent.pending_asks.pop(message.in_reply_to, None)
+        if message.performative == "undelivered":
+            self.forget()
+            self.waiting.fail(*_nobody_there(message.sender))
+            return
         content = atom("false") if message.performative == "untell" else self._with_source(message)
         self.answers.append(content)
         if len(self.answers) == len(self.missing):
