@@ -116,8 +116,8 @@ class Selection:
             if artifact in workspace.providers(call.name, len(call.arguments)):
                 return artifact
             if namesake is None:
-                operations = workspace.interface(artifact).operations
-                namesake = artifact if any(each.name == call.name for each in operations) else None
+                names = (key.rpartition("/")[0] for key in workspace.offers(artifact))
+                namesake = artifact if call.name in names else None
         return namesake
 
     def _nobody(self, call: Call, places: Sequence[Workspace]) -> str:

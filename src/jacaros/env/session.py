@@ -11,12 +11,12 @@ from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome, OperationRequest
+from jacaros.env.ports import Workspace
 from jacaros.env.session_account import Account
 from jacaros.env.session_operation import SessionOperation
 from jacaros.env.session_perception import Perceiving
 from jacaros.env.session_workspaces import SessionWorkspaces
 from jacaros.env.values import Structure, plain
-from jacaros.env.workspace import Workspace
 
 
 class Session(Perceiving):
@@ -337,8 +337,7 @@ def _offer(places: Sequence[Workspace], operation: str) -> str:
     """What there is of that name, with another number of arguments."""
     for place in places:
         for artifact in place.artifacts():
-            keys = place.interface(artifact).operations.keys()
-            same = [key for key in keys if key.rpartition("/")[0] == operation]
+            same = [key for key in place.offers(artifact) if key.rpartition("/")[0] == operation]
             if same:
                 return f"; {artifact.name} has {', '.join(same)}"
     return ""

@@ -6,8 +6,8 @@ from typing import Any
 
 from jacaros.clock import Clock, Timer
 from jacaros.env.errors import OperationFailed
-from jacaros.env.execution import OperationExecution
 from jacaros.env.operation import OperationOutcome
+from jacaros.env.ports import UnderWay
 from jacaros.env.values import Atom, Out, Structure
 
 
@@ -34,7 +34,7 @@ class SessionOperation:
         self._complain = complain
         self.outcome: OperationOutcome | None = None
         self._outs = tuple(each for each in arguments if isinstance(each, Out))
-        self._execution: OperationExecution | None = None
+        self._execution: UnderWay | None = None
         self._timer: Timer | None = None
         self._on_end: list[Callable[[SessionOperation], object]] = []
         self._waiting: list[asyncio.Future[None]] = []
@@ -95,7 +95,7 @@ class SessionOperation:
 
     # ---- for the session
 
-    def began(self, execution: OperationExecution, clock: Clock, timeout: float | None) -> None:
+    def began(self, execution: UnderWay, clock: Clock, timeout: float | None) -> None:
         """Be told what carries it out, and how many seconds it may take."""
         if self.done:
             return

@@ -3,8 +3,8 @@
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId, resolve_path
+from jacaros.env.ports import Workspace
 from jacaros.env.values import Structure
-from jacaros.env.workspace import Workspace
 
 
 class SessionWorkspaces:
