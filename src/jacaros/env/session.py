@@ -245,7 +245,7 @@ class Session(Perceiving):
                 one, home, the others); where several artifacts offer the operation, one made by this session
                 comes before one that it focuses, and that before others.
             workspace: path or name of the workspace of the artifact.
-            timeout: seconds that it may take.
+            timeout: seconds that it may take; then it fails with ``operation_timeout(Operation,Milliseconds)``.
 
         Returns:
             The values of the `Out` arguments: None without any, the value of the one, a tuple of several.
@@ -281,9 +281,14 @@ class Session(Perceiving):
         except OperationFailed as failure:
             handle.end(OperationOutcome(False, failure.message, failure.reason))
             return handle
-        request = OperationRequest(target, operation, given, self.name, None, handle.end)
-        handle.began(self.environment.execute(request), self.clock, timeout)
+        request = OperationRequest(target, operation, given, self.name, None, handle.end, timeout)
+        handle.began(self.environment.execute(request))
         return handle
+
+    def cancel_operations(self) -> None:
+        """Cancel all operations under way."""
+        for handle in tuple(self._under_way):
+            handle.cancel()
 
     def _ended(self, handle: SessionOperation) -> None:
         del self._under_way[handle]
@@ -315,8 +320,7 @@ class Session(Perceiving):
         if self._closed:
             return
         self._closed = True
-        for handle in tuple(self._under_way):
-            handle.cancel()
+        self.cancel_operations()
         for stop_watching in self._watched.values():
             stop_watching()
         self._end_perceiving()

@@ -4,11 +4,10 @@ import asyncio
 from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
-from jacaros.clock import Clock, Timer
 from jacaros.env.errors import OperationFailed
 from jacaros.env.operation import OperationOutcome
 from jacaros.env.ports import UnderWay
-from jacaros.env.values import Atom, Out, Structure
+from jacaros.env.values import Atom, Out
 
 
 class SessionOperation:
@@ -35,7 +34,6 @@ class SessionOperation:
         self.outcome: OperationOutcome | None = None
         self._outs = tuple(each for each in arguments if isinstance(each, Out))
         self._execution: UnderWay | None = None
-        self._timer: Timer | None = None
         self._on_end: list[Callable[[SessionOperation], object]] = []
         self._waiting: list[asyncio.Future[None]] = []
 
@@ -63,7 +61,10 @@ class SessionOperation:
 
     def cancel(self) -> None:
         """End it, with the reason ``cancelled``: its ``finally`` runs, a motion ends; nothing if it has ended."""
-        self._give_up(f"operation {self.operation} was cancelled", Atom("cancelled"))
+        if not self.done:
+            if self._execution is not None:
+                self._execution.cancel()
+            self.end(OperationOutcome(False, f"operation {self.operation} was cancelled", Atom("cancelled")))
 
     def pause(self) -> None:
         """Ask it to rest, which it does if it is pausable."""
@@ -95,31 +96,16 @@ class SessionOperation:
 
     # ---- for the session
 
-    def began(self, execution: UnderWay, clock: Clock, timeout: float | None) -> None:
-        """Be told what carries it out, and how many seconds it may take."""
-        if self.done:
-            return
-        self._execution = execution
-        if timeout is not None:
-            self._timer = clock.call_later(timeout, lambda: self._time_over(timeout))
-
-    def _time_over(self, timeout: float) -> None:
-        message = f"operation {self.operation} took longer than {timeout:g} s"
-        self._give_up(message, Structure("operation_timeout", (str.__str__(self.operation),)))
-
-    def _give_up(self, message: str, reason: Structure | Atom) -> None:
+    def began(self, execution: UnderWay) -> None:
+        """Be told what carries it out."""
         if not self.done:
-            if self._execution is not None:
-                self._execution.cancel()
-            self.end(OperationOutcome(False, message, reason))
+            self._execution = execution
 
     def end(self, outcome: OperationOutcome) -> None:
         """Be told what came of it; what comes later is not heard any more."""
         if self.done:
             return
         self.outcome = outcome
-        if self._timer is not None:
-            self._timer.cancel()
         waiting, self._waiting = self._waiting, []
         for ended in waiting:
             if not ended.done():
