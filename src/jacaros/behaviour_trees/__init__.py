@@ -1,0 +1,45 @@
+"""Artifacts for behaviour trees: behaviours of py_trees that use and observe artifacts, and what ticks them.
+
+Nothing here knows of agents: a tree is another user of an environment, beside agents or without any.  It needs
+py_trees, which the extra ``behaviour-trees`` of the package installs.
+"""
+
+try:
+    import py_trees as _py_trees  # noqa: F401 - told with its cure before anything else needs it
+except ModuleNotFoundError as missing:
+    if missing.name != "py_trees":
+        raise
+    raise ModuleNotFoundError(
+        "behaviour trees need py_trees, which is not installed: pip install 'jacaros[behaviour-trees]'",
+        name="py_trees",
+    ) from missing
+
+from jacaros.behaviour_trees.act import Act, Failure
+from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
+from jacaros.behaviour_trees.keys import FromBlackboard, ToBlackboard
+from jacaros.behaviour_trees.properties import (
+    HasProperty,
+    PropertiesToBlackboard,
+    PropertyCheck,
+    WaitForProperty,
+)
+from jacaros.behaviour_trees.signals import OnSignal, WaitForSignal
+from jacaros.behaviour_trees.timing import Timeout, Timer
+from jacaros.behaviour_trees.tree_runner import TreeRunner
+
+__all__ = [
+    "Act",
+    "ArtifactBehaviour",
+    "Failure",
+    "FromBlackboard",
+    "HasProperty",
+    "OnSignal",
+    "PropertiesToBlackboard",
+    "PropertyCheck",
+    "Timeout",
+    "Timer",
+    "ToBlackboard",
+    "TreeRunner",
+    "WaitForProperty",
+    "WaitForSignal",
+]

@@ -1,0 +1,82 @@
+"""What all behaviours that use artifacts have in common."""
+
+from collections.abc import Callable
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Access
+
+from jacaros.clock import Clock
+from jacaros.env.session import Session
+
+
+def nothing() -> None:
+    """Do nothing: nobody wants to be woken."""
+
+
+def session_of(behaviour: Behaviour, given: dict[str, Any]) -> Session:
+    """The session that a behaviour is set up with.
+
+    Raises:
+        TypeError: there is none.
+    """
+    session = given.get("session")
+    if not isinstance(session, Session):
+        raise TypeError(
+            f"behaviour '{behaviour.name}' has no session: let a TreeRunner tick its tree, or set the tree up "
+            "with tree.setup(session=Session(environment, name))"
+        )
+    return session
+
+
+class ArtifactBehaviour(Behaviour):
+    """A behaviour that uses artifacts; behaviours of a project may derive from it too.
+
+    Attributes:
+        session: how the tree takes part in the environment; there from `setup` on.
+        wake: asks for a tick soon, because something has happened that the behaviour waits for.
+    """
+
+    session: Session
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.wake: Callable[[], None] = nothing
+        self.board = self.attach_blackboard_client()
+        self._told: str | None = None
+
+    def setup(self, **given: Any) -> None:
+        """Be joined with the environment; `TreeRunner` does it, or ``tree.setup(session=...)``.
+
+        Args:
+            given: ``session``, a `Session`; ``wake``, what `wake` is to be, may be left out.
+
+        Raises:
+            TypeError: no session is given.
+        """
+        self.session = session_of(self, given)
+        self.wake = given.get("wake", nothing)
+        self._told = None
+
+    def let_go(self) -> None:
+        """Give up at once what is under way: the tree ends, perhaps in disorder."""
+
+    @property
+    def clock(self) -> Clock:
+        """Where the behaviour takes time from."""
+        return self.session.clock
+
+    def may_read(self, key: str) -> None:
+        """Announce to the blackboard that this behaviour reads *key*, or an attribute of it."""
+        self.board.register_key(key.partition(".")[0], Access.READ)
+
+    def may_write(self, key: str) -> None:
+        """Announce to the blackboard that this behaviour writes *key*."""
+        self.board.register_key(key, Access.WRITE)
+
+    def complain(self, what: str, error: Exception) -> None:
+        """Show in ``feedback_message`` that the author's own code raised, and log it; not at every tick."""
+        self.feedback_message = f"{what} raised {type(error).__name__}: {error}"
+        if self.feedback_message != self._told:
+            self._told = self.feedback_message
+            self.session.complain(f"behaviour '{self.name}': {what} failed:", error)

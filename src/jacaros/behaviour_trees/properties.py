@@ -1,0 +1,136 @@
+"""Behaviours that look at the observable properties of focused artifacts."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+from py_trees.common import Status
+
+from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
+from jacaros.env.errors import OperationFailed
+from jacaros.env.ids import ArtifactId
+from jacaros.env.observed import ObservedProperty
+from jacaros.env.values import equal, plain, text
+
+
+class PropertyCheck(ArtifactBehaviour):
+    """SUCCESS when a property has values that fit, otherwise FAILURE; of several with one name, one is enough.
+
+    Args:
+        property_name: its name.
+        predicate: called with the values of the property, such as ``lambda level: level > 20``; without it any values
+            fit.  When it raises, the behaviour fails.
+        artifact: which one has it; without it any that is focused.
+        name: of the behaviour; the property's name with a question mark unless given.
+    """
+
+    otherwise = Status.FAILURE
+
+    def __init__(
+        self,
+        property_name: str,
+        predicate: Callable[..., object] | None = None,
+        *,
+        artifact: ArtifactId | str | None = None,
+        name: str | None = None,
+    ) -> None:
+        super().__init__(name or f"{property_name}?")
+        self.property_name, self.predicate, self.artifact = property_name, predicate, artifact
+
+    def update(self) -> Status:
+        """Look at the property."""
+        try:
+            seen = self.session.properties(self.property_name, artifact=self.artifact)
+        except OperationFailed as failure:
+            self.feedback_message = failure.message
+            return self.otherwise
+        self.feedback_message = ", ".join(map(_shown, seen)) or f"nobody shows {self.property_name}"
+        try:
+            return Status.SUCCESS if any(map(self._fits, seen)) else self.otherwise
+        except Exception as error:
+            self.complain("its predicate", error)
+            return Status.FAILURE
+
+    def _fits(self, seen: ObservedProperty) -> bool:
+        return self.predicate is None or bool(self.predicate(*seen.values))
+
+
+class WaitForProperty(PropertyCheck):
+    """Like `PropertyCheck`, but RUNNING until it fits."""
+
+    otherwise = Status.RUNNING
+
+
+class HasProperty(PropertyCheck):
+    """SUCCESS when a property has these values, otherwise FAILURE.
+
+    Args:
+        property_name: its name.
+        values: all its values; none of them fits any.
+        artifact: which one has it; without it any that is focused.
+        name: of the behaviour; such as ``holder(driver)?`` unless given.
+    """
+
+    def __init__(
+        self,
+        property_name: str,
+        *values: object,
+        artifact: ArtifactId | str | None = None,
+        name: str | None = None,
+    ) -> None:
+        wanted = [plain(value) for value in values]
+        shown = f"{property_name}({', '.join(map(text, wanted))})" if wanted else property_name
+        super().__init__(
+            property_name,
+            (lambda *found: equal(list(found), wanted)) if wanted else None,
+            artifact=artifact,
+            name=name or f"{shown}?",
+        )
+
+
+class PropertiesToBlackboard(ArtifactBehaviour):
+    """Copy properties to the blackboard at every tick; always SUCCESS.
+
+    A property with one value gives that value, any other a tuple; of several with one name it is the first.  The key of
+    a property that is not there is removed.  As with topics, its place is the first one below a ``Parallel``.
+
+    Args:
+        properties: names of properties, each its own key; or a dictionary from names to keys.
+        artifact: which one has them; without it any that is focused.
+        name: of the behaviour.
+    """
+
+    def __init__(
+        self,
+        properties: str | Sequence[str] | Mapping[str, str],
+        *,
+        artifact: ArtifactId | str | None = None,
+        name: str = "properties to blackboard",
+    ) -> None:
+        super().__init__(name)
+        if isinstance(properties, str):
+            properties = [properties]
+        self.keys = (
+            dict(properties) if isinstance(properties, Mapping) else {each: each for each in properties}
+        )
+        self.artifact = artifact
+        for key in self.keys.values():
+            self.may_write(key)
+
+    def update(self) -> Status:
+        """Copy."""
+        missing = [name for name, key in self.keys.items() if not self._copy(name, key)]
+        self.feedback_message = f"nobody shows {', '.join(missing)}" if missing else ""
+        return Status.SUCCESS
+
+    def _copy(self, name: str, key: str) -> bool:
+        try:
+            values = self.session.properties(name, artifact=self.artifact)[0].values
+        except (OperationFailed, IndexError):
+            self.board.unset(key)
+            return False
+        self.board.set(key, values[0] if len(values) == 1 else values)
+        return True
+
+
+def _shown(seen: ObservedProperty) -> str:
+    values = ", ".join(text(value, True) for value in seen.values)
+    return f"{seen.name}({values})" if values else seen.name

@@ -1,0 +1,99 @@
+"""Behaviours that hear the signals of focused artifacts."""
+
+from collections.abc import Callable
+from typing import Any
+
+from py_trees.common import Status
+
+from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour, nothing
+from jacaros.env.signal_stream import ReceivedSignal
+from jacaros.env.values import text
+
+
+class OnSignal(ArtifactBehaviour):
+    """SUCCESS when the signal came since this was ticked last, otherwise FAILURE.
+
+    It hears from `setup` on, ticked or not: a signal between two ticks is not missed.  Several signals between two
+    ticks are one SUCCESS, with the arguments of the latest.
+
+    Args:
+        signal: name of the signal.
+        predicate: called with its arguments; signals that do not fit are passed over.  When it raises, the
+            behaviour fails.
+        artifact: name of the artifact; without it any that is focused.
+        to: key of the blackboard for the arguments, a tuple.
+        name: of the behaviour; the signal's name with an exclamation mark unless given.
+    """
+
+    otherwise = Status.FAILURE
+
+    def __init__(
+        self,
+        signal: str,
+        predicate: Callable[..., object] | None = None,
+        *,
+        artifact: str | None = None,
+        to: str | None = None,
+        name: str | None = None,
+    ) -> None:
+        super().__init__(name or f"{signal}!")
+        self.signal, self.predicate, self.artifact, self.to = signal, predicate, artifact, to
+        self._heard: tuple[object, ...] | None = None
+        self._wrong: Exception | None = None
+        self._stop_hearing: Callable[[], object] = nothing
+        if to is not None:
+            self.may_write(to)
+
+    def setup(self, **given: Any) -> None:
+        """Begin to hear; see `ArtifactBehaviour.setup`."""
+        super().setup(**given)
+        self.shutdown()
+        self._heard = self._wrong = None
+        self._stop_hearing = self.session.on_signal(self._hear)
+
+    def shutdown(self) -> None:
+        """Hear nothing more."""
+        self._stop_hearing()
+        self._stop_hearing = nothing
+
+    def update(self) -> Status:
+        """Tell whether it came."""
+        heard, wrong = self._heard, self._wrong
+        self._heard = self._wrong = None
+        if wrong is not None:
+            self.complain("its predicate", wrong)
+            return Status.FAILURE
+        if heard is None:
+            self.feedback_message = f"no {self.signal}"
+            return self.otherwise
+        shown = ", ".join(text(each, True) for each in heard)
+        self.feedback_message = f"{self.signal}({shown})" if heard else self.signal
+        if self.to is not None:
+            self.board.set(self.to, heard)
+        return Status.SUCCESS
+
+    def _hear(self, signal: ReceivedSignal) -> None:
+        if signal.name != self.signal or self.artifact not in (None, signal.artifact.name):
+            return
+        try:
+            wanted = self.predicate is None or self.predicate(*signal.arguments)
+        except Exception as error:
+            self._wrong = error
+        else:
+            if not wanted:
+                return
+            self._heard = signal.arguments
+        self.wake()
+
+
+class WaitForSignal(OnSignal):
+    """RUNNING until the signal comes, then SUCCESS; signals from before it was first ticked do not count.
+
+    The arguments are those of `OnSignal`.
+    """
+
+    otherwise = Status.RUNNING
+
+    def initialise(self) -> None:
+        """Forget what came before."""
+        self._heard = self._wrong = None

@@ -1,0 +1,93 @@
+"""Waiting, and time-outs, on the run's clock: those of py_trees go by the time of day."""
+
+from collections.abc import Callable
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator
+
+from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour, nothing, session_of
+from jacaros.clock import Clock
+from jacaros.clock import Timer as ClockTimer
+
+
+class Timer(ArtifactBehaviour):
+    """RUNNING for some time, then SUCCESS.
+
+    Args:
+        duration: seconds of the run's clock.
+        name: of the behaviour.
+    """
+
+    def __init__(self, duration: float, name: str | None = None) -> None:
+        super().__init__(name or f"{duration:g} s")
+        self.duration = duration
+        self._over = False
+        self._timer: ClockTimer | None = None
+
+    def initialise(self) -> None:
+        """Begin to wait."""
+        self._over = False
+        self._timer = self.clock.call_later(self.duration, self._ring)
+
+    def update(self) -> Status:
+        """Look whether the time is over."""
+        self.feedback_message = "over" if self._over else f"waiting {self.duration:g} s"
+        return Status.SUCCESS if self._over else Status.RUNNING
+
+    def terminate(self, new_status: Status) -> None:
+        """Wait no more."""
+        self.let_go()
+
+    def let_go(self) -> None:
+        """Wait no more."""
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _ring(self) -> None:
+        self._over = True
+        self.wake()
+
+
+class Timeout(Decorator):
+    """Interrupt what is below when it takes too long, and fail.
+
+    Args:
+        child: what is below.
+        duration: seconds of the run's clock that it may take.
+        name: of the behaviour.
+    """
+
+    def __init__(self, child: Behaviour, duration: float, name: str | None = None) -> None:
+        super().__init__(name or f"at most {duration:g} s", child)
+        self.duration = duration
+        self.wake: Callable[[], None] = nothing
+        self._clock: Clock
+        self._over = False
+        self._timer: ClockTimer | None = None
+
+    def setup(self, **given: Any) -> None:
+        """Be given the clock; see `ArtifactBehaviour.setup`."""
+        self._clock = session_of(self, given).clock
+        self.wake = given.get("wake", nothing)
+
+    def initialise(self) -> None:
+        """Begin to count the time."""
+        self._over = False
+        self._timer = self._clock.call_later(self.duration, self._ring)
+
+    def update(self) -> Status:
+        """Go by what is below while there is time."""
+        late = self._over and self.decorated.status is Status.RUNNING
+        self.feedback_message = f"took longer than {self.duration:g} s" if late else ""
+        return Status.FAILURE if late else self.decorated.status
+
+    def terminate(self, new_status: Status) -> None:
+        """Count no more."""
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _ring(self) -> None:
+        self._over = True
+        self.wake()

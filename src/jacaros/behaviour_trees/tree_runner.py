@@ -1,0 +1,128 @@
+"""What ticks a tree: on the run's clock, and as soon as something has happened."""
+
+import asyncio
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.trees import BehaviourTree
+
+from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
+from jacaros.env.session import Session
+
+CLOSEST = 0.01
+"""Seconds between two ticks at least: a tree whose own operations wake it must not hold time up."""
+
+
+class TreeRunner:
+    """Ticks a tree: every `period`, and at once when a focused artifact has changed, a signal has come or an operation of
+    the tree has ended.
+
+    However it ends (the root is done, the task is cancelled, a behaviour raises), operations under way are cancelled, so
+    that no robot drives on.
+
+    Args:
+        root: the root of a tree, or a ``BehaviourTree`` with its visitors and handlers.
+        session: how the tree takes part in the environment; it focuses what the tree is to see.
+        period: seconds of the run's clock between two ticks at most; None: only when something has happened.
+
+    Attributes:
+        tree: the ``BehaviourTree``.
+
+    Raises:
+        TypeError: *root* is neither a behaviour nor a tree.
+        ValueError: *period* is not positive.
+    """
+
+    def __init__(
+        self, root: Behaviour | BehaviourTree, session: Session, *, period: float | None = 0.1
+    ) -> None:
+        if not isinstance(root, (Behaviour, BehaviourTree)):
+            raise TypeError(f"a tree needs a root behaviour of py_trees, not {root!r}")
+        if period is not None and not period > 0:
+            raise ValueError(f"the period of a tree is a positive number of seconds, not {period!r}")
+        self.tree = root if isinstance(root, BehaviourTree) else BehaviourTree(root)
+        self.session = session
+        self.period = period
+        self._due = False
+        self._ends = False
+        self._waiting: asyncio.Future[None] | None = None
+
+    async def run(self, forever: bool = False) -> Status:
+        """Set the tree up and tick it until its root is done.
+
+        Args:
+            forever: tick on when the root has succeeded or failed, as ``tick_tock`` does; then only `stop`, or
+                cancelling the task, ends it.
+
+        Returns:
+            The status of the root: SUCCESS or FAILURE, or what it was when `stop` was called.
+
+        Raises:
+            Exception: what the author's own behaviours raise.
+        """
+        self._ends = self._due = False
+        off = (self.session.on_change(lambda _: self.wake()), self.session.on_signal(lambda _: self.wake()))
+        try:
+            self.tree.setup(session=self.session, wake=self.wake)
+            await self._tick(forever)
+            return self.tree.root.status
+        finally:
+            for each in off:
+                each()
+            self._release()
+
+    def stop(self) -> None:
+        """End `run` before the next tick; from within a tick, after it."""
+        self._ends = True
+        self._interrupt()
+
+    def wake(self) -> None:
+        """Ask for a tick soon."""
+        self._due = True
+        self._interrupt()
+
+    async def _tick(self, forever: bool) -> None:
+        while not self._ends:
+            self._due = False
+            self.tree.tick()
+            if self.tree.root.status is not Status.RUNNING and not forever:
+                return
+            if self.period is not None:
+                self._due = False  # what the tree itself has just changed waits for its next turn
+            await self._wait(CLOSEST, for_news=False)
+            await self._wait(None if self.period is None else self.period - CLOSEST, for_news=True)
+
+    async def _wait(self, seconds: float | None, for_news: bool) -> None:
+        """Wait until the time is over, or there are news if they count, or the run is to end."""
+        over = seconds is not None and seconds <= 0
+
+        def ring() -> None:
+            nonlocal over
+            over = True
+            self._interrupt()
+
+        timer = None if seconds is None else self.session.clock.call_later(seconds, ring)
+        try:
+            while not (over or self._ends or (for_news and self._due)):
+                self._waiting = asyncio.get_running_loop().create_future()
+                await self._waiting
+        finally:
+            self._waiting = None
+            if timer is not None:
+                timer.cancel()
+
+    def _interrupt(self) -> None:
+        if self._waiting is not None and not self._waiting.done():
+            self._waiting.set_result(None)
+
+    def _release(self) -> None:
+        """Cancel what is under way, whatever the author's behaviours do at their end."""
+        root = self.tree.root
+        for behaviour in root.iterate():
+            if isinstance(behaviour, ArtifactBehaviour):
+                behaviour.let_go()
+        try:
+            if root.status is Status.RUNNING:
+                root.stop(Status.INVALID)
+        finally:
+            self.tree.shutdown()
