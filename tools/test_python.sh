@@ -8,7 +8,8 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$1" -m venv "$scratch/venv"
-"$scratch/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$root"/runs/dist/*.whl pytest hypothesis
+wheel=$(echo "$root"/runs/dist/*.whl)
+"$scratch/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$wheel[behaviour-trees]" pytest hypothesis
 "$scratch/venv/bin/python" --version
 cd "$root"
 "$scratch/venv/bin/python" -m pytest -q -p no:cacheprovider tests/unit -m "not browser"

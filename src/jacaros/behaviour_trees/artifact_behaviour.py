@@ -7,7 +7,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Access
 
 from jacaros.clock import Clock
-from jacaros.env.session import Session
+from jacaros.env import Session
 
 
 def nothing() -> None:
@@ -79,4 +79,5 @@ class ArtifactBehaviour(Behaviour):
         self.feedback_message = f"{what} raised {type(error).__name__}: {error}"
         if self.feedback_message != self._told:
             self._told = self.feedback_message
-            self.session.complain(f"behaviour '{self.name}': {what} failed:", error)
+            where = f"behaviour '{self.name}': {what} failed:"
+            self.session.environment.log_error(self.session.name, where, error)

@@ -7,7 +7,7 @@ from py_trees.common import Status
 from py_trees.trees import BehaviourTree
 
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.env.session import Session
+from jacaros.env import Session
 
 CLOSEST = 0.01
 """Seconds between two ticks at least: a tree whose own operations wake it must not hold time up."""

@@ -8,8 +8,7 @@ from py_trees.composites import Selector, Sequence
 
 from jacaros.behaviour_trees import TreeRunner
 from jacaros.clock import VirtualClock, run
-from jacaros.env import Artifact, Atom, Environment, Out, operation
-from jacaros.env.session import Session
+from jacaros.env import Artifact, Atom, Environment, Out, Session, operation
 
 
 class Cart(Artifact):
