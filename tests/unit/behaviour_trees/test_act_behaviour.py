@@ -73,7 +73,7 @@ def test_the_place_of_the_failure_can_be_chosen(on_rails):
         (lambda: Act("drive", 1, artifact="plane"), "no artifact plane"),
         (lambda: Act("break_down"), "no wheels"),
         (lambda: Act("drive", FromBlackboard("far")), "there is no far on the blackboard [not_on_blackboard"),
-        (lambda: Act("wait_for_ever", timeout=2), "took longer than 2 s"),
+        (lambda: Act("wait_for_ever", timeout=2), "did not end within 2 s [operation_timeout"),
     ],
 )
 def test_whatever_is_wrong_is_a_failure_with_its_reason(on_rails, act, told):
