@@ -1,6 +1,7 @@
 """External actions: what a mind wants done in its environment, and how it ended."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 from jacaros.terms.values import Functor, Term
 from jacaros.trace import Cause
@@ -53,9 +54,13 @@ class Percept:
         literal: an atom or structure, ground, without annotations.
         annotations: sorted; ``source(percept)`` among them.
         cause: the sensor message or property change behind it.
+        taken: what the first mind that took it in made of it, for all that share it; theirs alone.
+        event: the same for its event.
     """
 
     kind: str
     literal: Term
     annotations: tuple[Term, ...]
     cause: Cause | None = None
+    taken: Any = field(default=None, init=False, compare=False, repr=False)
+    event: Any = field(default=None, init=False, compare=False, repr=False)

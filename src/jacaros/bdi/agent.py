@@ -35,13 +35,11 @@ from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.options import Options
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.rules import OpenFact, Rule
-from jacaros.bdi.search_budget import SearchBudget
 from jacaros.bdi.speech_act import SpeechAct, message_id
 from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
 from jacaros.compiler.triggers import trigger
-from jacaros.terms import arithmetic
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.plans import is_body
@@ -78,7 +76,6 @@ class Agent(Circumstance):
     __slots__ = (
         "_acts",
         "_beginning",
-        "_call_own",
         "_ended_at_once",
         "_namespaces",
         "messages",
@@ -104,7 +101,7 @@ class Agent(Circumstance):
         self._ended_at_once: Completion | None = None
         self.messages = 0
         self._namespaces = 0
-        self._call_own = partial(functions.call_own, self)
+        self.call_own = partial(functions.call_own, self)
         self.register_functions(program.functions)
         plan_changes.look_at_plans(self)
 
@@ -201,26 +198,7 @@ class Agent(Circumstance):
         meta_events.post_new_goal(self, event)
         self.architecture.ready()
 
-    def run(self, fuel: int) -> bool:
-        """Make at most *fuel* reasoning cycles; True when there is more to do."""
-        # Calls inside terms are evaluated for this agent meanwhile.
-        before, arithmetic.agent_call = arithmetic.agent_call, self._call_own
-        self.running = True
-        try:
-            if self.beliefs.budget is not None:
-                return self._run_limited(self.beliefs.budget, fuel)
-            return cycle.run(self, fuel)
-        finally:
-            self.running = False
-            arithmetic.agent_call = before
-
-    def _run_limited(self, budget: SearchBudget, fuel: int) -> bool:
-        """Make the cycles one by one, each with the whole budget of searches."""
-        for _ in range(fuel):
-            budget.renew()
-            if not cycle.run(self, 1):
-                return False
-        return True
+    run = cycle.run
 
     # --- from outside --------------------------------------------------------------------------------------
 

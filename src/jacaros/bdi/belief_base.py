@@ -159,17 +159,34 @@ class Table:
             _put(index, row[positions[0]] if len(positions) == 1 else _key(row, positions), row)
 
     def begin(self, row: Row, annotations: tuple[Term, ...]) -> bool:
-        """Put in a row of numbers, strings and atoms; False when it is held already."""
-        if row in self.rows or (self.late and row in self.late):
+        """Put in a row of numbers, strings and atoms while nobody searches; False when it is held already.
+
+        For tables of this very class: `add` is written out.
+        """
+        rows = self.rows
+        if row in rows or (self.late and row in self.late):
             return False
-        self.add(row, annotations)
+        if self.searches is not None or self._indexes:
+            self.add(row, annotations)
+        else:
+            rows[row] = annotations
         return True
 
     def end(self, row: Row, annotations: tuple[Term, ...]) -> bool:
-        """Take out a row; False when it is not held with this very tuple of annotations."""
-        if self.rows.get(row) is not annotations:
+        """Take out a row while nobody searches; False when it is not held with this very tuple of annotations.
+
+        For tables of this very class: `remove` is written out.
+        """
+        rows = self.rows
+        if rows.get(row) is not annotations:
             return False
-        self.remove(row)
+        if self.late or self._indexes:
+            self.remove(row)
+            return True
+        last, value = rows.popitem()
+        if last is not row and last != row:
+            rows[last] = value
+            del rows[row]
         return True
 
     def remove(self, row: Any) -> bool:

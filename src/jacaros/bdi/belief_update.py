@@ -5,6 +5,7 @@ The functions for body formulae return the event to be handled by the same inten
 
 from typing import Any
 
+from jacaros.bdi import rescue
 from jacaros.bdi.act import Percept
 from jacaros.bdi.belief_base import Row, Table, literal, parts, with_source
 from jacaros.bdi.circumstance import Circumstance
@@ -353,41 +354,54 @@ def _abolish_entry(
         external_change(agent, "-", symbol, row, held)
 
 
-def apply_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
-    """Bring the belief base in line with what was noticed, then raise the events, in order."""
+def take_percepts(agent: Circumstance) -> None:  # noqa: C901 - written out for speed
+    """Bring the belief base in line with what was noticed, and raise the events, in order."""
     beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
-    watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
-    for percept in percepts:
-        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
-        symbol, row = (literal[0], literal[1:]) if literal.__class__ is tuple else _parts(literal)
-        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
-        if kind == "add":
-            change = ADDED[symbol]
-            table = beliefs[symbol]
-            if (
-                literal in holders
-                or table.__class__ is not Table
-                or not _is_flat(row)
-                or not table.begin(row, annotations)
-            ):
-                if not _take_percept(agent, symbol, row, literal, annotations):
-                    continue
-            else:
-                holders[literal] = annotations
-        elif kind == "remove":
-            change = DELETED[symbol]
-            held_by = holders.pop(literal, None)
-            table = beliefs[symbol]
-            if (
-                held_by is not annotations or table.__class__ is not Table or not table.end(row, annotations)
-            ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
-                continue
-        else:
-            change = ADDED[symbol]
-        if watched:
-            external_change(agent, change.operator, symbol, row, annotations, percept.cause)
-        elif selects[change] is not None:
-            post(((change, *row), None, annotations, percept.cause))
+    watched = agent.event_waits or agent.subplans or agent.options.events != "discard"
+    noticed = agent.percepts
+    while noticed:
+        percepts = noticed.popleft()
+        try:
+            for percept in percepts:
+                literal, annotations, kind = percept.literal, percept.annotations, percept.kind
+                symbol, row, is_flat = percept.taken or _taken(percept)
+                # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
+                if kind == "add":
+                    change = ADDED[symbol]
+                    table = beliefs[symbol]
+                    if (
+                        literal in holders
+                        or table.__class__ is not Table
+                        or not is_flat
+                        or not table.begin(row, annotations)
+                    ):
+                        if not _take_percept(agent, symbol, row, literal, annotations):
+                            continue
+                    else:
+                        holders[literal] = annotations
+                elif kind == "remove":
+                    change = DELETED[symbol]
+                    held_by = holders.pop(literal, None)
+                    table = beliefs[symbol]
+                    if (
+                        held_by is not annotations
+                        or table.__class__ is not Table
+                        or not table.end(row, annotations)
+                    ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
+                        continue
+                else:
+                    change = ADDED[symbol]
+                if watched:
+                    external_change(agent, change.operator, symbol, row, annotations, percept.cause)
+                elif selects[change] is not None:
+                    event = percept.event
+                    if event is None:
+                        event = percept.event = ((change, *row), None, annotations, percept.cause)
+                    post(event)
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "what was perceived", fault)
     if agent.condition_waits:
         agent.do_soon(_nothing)
 
@@ -400,11 +414,18 @@ def _is_flat(row: Row) -> bool:
     return True
 
 
-def _parts(literal: Term) -> tuple[Functor, Row]:
-    symbol, row, _ = parts(literal)
-    if symbol is None:
-        raise InternalError(f"a percept is no literal: {literal!r}")
-    return symbol, row
+def _taken(percept: Percept) -> tuple[Functor, Row, bool]:
+    """Functor and arguments of a percept, and whether these are flat; kept with it for all who share it."""
+    literal = percept.literal
+    if literal.__class__ is tuple:
+        symbol, row = literal[0], literal[1:]
+    else:
+        symbol, row, _ = parts(literal)
+        if symbol is None:
+            raise InternalError(f"a percept is no literal: {literal!r}")
+    is_flat = ATOMIC.issuperset(map(type, row))
+    percept.taken = symbol, row, is_flat
+    return symbol, row, is_flat
 
 
 def _take_percept(

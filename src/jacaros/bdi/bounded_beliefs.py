@@ -79,9 +79,6 @@ class _BoundedTable(Table):
         self._base.count(1)
         return super().add(row, annotations, last)
 
-    def begin(self, row: Row, annotations: tuple[Term, ...]) -> bool:
-        return self.get(row) is None and self.add(row, annotations) is not None
-
     def remove(self, row: Any) -> bool:
         removed = super().remove(row)
         self._base.count(-1)

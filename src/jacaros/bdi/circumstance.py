@@ -71,6 +71,7 @@ class Circumstance:
         functions: arithmetic functions that its program registers, by name.
         project_functions: those of the project, with their least and greatest numbers of arguments.
         evaluators: what computes them, by name; None stands for a value that is not known yet.
+        call_own: evaluates a call of a function inside a term for this agent.
         cycles: number of steps made.
         next_look: number of the cycle in which percepts and messages are looked at next.
         blamed: plans whose goal condition cannot be evaluated, as people have been told.
@@ -97,6 +98,7 @@ class Circumstance:
         "beliefs",
         "blamed",
         "bodies",
+        "call_own",
         "called",
         "condition_waits",
         "context",
@@ -145,6 +147,8 @@ class Circumstance:
         "urgency",
         "usual_events",
     )
+
+    call_own: Callable[[Term], Term]
 
     def __init__(
         self,

@@ -14,55 +14,72 @@ from jacaros.bdi.intention import Intention
 from jacaros.bdi.sensing import look_around
 from jacaros.bdi.urgency import handle_urgent_event
 from jacaros.errors import InternalError
+from jacaros.terms import arithmetic
 
 
 def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for speed
     """Make at most *fuel* cycles; True when there is more to do."""
-    begun = fuel
-    if agent.asleep:
-        edge_signals.awake(agent)
-    events, intentions = agent.events, agent.intentions
-    always = agent.options.percept_interval == 1
-    while fuel > 0 and not agent.stopped:
-        if agent.called or not always:
-            look_around(agent, agent.cycles + begun - fuel)
-            if agent.urgency is not None:
-                # The queues may have been put in order of urgency just now.
-                events, intentions = agent.events, agent.intentions
-        intention: Intention | None = None
-        if events:
-            if agent.atomic is not None:
-                handle_atomic_event(agent, agent.atomic)
-            elif agent.urgency is not None:
-                handle_urgent_event(agent)
-            else:
-                intention = handle_event(agent)
-        if agent.goal_conditions:
-            end_achieved_goals(agent)
-        if intention is None and intentions:
-            intention = _select_intention(agent)
-        if intention is not None:
-            try:
-                fuel = (execute_plainly if is_plain(agent) else execute)(agent, intention, fuel)
-            except InternalError:
-                raise
-            except Exception as fault:
+    budget = agent.beliefs.budget
+    if budget is not None:
+        if fuel > 1:
+            return all(run(agent, 1) for _ in range(fuel))
+        # Each cycle has the whole budget of searches.
+        budget.renew()
+    # Calls inside terms are evaluated for this agent meanwhile.
+    before, arithmetic.agent_call = arithmetic.agent_call, agent.call_own
+    agent.running = True
+    try:
+        begun = fuel
+        if agent.asleep:
+            edge_signals.awake(agent)
+        events, intentions = agent.events, agent.intentions
+        always = agent.options.percept_interval == 1
+        while fuel > 0 and not agent.stopped:
+            if agent.called or not always:
+                look_around(agent, agent.cycles + begun - fuel)
+                if agent.urgency is not None:
+                    # The queues may have been put in order of urgency just now.
+                    events, intentions = agent.events, agent.intentions
+            intention: Intention | None = None
+            if events:
+                if agent.atomic is not None:
+                    handle_atomic_event(agent, agent.atomic)
+                elif agent.urgency is not None:
+                    handle_urgent_event(agent)
+                else:
+                    intention = handle_event(agent)
+            if agent.goal_conditions:
+                end_achieved_goals(agent)
+            if intention is None and intentions:
+                intention = _select_intention(agent)
+            if intention is not None:
+                try:
+                    fuel = (execute_plainly if is_plain(agent) else execute)(agent, intention, fuel)
+                except InternalError:
+                    raise
+                except Exception as fault:
+                    fuel -= 1
+                    rescue.give_up(agent, agent.current or intention, fault)
+                if agent.requeued:
+                    events.extendleft(reversed(agent.requeued))
+                    agent.requeued.clear()
+                elif not (events or intentions or agent.called or agent.edges):
+                    # That was all: the next cycle would find nothing to do.
+                    agent.cycles += begun - fuel
+                    return False
+            elif (events and agent.atomic is None) or agent.inbox:
                 fuel -= 1
-                rescue.give_up(agent, agent.current or intention, fault)
-            if agent.requeued:
-                events.extendleft(reversed(agent.requeued))
-                agent.requeued.clear()
-            elif not (events or intentions or agent.called or agent.edges):
-                # That was all: the next cycle would find nothing to do.
-                agent.cycles += begun - fuel
-                return False
-        elif (events and agent.atomic is None) or agent.inbox:
-            fuel -= 1
-        elif not (agent.percepts or agent.tasks or (agent.edges and edge_signals.fall_asleep(agent))):
-            break
-    agent.cycles += begun - fuel
-    # Without fuel it was not seen yet that nothing is left to do: that takes another look.
-    return not agent.stopped and (fuel <= 0 or _has_work(agent))
+            elif not (agent.percepts or agent.tasks or (agent.edges and edge_signals.fall_asleep(agent))):
+                if not events and agent.atomic is None:
+                    agent.cycles += begun - fuel
+                    return False
+                break
+        agent.cycles += begun - fuel
+        # Without fuel it was not seen yet that nothing is left to do: that takes another look.
+        return not agent.stopped and (fuel <= 0 or _has_work(agent))
+    finally:
+        agent.running = False
+        arithmetic.agent_call = before
 
 
 def _has_work(agent: Circumstance) -> bool:

@@ -41,6 +41,8 @@ def handle_event(agent: Circumstance) -> Intention | None:
             frame: Frame | None = None if select is None else select(agent, goal, annotations)
             if trail:
                 trail.clear()
+            if frame is None and not kind.kind and agent.usual_events:
+                continue
             if frame is None or frame[4].atomic or kind.failing:
                 if _begin(agent, event, frame, False):
                     return None

@@ -1,7 +1,7 @@
 """The first part of a reasoning cycle: what came in since the last one."""
 
 from jacaros.bdi import rescue
-from jacaros.bdi.belief_update import apply_percepts
+from jacaros.bdi.belief_update import take_percepts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.speech_acts import read_message
 from jacaros.bdi.urgency import read_urgent_messages
@@ -12,8 +12,7 @@ from jacaros.terms.unifier import undo
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts, ends of waits, one message."""
     if (
-        agent.percepts
-        or agent.tasks
+        agent.tasks
         or agent.condition_waits
         or agent.urgency is not None
         or agent.options.percept_interval != 1
@@ -25,12 +24,16 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         agent.called = bool(
             agent.inbox or agent.percepts or agent.tasks or agent.condition_waits or agent.special
         )
-    else:
-        # What is usual when agents talk: there is a message, and nothing else.
-        waiting = len(agent.inbox)
-        agent.called = waiting > 1 or agent.special
-        if waiting:
-            read_message(agent)
+        return
+    # What is usual: there is a message, or percepts, and nothing else.
+    if agent.percepts:
+        take_percepts(agent)
+        if agent.tasks:
+            _do_tasks(agent)
+    waiting = len(agent.inbox)
+    agent.called = waiting > 1 or agent.special
+    if waiting:
+        read_message(agent)
 
 
 def _looks_now(agent: Circumstance, cycle: int) -> bool:
@@ -43,14 +46,8 @@ def _looks_now(agent: Circumstance, cycle: int) -> bool:
 
 def housekeeping(agent: Circumstance, looks: bool = True) -> None:
     """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
-    while agent.percepts and looks:
-        percepts = agent.percepts.popleft()
-        try:
-            apply_percepts(agent, percepts)
-        except InternalError:
-            raise
-        except Exception as fault:
-            rescue.passed_over(agent, "what was perceived", fault)
+    if agent.percepts and looks:
+        take_percepts(agent)
     _do_tasks(agent)
     if agent.condition_waits:
         _check_conditions(agent)

@@ -80,9 +80,9 @@ class AgentBody:
         self._activity = activity
         # Acts under way; without a handle while the call that begins them has not returned.
         self._pending: dict[int, UnderWay | None] = {}
-        self._entered = self._closed = False
+        self._entered = False
         self._whereabouts = Whereabouts(environment, home)
-        focused = FocusedArtifacts(agent, writer, references, self._notice)
+        focused = FocusedArtifacts(agent, writer, references, mind.perceive)
         self._selection = Selection(agent, self._whereabouts, focused, keys())
         self._situation = Situation(
             agent, environment, self._whereabouts, focused, self._selection, references, self._joined
@@ -165,7 +165,7 @@ class AgentBody:
 
     def close(self) -> None:
         """Give all actions and focused artifacts up; the mind is told nothing more."""
-        self._closed = True
+        self._situation.focused.fall_silent()
         for act_id in self.pending:
             self.cancel_act(act_id)
         for workspace in self._whereabouts.joined():
@@ -206,10 +206,6 @@ class AgentBody:
             self._activity.end()
             self._mind.complete(act_id, completion)
 
-    def _notice(self, percepts: list[Percept]) -> None:
-        if not self._closed:
-            self._mind.perceive(percepts)
-
     def _joined(self, workspace: Workspace, is_in: bool) -> None:
         percept = self._writer.own(
             ADD if is_in else REMOVE,
@@ -218,7 +214,7 @@ class AgentBody:
             atom_of(workspace.name),
             String(workspace.path),
         )
-        self._notice([percept])
+        self._mind.perceive([percept])
 
 
 def _prints(call: Call) -> bool:

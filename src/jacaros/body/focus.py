@@ -16,22 +16,29 @@ Notice = Callable[[list[Percept]], None]
 
 
 class FocusObserver:
-    """Perceives for an agent, in one namespace of its program."""
+    """Perceives for an agent, in one namespace of its program.
+
+    Attributes:
+        agent: name of the agent.
+        notice: where its percepts go.
+    """
+
+    __slots__ = ("_namespace", "_writer", "agent", "notice")
 
     def __init__(self, agent: str, namespace: str | None, writer: PerceptWriter, notice: Notice) -> None:
-        self._agent = agent
+        self.agent = agent
+        self.notice = notice
         self._namespace = namespace
         self._writer = writer
-        self._notice = notice
-
-    @property
-    def agent(self) -> str:
-        """Name of the agent."""
-        return self._agent
 
     def observe(self, observation: Observation) -> None:
         """Bring an observation to the mind."""
-        self._notice(self._writer.percepts(observation, self._namespace))
+        writer, namespace = self._writer, self._namespace
+        # What another observer has just had written is the same for this one.
+        if observation is writer.newest and namespace == writer.namespace:
+            self.notice(writer.written)
+        else:
+            self.notice(writer.percepts(observation, namespace))
 
 
 class FocusedArtifacts:
@@ -118,6 +125,12 @@ class FocusedArtifacts:
         if stop_watching is not None:
             stop_watching()
 
+    def fall_silent(self) -> None:
+        """Let the mind notice nothing more."""
+        self._notice = _ignore
+        for observer in self._observers.values():
+            observer.notice = _ignore
+
     def _observer(self, namespace: str | None) -> FocusObserver:
         observer = self._observers.get(namespace)
         if observer is None:
@@ -150,3 +163,7 @@ class FocusedArtifacts:
             String(workspace.path),
         )
         return self._writer.own(kind, "focusing", *arguments)
+
+
+def _ignore(percepts: list[Percept]) -> None:
+    """Nobody is there to notice anything."""

@@ -34,12 +34,18 @@ class PerceptWriter:
     Args:
         references: shared by all agents of a run.
         workspace: from a full path to the object that stands for the workspace.
+
+    Attributes:
+        newest, namespace, written: the observation written last, for which namespace, and the percepts: the next who
+            observes is mostly another observer of the same.
     """
 
     def __init__(self, references: References, workspace: Callable[[str], object]) -> None:
         self._references = references
         self._workspace = workspace
-        self._newest: tuple[Observation | None, str | None, list[Percept]] = (None, None, [])
+        self.newest: Observation | None = None
+        self.namespace: str | None = None
+        self.written: list[Percept] = []
         self._annotations: dict[ArtifactId, tuple[tuple[Term, ...], tuple[Term, ...]]] = {}
 
     def percepts(self, observation: Observation, namespace: str | None = None) -> list[Percept]:
@@ -53,8 +59,8 @@ class PerceptWriter:
         Args:
             namespace: of the agent's program, where the artifact was focused with ``ns::focus``.
         """
-        if observation is self._newest[0] and namespace == self._newest[1]:
-            return self._newest[2]
+        if observation is self.newest and namespace == self.namespace:
+            return self.written
         about_property, about_signal = self._origin(observation.artifact)
         cause = observation.cause
         found = [
@@ -77,8 +83,7 @@ class PerceptWriter:
             found.append(Percept(ADD, *self._write(each, about_property, namespace), cause))
         for each in observation.removed:
             found.append(Percept(REMOVE, *self._write(each, about_property, namespace), cause))
-        # The next who asks is another observer of the same.
-        self._newest = observation, namespace, found
+        self.newest, self.namespace, self.written = observation, namespace, found
         return found
 
     def _write(

@@ -139,11 +139,13 @@ class AgentHost:
         intercept_stop: the same for the end of the run.
         send: delivers a message; False when there is no such agent.
         ready: the mind has something to do.
+        run: lets the mind make up to so many cycles; True when there is more to do.
     """
 
     __slots__ = (
         "_coroutines",
         "_ended",
+        "_mind",
         "_random",
         "_run",
         "_seed",
@@ -151,14 +153,12 @@ class AgentHost:
         "intercept",
         "intercept_stop",
         "make_body",
-        "mind",
         "name",
         "queued",
         "ready",
+        "run",
         "send",
     )
-
-    mind: Mind
 
     def __init__(self, name: str, run: Run, seed: str) -> None:
         self.name = name
@@ -168,22 +168,30 @@ class AgentHost:
         self.intercept: Callable[[Act], bool] | None = None
         self.intercept_stop: Callable[[float, int], bool] | None = None
         self._run = run
-        # The mind calls these for every message: there is nothing to be done on their way.
+        # These are called for every message and every turn: there is nothing to be done on their way.
         self.send: Callable[[SpeechAct], bool] = run.deliver
         self.ready: Callable[[], None] = partial(run.scheduler.make_ready, self)
+        self.run: Callable[[int], bool] = _no_turn
         self._seed = seed
         self._random: Random | None = None
         self._coroutines: Coroutines | None = None
         self._ended = False
 
-    def run(self, fuel: int) -> bool:
-        """Let the mind make up to *fuel* cycles; True when there is more to do."""
-        return not self._ended and self.mind.run(fuel)
+    @property
+    def mind(self) -> Mind:
+        """Whose host it is."""
+        return self._mind
+
+    @mind.setter
+    def mind(self, mind: Mind) -> None:
+        self._mind = mind
+        self.run = mind.run
 
     def halt(self) -> None:
         """Let the mind make no further cycle, also when it is in the middle of its turn."""
         self._ended = True
-        self.mind.stopped = True
+        self._mind.stopped = True
+        self.run = _no_turn
 
     def end(self) -> None:
         """Give up all actions, coroutines and focused artifacts."""
@@ -200,7 +208,7 @@ class AgentHost:
     def receive(self, message: SpeechAct) -> None:
         """Hand a message to the mind."""
         if not self._ended:
-            self.mind.receive(message)
+            self._mind.receive(message)
 
     # From here on, the port `jacaros.bdi.architecture.Architecture`.
 
@@ -234,7 +242,7 @@ class AgentHost:
         if self.body is not None:
             self.body.act(act)
         else:
-            self.mind.complete(act.id, without_environment(act))
+            self._mind.complete(act.id, without_environment(act))
 
     def cancel_act(self, act_id: int) -> None:
         """The intention behind an act was dropped."""
@@ -267,7 +275,7 @@ class AgentHost:
 
     def log(self, level: str, text: str) -> None:
         """Tell people about trouble, and what else the agent's option ``verbose`` lets through."""
-        verbose = self.mind.options.verbose
+        verbose = self._mind.options.verbose
         if verbose > 0 or level not in ("debug", "info"):
             # Details that an agent is to tell are wanted, whatever is shown of others.
             shown = "info" if level == "debug" and verbose > 1 else level
@@ -317,6 +325,12 @@ class AgentHost:
     def subscribe_to_service(self, service: str) -> None:
         """Have this agent told of all providers of a service."""
         self._run.services.subscribe(self.name, service)
+
+
+def _no_turn(fuel: int) -> bool:
+    """There is no mind yet, or none any more."""
+    del fuel
+    return False
 
 
 def without_environment(act: Act) -> Completion:

@@ -36,18 +36,18 @@ class CustomHost(AgentHost):
         self._perceiving = [
             (link, Perception()) for link in chain if type(link).perceive is not AgentArch.perceive
         ]
+        if self._perceiving:
+            self.run = self._perceive_and_run
 
     def at_end(self, leave: Callable[[], Any]) -> None:
         """Call *leave* when the agent ends."""
         self._leaving.append(leave)
 
-    def run(self, fuel: int) -> bool:
-        """Let the mind have its turn; with architectures that perceive, they do so before each cycle."""
-        if not self._perceiving:
-            return super().run(fuel)
+    def _perceive_and_run(self, fuel: int) -> bool:
+        """Let the mind have its turn, and the architectures perceive before each cycle."""
         for _ in range(fuel):
             self._perceive()
-            if not super().run(1):
+            if not self.mind.run(1):
                 return False
         return True
 

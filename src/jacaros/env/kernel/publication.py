@@ -83,11 +83,19 @@ class Publication:
             return
         cause = parent if self._setting.tracer is None else self._trace(parent, signals, changes)
         complete = Observation(self._artifact, signals, *changes, cause)
+        if addressee is None:
+            for observer in self.observers:
+                try:
+                    observer.observe(complete)
+                except Exception as error:
+                    self._setting.report(error)
+            return
+        others = Observation(self._artifact, (), *changes, cause)
         for observer in self.observers:
-            if addressee is None or observer.agent == addressee:
+            if observer.agent == addressee:
                 self._deliver(observer, complete)
             elif changes.changed or changes.added or changes.removed:
-                self._deliver(observer, Observation(self._artifact, (), *changes, cause))
+                self._deliver(observer, others)
 
     def _trace(
         self, parent: Cause | None, signals: tuple[Signal, ...], changes: PropertyChanges
