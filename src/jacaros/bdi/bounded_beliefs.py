@@ -6,7 +6,7 @@ Agents without that option have a plain `BeliefBase`, whose tables ask nobody.
 from typing import Any, Protocol
 
 from jacaros.bdi.architecture import Architecture
-from jacaros.bdi.belief_base import BeliefBase, Row, Table
+from jacaros.bdi.belief_base import BeliefBase, Table
 from jacaros.compiler.runtime import Failure
 from jacaros.terms.values import Functor, String, Term, atom, functor
 

@@ -11,7 +11,7 @@ from jacaros.bdi.stack import remove_event
 from jacaros.errors import InternalError
 
 
-def handle_event(agent: Circumstance) -> Intention | None:
+def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - written out for speed
     """Rule SelEv and what follows: one event is handled; external events without plan are passed over.
 
     When this begins an intention and there is no other, it need not queue: it is given back, and has its turn now.

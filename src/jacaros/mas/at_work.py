@@ -6,6 +6,7 @@ from pathlib import Path
 from types import FrameType
 
 from jacaros.asl.formatter import format_term
+from jacaros.bdi import cycle
 from jacaros.bdi.agent import Agent
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.runtime import Fail
@@ -65,8 +66,9 @@ def _is_generated(frame: FrameType) -> bool:
 
 
 def _host(frame: FrameType) -> AgentHost | None:
-    found = frame.f_locals.get("self") if frame.f_code is AgentHost.run.__code__ else None
-    return found if isinstance(found, AgentHost) else None
+    """The host of the agent whose cycles a frame makes."""
+    mind = frame.f_locals.get("agent") if frame.f_code is cycle.run.__code__ else None
+    return mind.architecture if mind is not None and isinstance(mind.architecture, AgentHost) else None
 
 
 def _plan_at(host: AgentHost, frame: FrameType) -> Plan | None:
