@@ -1,27 +1,33 @@
-"""What an agent does with workspaces and artifacts as such: make, look up, focus, join …
+"""What an agent does by its own body: make artifacts, focus, join and quit workspaces.
 
-CArtAgO has artifacts for these actions, one body per agent and workspace among them; here the agent's own
-body does them, with the same names, arguments and reasons of failure.
+In CArtAgO these are operations of the artifacts ``workspace``, ``body_bob`` and ``session_bob``; the actions, arguments
+and reasons of failure are the same here.  What else can be done with workspaces is up to the artifact ``workspace``
+(`jacaros.env.default.workspace`).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from jacaros.bdi.act import Completion
-from jacaros.body.call import Call, artifact_argument, name_argument, workspace_argument
-from jacaros.body.completion import of_operation, refused, succeeded
+from jacaros.body.call import Call, name_of
+from jacaros.body.completion import failed, of_operation, refused, succeeded
+from jacaros.body.filtering import Filter, filter_of
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.selection import Selection
+from jacaros.body.undelivered import unreachable
 from jacaros.body.values import References, to_value
-from jacaros.body.whereabouts import Whereabouts
+from jacaros.body.whereabouts import Whereabouts, not_joined
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome
 from jacaros.env.ports import Environment, Told, UnderWay, Workspace
 from jacaros.env.values import Structure
 from jacaros.terms.text import text
-from jacaros.terms.unifier import equal
-from jacaros.terms.values import NIL, String, Term, Var, bare, is_list, make_list
+from jacaros.terms.values import NIL, Reference, Term, Var, bare, is_list
+
+Outputs = tuple[tuple[Term, Term], ...]
+"""Values for variables of an action."""
 
 Finish = Callable[[Completion], None]
 """To be told how an action ended, once."""
@@ -39,6 +45,7 @@ class Situation:
         selection: how it finds artifacts.
         references: opaque references of the run.
         joined: told of every workspace that it joins (True) or quits (False).
+        session: gives the artifact that stands for its session.
     """
 
     agent: str
@@ -48,6 +55,7 @@ class Situation:
     selection: Selection
     references: References
     joined: Callable[[Workspace, bool], None]
+    session: Callable[[], ArtifactId]
 
 
 Action = Callable[[Situation, Call, Finish], UnderWay | None]
@@ -72,40 +80,82 @@ def keys() -> list[str]:
     return [f"{name}/{arity}" for name, arity in ACTIONS]
 
 
-def _give(call: Call, index: int, value: Term) -> tuple[tuple[Term, Term], ...]:
+def _give(situation: Situation, call: Call, holder: ArtifactId, index: int, value: object) -> Outputs:
     """The output *value* for an argument of a call, if the call has so many.
 
     Raises:
-        OperationFailed: the argument has another value already.
+        OperationFailed: the argument is no variable.
     """
     if index >= len(call.arguments):
         return ()
     argument = call.arguments[index]
-    if argument.__class__ is Var:
-        return ((argument, value),)
-    if equal(argument, value):
-        return ()
-    raise OperationFailed(
-        f"argument {index + 1} of {call.key} is an output and would be {text(value)}, "
-        f"but is {text(argument)} already",
-        Structure("bind_param_error", (call.key,)),
+    if argument.__class__ is not Var:
+        raise _wrong(call, holder, f"argument {index + 1} is an output and wants an unbound variable", index)
+    return ((argument, situation.references.of(value)),)
+
+
+def _wrong(call: Call, holder: ArtifactId, what: str, index: int) -> OperationFailed:
+    """The failure of an action of which an argument is not of the kind that is wanted."""
+    return OperationFailed(
+        f"{call.key}: {what}, not {text(call.arguments[index])}",
+        Structure("wrong_op_arguments", (holder, call.key)),
     )
 
 
-def _place(situation: Situation, call: Call, path: str) -> tuple[Workspace, str]:
+def _base(situation: Situation, call: Call) -> Workspace:
+    """The workspace that a call is directed to, or the current one.
+
+    Raises:
+        OperationFailed: it has not been joined.
+    """
+    whereabouts, intention = situation.whereabouts, call.act.intention
+    wanted = call.direction.workspace
+    if wanted is None:
+        current = whereabouts.current(intention)
+        if not whereabouts.has_joined(current.path):
+            raise not_joined(current.path)
+        return current
+    try:
+        if isinstance(wanted, str):
+            return whereabouts.named(wanted, intention)
+        if not whereabouts.has_joined(wanted.path):
+            raise not_joined(wanted.path)
+    except OperationFailed as failure:
+        raise unreachable(call.act, failure) from None
+    return wanted
+
+
+def _place(situation: Situation, here: Workspace, path: str) -> tuple[Workspace, str]:
     """The workspace and the plain name meant by the name or path of an artifact."""
-    current = situation.whereabouts.current(call.act.intention)
     if "/" not in path:
-        return current, path
-    above, _, name = resolve_path(current.path, path).rpartition("/")
+        return here, path
+    above, _, name = resolve_path(here.path, path).rpartition("/")
     return situation.environment.workspace(above), name
 
 
-def _artifact(situation: Situation, call: Call, index: int = 0) -> ArtifactId:
-    """The artifact that an argument means: an id, or a name in the workspaces of the agent."""
-    wanted = artifact_argument(call.arguments[index], call.name)
-    places = tuple(situation.whereabouts.in_order(call.act.intention))
-    return situation.selection.artifact(wanted, places)
+def _name(call: Call, index: int, holder: ArtifactId, what: str = "a name (a string or an atom)") -> str:
+    """The name that an argument stands for."""
+    name = name_of(bare(call.arguments[index]))
+    if name is None:
+        raise _wrong(call, holder, f"argument {index + 1} wants {what}", index)
+    return name
+
+
+def _artifact(situation: Situation, call: Call) -> ArtifactId:
+    """The artifact whose id is the first argument.
+
+    Raises:
+        OperationFailed: it is no id, or of an artifact in a workspace that has not been joined.
+    """
+    term = bare(call.arguments[0])
+    artifact = term.value if term.__class__ is Reference else None
+    if not isinstance(artifact, ArtifactId):
+        hint = " (lookupArtifact gives the id for a name)" if name_of(term) is not None else ""
+        what = f"argument 1 wants the id of an artifact{hint}"
+        raise _wrong(call, situation.focused.body_in(_base(situation, call)), what, 0)
+    if not situation.whereabouts.has_joined(artifact.workspace):
+        raise not_joined(artifact.workspace)
+    return artifact
 
 
 def _workspace_of(situation: Situation, artifact: ArtifactId) -> Workspace:
@@ -119,82 +169,53 @@ def _told(situation: Situation, finish: Finish) -> Told:
 
 @_action("makeArtifact", 2, 3, 4)
 def make_artifact(situation: Situation, call: Call, finish: Finish) -> UnderWay | None:
-    """``makeArtifact(Name, Type [, Parameters] [, -Id])``: make an artifact in the current workspace."""
-    arguments = call.arguments
-    workspace, name = _place(situation, call, name_argument(arguments[0], call.name))
-    type_name = name_argument(arguments[1], call.name)
-    only_id = len(arguments) == 3 and arguments[2].__class__ is Var
-    parameters = bare(arguments[2]) if len(arguments) > 2 and not only_id else NIL
+    """``makeArtifact(Name, Type [, Parameters [, -Id]])``: make an artifact.
+
+    In the current workspace, in the one that the action is directed to, or in the one in front of the name.
+    """
+    here = _base(situation, call)
+    holder = here.lookup("workspace")
+    name, type_name = _name(call, 0, holder), _name(call, 1, holder, "the name of a type")
+    parameters = bare(call.arguments[2]) if len(call.arguments) > 2 else NIL
     if not is_list(parameters):
-        raise OperationFailed(
-            f"the third argument of makeArtifact is a list of parameters, not {text(parameters)}",
-            Structure("wrong_op_arguments", (call.key,)),
-        )
+        hint = "; the id is the fourth argument" if parameters.__class__ is Var else ""
+        raise _wrong(call, holder, f"argument 3 wants a list of parameters{hint}", 2)
+    _give(situation, call, holder, 3, holder)
+    workspace, plain_name = _place(situation, here, name)
 
     def made(artifact: ArtifactId | None, outcome: OperationOutcome) -> None:
-        try:
-            if artifact is None:
-                raise OperationFailed(outcome.message or "", outcome.reason)
-            output = _give(call, 2 if only_id else 3, situation.references.of(artifact))
-        except OperationFailed as failure:
-            finish(refused(failure, situation.references))
+        if artifact is None:
+            finish(failed(outcome.message or "", outcome.reason, situation.references))
         else:
-            finish(succeeded(*output))
+            finish(succeeded(*_give(situation, call, holder, 3, artifact)))
 
-    return workspace.create(name, type_name, to_value(parameters), situation.agent, made)
-
-
-@_action("lookupArtifact", 2)
-def lookup_artifact(situation: Situation, call: Call, finish: Finish) -> None:
-    """``lookupArtifact(Name, -Id)``: an artifact of the current workspace, or the one at a path."""
-    workspace, name = _place(situation, call, name_argument(call.arguments[0], call.name))
-    finish(succeeded(*_give(call, 1, situation.references.of(workspace.lookup(name)))))
+    return workspace.create(plain_name, type_name, to_value(parameters), situation.agent, made)
 
 
-@_action("lookupArtifactByType", 2)
-def lookup_artifact_by_type(situation: Situation, call: Call, finish: Finish) -> None:
-    """``lookupArtifactByType(Type, -Id)``: the oldest artifact of a type in the current workspace."""
-    wanted = name_argument(call.arguments[0], call.name)
-    workspace = situation.whereabouts.current(call.act.intention)
-    for artifact in workspace.artifacts():
-        if artifact.type_name == wanted or artifact.type_name.rpartition(".")[2] == wanted:
-            finish(succeeded(*_give(call, 1, situation.references.of(artifact))))
-            return
-    raise OperationFailed(
-        f"workspace {workspace.path} has no artifact of type {wanted}",
-        Structure("artifact_not_available", (wanted,)),
-    )
-
-
-@_action("getCurrentArtifacts", 1)
-def get_current_artifacts(situation: Situation, call: Call, finish: Finish) -> None:
-    """``getCurrentArtifacts(-Names)``: the artifacts of the current workspace, as strings."""
-    workspace = situation.whereabouts.current(call.act.intention)
-    names = make_list([String(artifact.name) for artifact in workspace.artifacts()])
-    finish(succeeded(*_give(call, 0, names)))
-
-
-@_action("disposeArtifact", 1)
-def dispose_artifact(situation: Situation, call: Call, finish: Finish) -> None:
-    """``disposeArtifact(Id)``: end an artifact."""
-    artifact = _artifact(situation, call)
-    _workspace_of(situation, artifact).dispose_artifact(artifact, _told(situation, finish))
-
-
-@_action("linkArtifacts", 3)
-def link_artifacts(situation: Situation, call: Call, finish: Finish) -> None:
-    """``linkArtifacts(FromId, Port, ToId)``: put an artifact behind an out port of another one."""
-    source, target = _artifact(situation, call), _artifact(situation, call, 2)
-    port = name_argument(call.arguments[1], call.name)
-    _workspace_of(situation, source).link(source, port, target, _told(situation, finish))
-
-
-@_action("focus", 1)
+@_action("focus", 1, 2)
 def focus(situation: Situation, call: Call, finish: Finish) -> None:
-    """``focus(Id)``: perceive an artifact from now on; its name will do as well."""
-    artifact = _artifact(situation, call)
-    workspace = _workspace_of(situation, artifact)
-    situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish))
+    """``focus(Id [, Filter])``: perceive an artifact from now on, perhaps only what a filter lets pass."""
+    artifact, only = _artifact(situation, call), _filter(situation, call)
+    if situation.focused.is_body(artifact) or artifact is situation.session():
+        # Of its own body and session an agent perceives everything anyway.
+        finish(succeeded())
+        return
+    workspace, told = _workspace_of(situation, artifact), _told(situation, finish)
+    situation.focused.begin(workspace, artifact, call.namespace, told, only)
+
+
+def _filter(situation: Situation, call: Call) -> Filter | None:
+    """What the second argument lets pass; None when there is no second argument."""
+    if len(call.arguments) == 1:
+        return None
+    complain = partial(
+        situation.environment.log_error, situation.agent, "a filter failed, everything passes:"
+    )
+    found = filter_of(to_value(call.arguments[1]), complain)
+    if found is None:
+        what = "argument 2 wants a filter: patterns such as count(_), or a Python object with a method select"
+        raise _wrong(call, situation.focused.body_in(_base(situation, call)), what, 1)
+    return found
 
 
 class _Waiting:
@@ -213,19 +234,28 @@ class _Waiting:
         """Nothing."""
 
 
-@_action("focusWhenAvailable", 1)
+@_action("focusWhenAvailable", 1, 2)
 def focus_when_available(situation: Situation, call: Call, finish: Finish) -> UnderWay | None:
-    """``focusWhenAvailable(Name)``: wait until the current workspace has it, and focus it."""
-    workspace, wanted = _place(situation, call, name_argument(call.arguments[0], call.name))
+    """``focusWhenAvailable(Name [, Filter])``: wait until there is an artifact of that name, and focus it."""
+    here = _base(situation, call)
+    name = _name(call, 0, situation.focused.body_in(here))
+    only = _filter(situation, call)
+    workspace, wanted = _place(situation, here, name)
+    if not situation.whereabouts.has_joined(workspace.path):
+        raise not_joined(workspace.path)
     present = next((a for a in workspace.artifacts() if a.name == wanted), None)
     if present is not None:
-        situation.focused.begin(workspace, present, call.namespace, _told(situation, finish))
+        situation.focused.begin(workspace, present, call.namespace, _told(situation, finish), only)
         return None
 
     def look(artifact: ArtifactId, is_there: bool) -> None:
-        if is_there and artifact.name == wanted:
-            stop()
-            situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish))
+        if not is_there or artifact.name != wanted:
+            return
+        stop()
+        if not situation.whereabouts.has_joined(workspace.path):
+            finish(refused(not_joined(workspace.path), situation.references))
+            return
+        situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish), only)
 
     stop = workspace.watch(look)
     return _Waiting(stop)
@@ -234,43 +264,64 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
 @_action("stopFocus", 1)
 def stop_focus(situation: Situation, call: Call, finish: Finish) -> None:
     """``stopFocus(Id)``: perceive an artifact no more; without effect when it is not focused."""
-    wanted = artifact_argument(call.arguments[0], call.name)
-    if isinstance(wanted, str):
-        wanted = _artifact(situation, call)
-    situation.focused.end(wanted, call.namespace)
-    finish(succeeded())
-
-
-@_action("createWorkspace", 1)
-def create_workspace(situation: Situation, call: Call, finish: Finish) -> None:
-    """``createWorkspace(Path)``: make a workspace; the path starts from the current one."""
-    current = situation.whereabouts.current(call.act.intention)
-    path = resolve_path(current.path, name_argument(call.arguments[0], call.name))
-    situation.environment.create_workspace(path)
+    artifact = _artifact(situation, call)
+    # An artifact that is gone cannot be meant any more; what was perceived of it is forgotten already.
+    _workspace_of(situation, artifact).offers(artifact)
+    situation.focused.end(artifact, call.namespace)
     finish(succeeded())
 
 
 @_action("joinWorkspace", 1, 2)
 def join_workspace(situation: Situation, call: Call, finish: Finish) -> None:
     """``joinWorkspace(Path [, -Id])``: make a workspace the current one of the intention."""
-    intention = call.act.intention
-    wanted = workspace_argument(call.arguments[0], call.name)
-    workspace = situation.whereabouts.find(wanted, intention) if isinstance(wanted, str) else wanted
-    output = _give(call, 1, situation.references.of(workspace))
+    intention, session = call.act.intention, situation.session()
+    workspace = _workspace(situation, call, session)
+    if workspace is None:
+        workspace = situation.whereabouts.find(_name(call, 0, session), intention)
+    output = _give(situation, call, session, 1, workspace)
     if situation.whereabouts.join(workspace, intention):
         situation.joined(workspace, True)
     finish(succeeded(*output))
 
 
+def _workspace(situation: Situation, call: Call, session: ArtifactId) -> Workspace | None:
+    """The workspace whose id is the first argument; None when that is a name."""
+    term = bare(call.arguments[0])
+    if term.__class__ is Reference and isinstance(term.value, Workspace):
+        return term.value
+    if name_of(term) is None:
+        raise _wrong(
+            call, session, "argument 1 wants a workspace (its path, or the id that joinWorkspace gives)", 0
+        )
+    return None
+
+
 @_action("quitWorkspace", 0, 1)
 def quit_workspace(situation: Situation, call: Call, finish: Finish) -> None:
-    """``quitWorkspace(Id)``: leave a workspace (without argument the current one) and all focused there."""
+    """``quitWorkspace([Id])``: leave a workspace (without argument the current one) and all focused there."""
     intention = call.act.intention
-    workspace = situation.whereabouts.current(intention)
-    if call.arguments:
-        wanted = workspace_argument(call.arguments[0], call.name)
-        workspace = situation.whereabouts.named(wanted, intention) if isinstance(wanted, str) else wanted
-    situation.focused.end_all(workspace)
-    if situation.whereabouts.quit(workspace):
-        situation.joined(workspace, False)
+    if not call.arguments:
+        workspace = _base(situation, call)
+    else:
+        session = situation.session()
+        workspace = _workspace(situation, call, session) or situation.whereabouts.named(
+            _name(call, 0, session), intention
+        )
+    if not situation.whereabouts.has_joined(workspace.path):
+        raise not_joined(workspace.path)
+    _quit(situation, workspace)
     finish(succeeded())
+
+
+@_action("quitFromEnvironment", 0)
+def quit_from_environment(situation: Situation, call: Call, finish: Finish) -> None:
+    """``quitFromEnvironment``: leave all workspaces; ``joinWorkspace`` leads back."""
+    for workspace in reversed(situation.whereabouts.joined()):
+        _quit(situation, workspace)
+    finish(succeeded())
+
+
+def _quit(situation: Situation, workspace: Workspace) -> None:
+    situation.focused.end_all(workspace)
+    situation.whereabouts.quit(workspace)
+    situation.joined(workspace, False)

@@ -6,13 +6,15 @@ from typing import Protocol
 
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.body.actions import ACTIONS, Situation, keys
-from jacaros.body.call import Call, read
+from jacaros.body.call import Call, Direction, read
 from jacaros.body.completion import SUCCEEDED, of_operation, refused, succeeded
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
+from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
 from jacaros.body.selection import Selection
 from jacaros.body.values import Outputs, References, atom_of, to_value
 from jacaros.body.whereabouts import Whereabouts
+from jacaros.env.artifact import Artifact
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
@@ -81,11 +83,19 @@ class AgentBody:
         # Acts under way; without a handle while the call that begins them has not returned.
         self._pending: dict[int, UnderWay | None] = {}
         self._entered = False
+        self._session: ArtifactId | None = None
         self._whereabouts = Whereabouts(environment, home)
         focused = FocusedArtifacts(agent, writer, references, mind.perceive)
         self._selection = Selection(agent, self._whereabouts, focused, keys())
         self._situation = Situation(
-            agent, environment, self._whereabouts, focused, self._selection, references, self._joined
+            agent,
+            environment,
+            self._whereabouts,
+            focused,
+            self._selection,
+            references,
+            self._joined,
+            self._session_id,
         )
 
     @property
@@ -168,21 +178,35 @@ class AgentBody:
         self._situation.focused.fall_silent()
         for act_id in self.pending:
             self.cancel_act(act_id)
+        if self._session is None:
+            return
+        focused = self._situation.focused
         for workspace in self._whereabouts.joined():
-            self._situation.focused.end_all(workspace)
+            focused.end_all(workspace)
+            self._withdraw(workspace, focused.body_in(workspace))
+        self._withdraw(self._whereabouts.home, self._session)
 
     def _begin(self, call: Call) -> UnderWay | None:
-        if call.direction.artifact is None:
-            action = ACTIONS.get((call.name, len(call.arguments)))
-            if action is not None:
-                return action(self._situation, call, partial(self._finish, call.act.id))
+        action = ACTIONS.get((call.name, len(call.arguments)))
+        if action is not None and call.direction.artifact is None:
+            return action(self._situation, call, partial(self._finish, call.act.id))
         artifact = self._selection.artifact_for(call)
+        if action is not None and self._is_own(artifact, call):
+            here = self._environment.workspace(artifact.workspace) if artifact is not self._session else None
+            call.direction = Direction(None, here)
+            return action(self._situation, call, partial(self._finish, call.act.id))
         if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
             # Printed here and not by the console artifact: it would see values where people want terms.
             self._show("".join(map(display, call.arguments)))
             self._finish(call.act.id, succeeded())
             return None
         return self._execute(call, artifact)
+
+    def _is_own(self, artifact: ArtifactId, call: Call) -> bool:
+        """Whether an artifact stands for the agent itself, and has that operation."""
+        if artifact is not self._session and not self._situation.focused.is_body(artifact):
+            return False
+        return call.key in self._environment.workspace(artifact.workspace).offers(artifact)
 
     def _execute(self, call: Call, artifact: ArtifactId) -> UnderWay:
         act = call.act
@@ -207,14 +231,39 @@ class AgentBody:
             self._mind.complete(act_id, completion)
 
     def _joined(self, workspace: Workspace, is_in: bool) -> None:
+        session = self._session_id()
+        focused = self._situation.focused
+        if is_in:
+            made_of = (self._agent, focused, workspace)
+            focused.inhabit(workspace, self._offer("body", workspace, AgentBodyArtifact, *made_of))
         percept = self._writer.own(
             ADD if is_in else REMOVE,
+            session,
             "joinedWsp",
             self._references.of(workspace),
             atom_of(workspace.name),
             String(workspace.path),
         )
         self._mind.perceive([percept])
+        if not is_in:
+            self._withdraw(workspace, focused.body_in(workspace))
+
+    def _session_id(self) -> ArtifactId:
+        if self._session is None:
+            made = (self._agent, self._whereabouts)
+            self._session = self._offer("session", self._whereabouts.home, AgentSessionArtifact, *made)
+        return self._session
+
+    def _offer(
+        self, kind: str, workspace: Workspace, artifact_type: type[Artifact], *arguments: object
+    ) -> ArtifactId:
+        return workspace.offer(f"{kind}_{self._agent}", artifact_type, arguments, personal=True)
+
+    def _withdraw(self, workspace: Workspace, personal: ArtifactId) -> None:
+        """Take an artifact away that stands for the agent, if nobody else has done so."""
+        workspace.take_back(personal)
+        self._references.forget(personal)
+        self._writer.forget(personal)
 
 
 def _prints(call: Call) -> bool:

@@ -3,13 +3,17 @@
 from collections.abc import Callable
 
 from jacaros.bdi.act import Percept
+from jacaros.body.filtering import Filter, FilteredObserver
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.values import References, atom_of
 from jacaros.env.ids import ArtifactId
-from jacaros.env.observation import Observation
+from jacaros.env.observation import Observation, Observer
 from jacaros.env.operation import SUCCEEDED, OperationOutcome, ignore_outcome
 from jacaros.env.ports import Told, Workspace
 from jacaros.terms.values import String, Term
+
+Watcher = Callable[[ArtifactId, bool], None]
+"""Told of an artifact that is focused (True) or no more."""
 
 Notice = Callable[[list[Percept]], None]
 """Where percepts go."""
@@ -56,6 +60,26 @@ class FocusedArtifacts:
         self._observers: dict[str | None, FocusObserver] = {}
         self._focused: dict[ArtifactId, dict[str | None, Workspace]] = {}
         self._watched: dict[Workspace, Callable[[], None]] = {}
+        self._filtered: dict[tuple[ArtifactId, str | None], Observer] = {}
+        self._bodies: dict[str, ArtifactId] = {}
+        self._watchers: dict[str, Watcher] = {}
+
+    def inhabit(self, workspace: Workspace, body: ArtifactId) -> None:
+        """Know the artifact that stands for the agent in a workspace: what is focused there is a property of it."""
+        self._bodies[workspace.path] = body
+
+    def body_in(self, workspace: Workspace) -> ArtifactId:
+        """The artifact that stands for the agent in a workspace that it has joined."""
+        return self._bodies[workspace.path]
+
+    def is_body(self, artifact: ArtifactId) -> bool:
+        """Whether an artifact stands for the agent itself."""
+        return self._bodies.get(artifact.workspace) is artifact
+
+    def watch(self, workspace: Workspace, watcher: Watcher) -> Callable[[], None]:
+        """Tell *watcher* of every artifact of a workspace that is focused (True) or no more; gives what ends that."""
+        self._watchers[workspace.path] = watcher
+        return lambda: self._watchers.pop(workspace.path, None) and None
 
     def __contains__(self, artifact: ArtifactId) -> bool:
         return artifact in self._focused
@@ -82,8 +106,16 @@ class FocusedArtifacts:
         artifact: ArtifactId,
         namespace: str | None,
         on_done: Told = ignore_outcome,
+        only: Filter | None = None,
     ) -> None:
         """Focus an artifact, and tell *on_done*; without effect when it is focused in that namespace already.
+
+        Args:
+            workspace: where the artifact is.
+            artifact: what is to be perceived.
+            namespace: of the agent's program, in which beliefs and events will be.
+            on_done: told the end.
+            only: what is to be perceived of it; None for everything.
 
         Raises:
             OperationFailed: the artifact is known to be gone.
@@ -92,19 +124,23 @@ class FocusedArtifacts:
             on_done(SUCCEEDED)
             return
 
+        observer: Observer = self._observer(namespace)
+        if only is not None:
+            observer = self._filtered[artifact, namespace] = FilteredObserver(observer, only)
+
         def focused(outcome: OperationOutcome) -> None:
             if outcome.ok:
                 self._take(workspace, artifact, namespace)
             on_done(outcome)
 
-        workspace.focus(artifact, self._observer(namespace), focused)
+        workspace.focus(artifact, observer, focused)
 
     def _take(self, workspace: Workspace, artifact: ArtifactId, namespace: str | None) -> None:
         is_first = artifact not in self._focused
         self._focused.setdefault(artifact, {})[namespace] = workspace
         self._watch(workspace)
         if is_first:
-            self._notice([self._focusing(ADD, workspace, artifact)])
+            self._tell(ADD, workspace, artifact)
 
     def end(self, artifact: ArtifactId, namespace: str | None) -> None:
         """Stop to focus an artifact in a namespace; without effect when it is not focused there."""
@@ -114,7 +150,8 @@ class FocusedArtifacts:
             return
         if not namespaces:
             self._lose(workspace, artifact)
-        workspace.stop_focus(artifact, self._observer(namespace))
+        observer = self._filtered.pop((artifact, namespace), None) or self._observer(namespace)
+        workspace.stop_focus(artifact, observer)
 
     def end_all(self, workspace: Workspace) -> None:
         """Stop to focus everything in a workspace."""
@@ -150,8 +187,15 @@ class FocusedArtifacts:
         self._watched[workspace] = workspace.watch(look)
 
     def _lose(self, workspace: Workspace, artifact: ArtifactId) -> None:
-        del self._focused[artifact]
-        self._notice([self._focusing(REMOVE, workspace, artifact)])
+        for namespace in self._focused.pop(artifact):
+            self._filtered.pop((artifact, namespace), None)
+        self._tell(REMOVE, workspace, artifact)
+
+    def _tell(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> None:
+        self._notice([self._focusing(kind, workspace, artifact)])
+        watcher = self._watchers.get(workspace.path)
+        if watcher is not None:
+            watcher(artifact, kind is ADD)
 
     def _focusing(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> Percept:
         arguments: tuple[Term, ...] = (
@@ -162,7 +206,7 @@ class FocusedArtifacts:
             atom_of(workspace.name),
             String(workspace.path),
         )
-        return self._writer.own(kind, "focusing", *arguments)
+        return self._writer.own(kind, self._bodies[workspace.path], "focusing", *arguments)
 
 
 def _ignore(percepts: list[Percept]) -> None:

@@ -100,10 +100,16 @@ class PerceptWriter:
             each.written = written
         return written
 
-    def own(self, kind: str, name: str, *arguments: Term) -> Percept:
-        """A percept about the agent's own body, such as ``joinedWsp(Id,lab,"/main/lab")``."""
-        annotations = (_OBSERVABLE_PROPERTY, SOURCE_PERCEPT)
-        return Percept(kind, (functor(name, len(arguments)), *arguments), annotations)
+    def own(self, kind: str, about: ArtifactId, name: str, *arguments: Term) -> Percept:
+        """A percept about the agent itself, such as ``joinedWsp(Id,lab,"/main/lab")``.
+
+        Args:
+            kind: `ADD` or `REMOVE`.
+            about: the artifact of which it is a property, the agent's body or session.
+            name: its functor.
+            arguments: ground terms.
+        """
+        return Percept(kind, (functor(name, len(arguments)), *arguments), self._origin(about)[0])
 
     def forget(self, artifact: ArtifactId) -> None:
         """Let go of what is kept about an artifact that will not be observed again soon."""

@@ -1,7 +1,7 @@
 """Where an agent is: the workspaces that it has joined, and the current one of each intention."""
 
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import resolve_path
@@ -17,6 +17,10 @@ class Whereabouts:
     Args:
         environment: holds the workspaces.
         home: full path of the workspace that the agent begins in.
+
+    Attributes:
+        home: the workspace that the agent begins in.
+        watcher: told of each workspace that is joined (True) or quit (False).
     """
 
     REMEMBERED_INTENTIONS = 1000
@@ -27,6 +31,7 @@ class Whereabouts:
         self.home = environment.workspace(home)
         self._joined: dict[str, Workspace] = {home: self.home}
         self._last = self.home
+        self.watcher: Callable[[Workspace, bool], None] | None = None
         self._of_intention: OrderedDict[int, Workspace] = OrderedDict()
 
     def joined(self) -> tuple[Workspace, ...]:
@@ -86,6 +91,8 @@ class Whereabouts:
         is_new = workspace.path not in self._joined
         self._joined[workspace.path] = workspace
         self._last = workspace
+        if is_new and self.watcher is not None:
+            self.watcher(workspace, True)
         if intention is not None:
             self._of_intention[intention] = workspace
             self._of_intention.move_to_end(intention)
@@ -102,6 +109,8 @@ class Whereabouts:
             return False
         if self._last is workspace:
             self._last = next(reversed(self._joined.values()), self.home)
+        if self.watcher is not None:
+            self.watcher(workspace, False)
         return True
 
 

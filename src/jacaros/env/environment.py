@@ -6,19 +6,16 @@ from jacaros.clock import Clock
 from jacaros.env import ports
 from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType
-from jacaros.env.default.blackboard import Blackboard
-from jacaros.env.default.console import Console
-from jacaros.env.errors import OperationFailed, UnknownArtifactType, UnknownWorkspace, spelling_hint
+from jacaros.env.default.furnishing import furnish
+from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
 from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
+from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
 from jacaros.trace import Tracer
-
-DEFAULT_ARTIFACTS: tuple[tuple[str, type[Artifact]], ...] = (("blackboard", Blackboard), ("console", Console))
-"""Names and types of the artifacts that every workspace has from the beginning."""
 
 
 def knows_no_type(type_name: str) -> type[Artifact]:
@@ -52,9 +49,9 @@ class Environment:
         self._setting = Setting(clock, resources or {}, log, None, on_internal_error)
         self._find_type = find_type
         self._registry = Registry()
-        self._workspaces: dict[str, ports.Workspace] = {}
         self._own: list[Workspace] = []
-        self._add("/main")
+        self._tree = WorkspaceTree(self._make)
+        self._tree.create("/main")
 
     @property
     def clock(self) -> Clock:
@@ -77,22 +74,17 @@ class Environment:
 
     def workspaces(self) -> tuple[ports.Workspace, ...]:
         """All workspaces, the oldest first."""
-        return tuple(self._workspaces.values())
+        return self._tree.all()
 
     def workspace(self, path: str) -> ports.Workspace:
-        """The workspace with that full path.
+        """The workspace with that full path; names of links may stand in it.
 
         Raises:
             UnknownWorkspace: there is none.
         """
-        found = self._workspaces.get(path)
-        if found is None:
-            hint = spelling_hint(path, self._workspaces)
-            reason = Structure("unknown_workspace", (str.__str__(path),))
-            raise UnknownWorkspace(f"there is no workspace {path}{hint}", reason)
-        return found
+        return self._tree.find(path)
 
-    def create_workspace(self, path: str) -> Workspace:
+    def create_workspace(self, path: str) -> ports.Workspace:
         """Make a workspace with its default artifacts.
 
         Args:
@@ -102,27 +94,24 @@ class Environment:
             OperationFailed: it is there already; reason ``workspace_already_present(Path)``.
             UnknownWorkspace: the workspace above it is not there.
         """
-        path = str.__str__(path)
-        above = self._check_free(path)
-        if above not in self._own:
-            raise OperationFailed(
-                f"workspace {above.path} is served from elsewhere: {path} is to be made there"
-            )
-        return self._add(path)
+        return self._tree.create(path)
 
-    def _check_free(self, path: str) -> ports.Workspace:
-        """See whether a workspace can be made at *path*; the workspace above it."""
-        if path in self._workspaces:
-            reason = Structure("workspace_already_present", (path,))
-            raise OperationFailed(f"there is a workspace {path} already", reason)
-        return self.workspace(path.rpartition("/")[0])
+    def link_workspace(self, path: str, target: str) -> None:
+        """Let a full path, at which there is nothing yet, lead to another workspace.
 
-    def _add(self, path: str) -> Workspace:
+        Raises:
+            OperationFailed: something is there already; reason ``workspace_already_present(Path)``.
+            UnknownWorkspace: the target, or the workspace above the path, is not there.
+        """
+        self._tree.link(path, target)
+
+    def _make(self, path: str, above: ports.Workspace | None) -> Workspace:
+        if above is not None and above not in self._own:
+            message = f"workspace {above.path} is served from elsewhere: {path} is to be made there"
+            raise OperationFailed(message, Structure("not_supported", ("createWorkspace",)))
         workspace = Workspace(path, self._registry, self._setting, self._find_type)
-        self._workspaces[path] = workspace
+        furnish(workspace, self._tree)
         self._own.append(workspace)
-        for name, artifact_type in DEFAULT_ARTIFACTS:
-            workspace.create(name, artifact_type)
         return workspace
 
     def mount(self, workspace: ports.Workspace) -> Callable[[], None]:
@@ -132,21 +121,13 @@ class Environment:
             OperationFailed: there is one at that path already; reason ``workspace_already_present(Path)``.
             UnknownWorkspace: the workspace above it is not there.
         """
-        path = workspace.path
-        self._check_free(path)
-        self._workspaces[path] = workspace
-
-        def unmount() -> None:
-            if self._workspaces.get(path) is workspace:
-                del self._workspaces[path]
-
-        return unmount
+        return self._tree.mount(workspace)
 
     def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation for an agent, wherever the artifact lives; see `Workspace.execute`."""
         steps = self._registry.find(request.artifact)
         if steps is None:
-            return self._workspaces.get(request.artifact.workspace, self._own[0]).execute(request)
+            return self._tree.at(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)
 
     def log_error(self, who: str, what: str, error: BaseException) -> None:

@@ -129,6 +129,18 @@ class Workspace(Protocol):
     def dispose_artifact(self, artifact_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
         """End an artifact; raises `UnknownArtifact` when it is known to be gone."""
 
+    def offer(
+        self, name: str, artifact_type: type[Artifact], args: Sequence[object] = (), personal: bool = False
+    ) -> ArtifactId:
+        """Have an artifact of JaCaROS itself, such as the body of an agent; it need not be made before it is used.
+
+        Where the workspace is served from elsewhere it is an id that nobody finds by its name.
+        """
+        return ArtifactId(name, artifact_type.__name__, self.path, 0, None)
+
+    def take_back(self, artifact_id: ArtifactId) -> None:
+        """End an artifact that was offered, if it is still there."""
+
     def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation for an agent; ``request.on_done`` is told its end, after observers were told the changes."""
 
@@ -159,3 +171,6 @@ class Environment(Protocol):
 
     def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation, wherever the artifact lives; see `Workspace.execute`."""
+
+    def log_error(self, who: str, what: str, error: BaseException) -> None:
+        """Tell people that *what* went wrong in the code of *who*."""

@@ -15,6 +15,7 @@ from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
+from jacaros.env.manual import Manual, describe
 from jacaros.env.observation import Observer
 from jacaros.env.operation import (
     LINK,
@@ -28,6 +29,9 @@ from jacaros.env.ports import Made, Told, nobody_waits
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Structure
 from jacaros.trace import Cause
+
+Watcher = Callable[[ArtifactId, bool], None]
+"""Told of an artifact that comes (True) or goes (False)."""
 
 
 class Workspace(ports.Workspace):
@@ -45,12 +49,54 @@ class Workspace(ports.Workspace):
         self.name = path.rpartition("/")[2]
         self._registry, self._setting, self._find_type = registry, setting, find_type
         self._artifacts: dict[str, ArtifactId] = {}
+        self._personal: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
         self._providers: dict[tuple[str, int], tuple[ArtifactId, ...]] = {}
         self._offers: dict[ArtifactId, dict[str, None]] = {}
-        self._watchers: list[Callable[[ArtifactId, bool], None]] = []
+        self._watchers: list[Watcher] = []
+        self._watchers_of_all: list[Watcher] = []
 
     # ---- artifacts come and go
+
+    def offer(
+        self, name: str, artifact_type: type[Artifact], args: Sequence[object] = (), personal: bool = False
+    ) -> ArtifactId:
+        """Have an artifact of JaCaROS itself, which is made when somebody first uses or perceives it.
+
+        Args:
+            name: unique in the workspace.
+            artifact_type: its ``init`` is a plain ``def``.
+            args: for ``init``.
+            personal: it belongs to one agent: it is found by its name, and nobody's actions are done by it who
+                does not name it.
+        """
+        artifact_id = self._new_id(name, artifact_type, None)
+        make = partial(self._keep_promise, artifact_id, artifact_type, tuple(args))
+        self._registry.promise(artifact_id, artifact_type.interface, make)
+        if personal:
+            self._personal[name] = artifact_id
+            self._tell(self._watchers_of_all, artifact_id, True)
+        else:
+            self._artifacts[name] = artifact_id
+            self._changed(artifact_id, True)
+        return artifact_id
+
+    def _keep_promise(
+        self, artifact_id: ArtifactId, artifact_type: type[Artifact], args: tuple[object, ...]
+    ) -> Steps:
+        steps = attach(artifact_type, artifact_id, self, self._setting)
+        # Known at once: its ``init`` may look around.
+        self._registry.add(steps, self._forget)
+        request = OperationRequest(artifact_id, "init", args)
+        steps.initialise(init_of(artifact_type, request), request)
+        steps.initialised = True
+        return steps
+
+    def take_back(self, artifact_id: ArtifactId) -> None:
+        """End an artifact that was offered, if it is still there."""
+        name = artifact_id.name
+        if artifact_id in (self._artifacts.get(name), self._personal.get(name)):
+            self.dispose_artifact(artifact_id)
 
     def create(
         self,
@@ -89,7 +135,8 @@ class Workspace(ports.Workspace):
     ) -> tuple[type[Artifact], Steps]:
         name = artifact_id.name
         making = self._making.get(name)
-        if name in self._artifacts or (making is not None and not making.disposed):
+        is_there = name in self._artifacts or name in self._personal
+        if is_there or (making is not None and not making.disposed):
             raise refused(
                 "artifact_already_present", name, f"workspace {self.path} has an artifact {name} already"
             )
@@ -119,18 +166,25 @@ class Workspace(ports.Workspace):
         Raises:
             UnknownArtifact: it is gone already.
         """
-        self._registry.dispose(self._steps_of(artifact_id))
+        if self._registry.withdraw(artifact_id):
+            self._forget(artifact_id)
+        else:
+            self._registry.dispose(self._steps_of(artifact_id))
         on_done(SUCCEEDED)
 
     def _forget(self, artifact_id: ArtifactId) -> None:
-        del self._artifacts[artifact_id.name]
-        self._changed(artifact_id, False)
+        if self._personal.get(artifact_id.name) is artifact_id:
+            del self._personal[artifact_id.name]
+            self._tell(self._watchers_of_all, artifact_id, False)
+        else:
+            del self._artifacts[artifact_id.name]
+            self._changed(artifact_id, False)
 
     async def close(self) -> None:
         """Dispose all artifacts, the last one made first, and wait until they have given back everything."""
         for steps in tuple(self._making.values()):
             self._registry.dispose(steps)
-        for artifact_id in reversed(self.artifacts()):
+        for artifact_id in reversed((*self.artifacts(), *self.personal_artifacts())):
             self.dispose_artifact(artifact_id)
         await self._registry.ended()
 
@@ -140,13 +194,17 @@ class Workspace(ports.Workspace):
         """All artifacts, the oldest first; those that every workspace has are the first."""
         return tuple(self._artifacts.values())
 
+    def personal_artifacts(self) -> tuple[ArtifactId, ...]:
+        """The artifacts that stand for the agents in this workspace."""
+        return tuple(self._personal.values())
+
     def lookup(self, name: str) -> ArtifactId:
         """Find an artifact by its name.
 
         Raises:
             UnknownArtifact: there is none, or its ``init`` has not ended.
         """
-        found = self._artifacts.get(name)
+        found = self._artifacts.get(name) or self._personal.get(name)
         if found is None:
             hint = spelling_hint(name, self._artifacts)
             message = f"workspace {self.path} has no artifact {name}{hint}"
@@ -169,10 +227,16 @@ class Workspace(ports.Workspace):
                 stop()
         return self.lookup(name)
 
-    def watch(self, watcher: Callable[[ArtifactId, bool], None]) -> Callable[[], None]:
-        """Call *watcher* with every artifact that comes (True) or goes (False); gives what ends that."""
-        self._watchers.append(watcher)
-        return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None
+    def watch(self, watcher: Watcher, personal: bool = False) -> Callable[[], None]:
+        """Call *watcher* with every artifact that comes (True) or goes (False); gives what ends that.
+
+        Args:
+            watcher: called at once, within the turn of the loop.
+            personal: also with those of `personal_artifacts`.
+        """
+        watchers = self._watchers_of_all if personal else self._watchers
+        watchers.append(watcher)
+        return lambda: watchers.remove(watcher) if watcher in watchers else None
 
     def providers(self, operation: str, arity: int) -> tuple[ArtifactId, ...]:
         """The artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
@@ -197,6 +261,23 @@ class Workspace(ports.Workspace):
             found = self._offers[artifact_id] = dict.fromkeys(self.interface(artifact_id).operations.keys())
         return found
 
+    def artifact_type(self, type_name: str) -> type[Artifact]:
+        """The class that `make_artifact` would make an artifact of.
+
+        Raises:
+            OperationFailed: there is none.
+        """
+        return artifact_type_of(type_name, self._find_type, self._setting)
+
+    def manual(self, artifact_id: ArtifactId) -> Manual:
+        """What an artifact offers, with the operations that it has defined for itself.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        steps = self._steps_of(artifact_id)
+        return describe(steps.artifact_type, steps.interface)
+
     def operations_changed(self) -> None:
         """Be told that an artifact has other operations now."""
         self._providers.clear()
@@ -208,7 +289,7 @@ class Workspace(ports.Workspace):
         Raises:
             UnknownArtifact: it is gone.
         """
-        return self._steps_of(artifact_id).interface
+        return self._registry.interface(artifact_id) or self._steps_of(artifact_id).interface
 
     def properties(self, artifact_id: ArtifactId) -> tuple[ObservableProperty, ...]:
         """The observable properties of an artifact, as observers know them.
@@ -309,7 +390,11 @@ class Workspace(ports.Workspace):
     def _changed(self, artifact_id: ArtifactId, present: bool) -> None:
         self._providers.clear()
         self._offers.clear()
-        for watcher in tuple(self._watchers):
+        self._tell(self._watchers, artifact_id, present)
+        self._tell(self._watchers_of_all, artifact_id, present)
+
+    def _tell(self, watchers: list[Watcher], artifact_id: ArtifactId, present: bool) -> None:
+        for watcher in tuple(watchers):
             try:
                 watcher(artifact_id, present)
             except Exception as error:

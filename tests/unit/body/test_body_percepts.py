@@ -84,9 +84,17 @@ def test_a_percept_carries_the_cause_of_its_observation() -> None:
     assert writer().percepts(Observation(LAMP, added=(observable("on"),), cause=why))[0].cause is why
 
 
-def test_percepts_about_the_body_have_no_artifact() -> None:
-    percept = writer().own("add", "joinedWsp", Reference(MAIN), atom("main"))
-    assert [text(a) for a in percept.annotations] == ["percept_type(obs_prop)", "source(percept)"]
+def test_percepts_about_the_agent_are_like_properties_of_an_artifact() -> None:
+    session = ArtifactId("session_bob", "AgentSessionArtifact", "/main", 9, None)
+    percept = writer().own("add", session, "joinedWsp", Reference(MAIN), atom("main"))
+    assert [text(a).partition("(")[0] for a in percept.annotations] == [
+        "artifact_id",
+        "artifact_name",
+        "percept_type",
+        "source",
+        "workspace",
+    ]
+    assert "artifact_name(session_bob)" in [text(a) for a in percept.annotations]
 
 
 def test_what_is_written_of_a_property_is_the_same_for_all_and_at_its_end() -> None:

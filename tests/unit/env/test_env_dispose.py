@@ -370,7 +370,7 @@ def test_processes_started_after_the_end_do_not_begin(play):
         late = await stage.make(Late)
         assert stage.call(late, "end").ok
         await stage.clock.sleep(1.0)
-        assert stage.main.artifacts()[-1].name == "console"
+        assert stage.main.artifacts()[-1].name == "workspace"
 
     play(scene)
 

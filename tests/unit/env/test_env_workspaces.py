@@ -28,7 +28,13 @@ def test_main_is_there_with_its_default_artifacts(play):
     async def scene(stage):
         assert stage.environment.workspaces() == (stage.main,)
         assert (stage.main.path, stage.main.name) == ("/main", "main")
-        assert [each.name for each in stage.main.artifacts()] == ["blackboard", "console"]
+        assert [each.name for each in stage.main.artifacts()] == [
+            "blackboard",
+            "console",
+            "manrepo",
+            "system",
+            "workspace",
+        ]
         assert stage.main.lookup("console").creator is None
 
     play(scene)

@@ -17,9 +17,13 @@ class Console(Artifact):
     @operation
     def println(self, *arguments: object) -> None:
         """Print the arguments as one line."""
-        line = "".join(map(text, arguments))
-        write = self.resources.get("console")
-        if callable(write):
-            write(self.caller, line)
-        else:
-            self.log(line)
+        write_line(self, "".join(map(text, arguments)))
+
+
+def write_line(artifact: Artifact, line: str) -> None:
+    """Print a line for the agent that has called an operation of *artifact*."""
+    write = artifact.resources.get("console")
+    if callable(write):
+        write(artifact.caller, line)
+    else:
+        artifact.log(line)

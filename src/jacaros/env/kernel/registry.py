@@ -3,14 +3,22 @@
 from collections.abc import Callable
 
 from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.steps import Steps
+
+Promise = tuple[Interface, Callable[[], Steps]]
+"""What an artifact that has not been made yet will offer, and what makes it."""
 
 
 class Registry:
-    """Finds the artifact behind an id, and the artifacts behind an out port."""
+    """Finds the artifact behind an id, and the artifacts behind an out port.
+
+    An artifact may be promised: it has its id, and is made when somebody first wants more than its operations.
+    """
 
     def __init__(self) -> None:
         self._steps: dict[ArtifactId, Steps] = {}
+        self._promises: dict[ArtifactId, Promise] = {}
         self._forget: dict[ArtifactId, Callable[[ArtifactId], None]] = {}
         self._ending: list[Steps] = []
         self._links: dict[tuple[ArtifactId, str], list[ArtifactId]] = {}
@@ -26,9 +34,28 @@ class Registry:
         self._steps[steps.id] = steps
         self._forget[steps.id] = forget
 
+    def promise(self, artifact_id: ArtifactId, interface: Interface, make: Callable[[], Steps]) -> None:
+        """Make an artifact known that *make* will make and `add`."""
+        self._promises[artifact_id] = (interface, make)
+
+    def withdraw(self, artifact_id: ArtifactId) -> bool:
+        """Take a promise back; False when the artifact has been made, or there is none."""
+        return self._promises.pop(artifact_id, None) is not None
+
     def find(self, artifact_id: ArtifactId) -> Steps | None:
         """The artifact with that id, None when it is gone."""
-        return self._steps.get(artifact_id)
+        found = self._steps.get(artifact_id)
+        if found is None and artifact_id in self._promises:
+            _, make = self._promises.pop(artifact_id)
+            return make()
+        return found
+
+    def interface(self, artifact_id: ArtifactId) -> Interface | None:
+        """The operations of the artifact with that id, None when it is gone."""
+        if artifact_id in self._promises:
+            return self._promises[artifact_id][0]
+        found = self._steps.get(artifact_id)
+        return found.interface if found is not None else None
 
     def dispose(self, steps: Steps) -> None:
         """Forget an artifact and the links from and to it, and end its operations."""

@@ -77,6 +77,11 @@ class Steps:
         self.loop: asyncio.AbstractEventLoop | None = None
         self._loop_thread = 0
 
+    @property
+    def artifact_type(self) -> type:
+        """The class of the artifact."""
+        return type(self._artifact)
+
     # ---- operations come
 
     def execute(self, request: OperationRequest, kind: str) -> OperationExecution:

@@ -1,0 +1,101 @@
+"""The artifacts that stand for an agent in its workspaces: ``body_bob`` in each, ``session_bob`` in its home.
+
+They show to others what the agent focuses and where it is.  Nobody has to ask for them: they are made when somebody
+looks them up.  What the agent itself does with them its `AgentBody` does.
+"""
+
+from typing import NoReturn
+
+from jacaros.body.focus import FocusedArtifacts
+from jacaros.body.whereabouts import Whereabouts
+from jacaros.env.artifact import Artifact, Out, internal_operation, operation
+from jacaros.env.ids import ArtifactId
+from jacaros.env.ports import Workspace
+from jacaros.env.values import Atom
+
+
+class AgentBodyArtifact(Artifact):
+    """The body of an agent in one workspace.
+
+    Properties:
+        focusing(Id, Name, Type, WspId, WspName, WspPath): one for each artifact of the workspace that the agent focuses.
+    """
+
+    def init(self, agent: str, focused: FocusedArtifacts, workspace: Workspace) -> None:
+        """Show what is focused, and what comes and goes."""
+        self._agent, self._here = agent, workspace
+        for artifact in focused.in_workspace(workspace):
+            self._show(artifact, True)
+        self.on_dispose(focused.watch(workspace, lambda a, present: self.start(self._show, a, present)))
+
+    @internal_operation
+    def _show(self, artifact: ArtifactId, present: bool) -> None:
+        here = self._here
+        values = (artifact, Atom(artifact.name), artifact.type_name, here, Atom(here.name), here.path)
+        if present:
+            self.define_property("focusing", *values)
+        else:
+            self.remove_property("focusing", artifact, *(None,) * 5)
+
+    @operation
+    def focus(self, artifact: ArtifactId, only: object = None) -> None:
+        """Perceive an artifact from now on, perhaps only what a filter lets pass."""
+        _refuse(self, self._agent)
+
+    @operation(name="focusWhenAvailable")
+    def focus_when_available(self, name: str, only: object = None) -> None:
+        """Wait until there is an artifact of that name, and perceive it from then on."""
+        _refuse(self, self._agent)
+
+    @operation(name="stopFocus")
+    def stop_focus(self, artifact: ArtifactId) -> None:
+        """Perceive an artifact no more."""
+        _refuse(self, self._agent)
+
+
+class AgentSessionArtifact(Artifact):
+    """The session of an agent.
+
+    Properties:
+        joinedWsp(WspId, Name, Path): one for each workspace that the agent has joined.
+    """
+
+    def init(self, agent: str, whereabouts: Whereabouts) -> None:
+        """Show where the agent is, and what it joins and quits."""
+        self._agent = agent
+        for workspace in whereabouts.joined():
+            self._show(workspace, True)
+        whereabouts.watcher = lambda workspace, joined: self.start(self._show, workspace, joined)
+
+    @internal_operation
+    def _show(self, workspace: Workspace, joined: bool) -> None:
+        if joined:
+            self.define_property("joinedWsp", workspace, Atom(workspace.name), workspace.path)
+        else:
+            self.remove_property("joinedWsp", None, None, workspace.path)
+
+    @operation(name="joinWorkspace")
+    def join(self, path: str) -> None:
+        """Make a workspace the current one of the intention."""
+        _refuse(self, self._agent)
+
+    @operation(name="joinWorkspace")
+    def join_and_tell(self, path: str, workspace: Out) -> None:
+        """Make a workspace the current one of the intention, and give its id."""
+        _refuse(self, self._agent)
+
+    @operation(name="quitWorkspace")
+    def quit(self, workspace: object = None) -> None:
+        """Leave a workspace."""
+        _refuse(self, self._agent)
+
+    @operation(name="quitFromEnvironment")
+    def quit_all(self) -> None:
+        """Leave all workspaces."""
+        _refuse(self, self._agent)
+
+
+def _refuse(artifact: Artifact, owner: str) -> NoReturn:
+    """Fail: the owner's own actions do not come here."""
+    caller = artifact.caller or "nobody"
+    artifact.fail(f"{artifact.name} obeys {owner} only", "security_exception", caller, artifact.name)

@@ -1,0 +1,166 @@
+"""The artifact ``workspace``: what agents do with artifacts and workspaces as such."""
+
+from typing import NoReturn
+
+from jacaros.env import ports
+from jacaros.env.artifact import Artifact, Out, internal_operation, operation
+from jacaros.env.errors import UnknownArtifact
+from jacaros.env.ids import ArtifactId, resolve_path
+from jacaros.env.tree import WorkspaceTree
+from jacaros.env.values import Structure
+from jacaros.env.workspace import Workspace
+
+
+class WorkspaceArtifact(Artifact):
+    """The workspace itself.
+
+    Paths start from this workspace, if they do not begin with ``/``.
+
+    Properties:
+        artifact(Id, Name, Type): one for each artifact.
+        childWsp(Name): one for each workspace directly below this one.
+        linkedWsp(Name, Path): one for each link made by ``linkWorkspace``, with the full path to which it leads.
+    """
+
+    def init(self, workspace: Workspace, tree: WorkspaceTree) -> None:
+        """Show what there is, and what comes and goes."""
+        self._here, self._tree = workspace, tree
+        self._children: set[str] = set()
+        for artifact in (*workspace.artifacts(), *workspace.personal_artifacts()):
+            self._show(artifact, True)
+        self._show_places()
+        self.on_dispose(workspace.watch(lambda a, present: self.start(self._show, a, present), personal=True))
+        tree.watch(workspace.path, lambda: self.start(self._show_places))
+
+    @internal_operation
+    def _show(self, artifact: ArtifactId, present: bool) -> None:
+        if present:
+            self.define_property("artifact", artifact, artifact.name, artifact.type_name)
+        elif self.has_property("artifact", artifact, None, None):
+            self.remove_property("artifact", artifact, None, None)
+
+    @internal_operation
+    def _show_places(self) -> None:
+        children = self._tree.children(self._here.path)
+        for name in self._children - set(children):
+            self.remove_property("childWsp", name)
+        for name in children:
+            if name not in self._children:
+                self.define_property("childWsp", name)
+        self._children = set(children)
+        for name, path in self._tree.links(self._here.path):
+            if not self.has_property("linkedWsp", name, path):
+                self.define_property("linkedWsp", name, path)
+
+    # ---- artifacts
+
+    @operation(name="makeArtifact")
+    async def make(self, name: str, type_name: str, parameters: list[object] = []) -> None:  # noqa: B006
+        """Make an artifact: here, or in the workspace to which a path in front of its name leads."""
+        await self._make(name, type_name, parameters)
+
+    @operation(name="makeArtifact")
+    async def make_and_tell(self, name: str, type_name: str, parameters: list[object], artifact: Out) -> None:
+        """Make an artifact, and give its id."""
+        artifact.set(await self._make(name, type_name, parameters))
+
+    async def _make(self, name: str, type_name: str, parameters: list[object]) -> ArtifactId:
+        workspace, plain_name = self._place(name)
+        making = workspace.make_artifact(plain_name, type_name, parameters, self.caller)
+        return await self.step(making)
+
+    @operation(name="lookupArtifact")
+    def look_up(self, name: str, artifact: Out) -> None:
+        """Find an artifact by its name, or by the path of a workspace and its name."""
+        workspace, plain_name = self._place(name)
+        artifact.set(workspace.lookup(plain_name))
+
+    @operation(name="lookupArtifactByType")
+    def look_up_by_type(self, type_name: str, artifact: Out) -> None:
+        """Find the oldest artifact of a type; a package in front of its name need not be given."""
+        for each in self._here.artifacts():
+            if is_called(type_name, each.type_name):
+                artifact.set(each)
+                return
+        self._missing(type_name)
+
+    def _missing(self, type_name: str) -> NoReturn:
+        message = f"workspace {self._here.path} has no artifact of type {type_name}"
+        raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(type_name),)))
+
+    @operation(name="getCurrentArtifacts")
+    def names(self, names: Out) -> None:
+        """Give the names of all artifacts, those that every workspace has among them."""
+        names.set([each.name for each in (*self._here.artifacts(), *self._here.personal_artifacts())])
+
+    @operation(name="disposeArtifact")
+    def dispose_it(self, artifact: ArtifactId) -> None:
+        """End an artifact."""
+        self._tree.find(artifact.workspace).dispose_artifact(artifact)
+
+    @operation(name="linkArtifacts")
+    def link_them(self, source: ArtifactId, port: str, target: ArtifactId) -> None:
+        """Put an artifact behind an out port of another one."""
+        self._tree.find(source.workspace).link(source, port, target)
+
+    # ---- workspaces
+
+    @operation(name="createWorkspace")
+    def create(self, path: str) -> None:
+        """Make a workspace."""
+        self._tree.create(resolve_path(self._here.path, path))
+
+    @operation(name="createWorkspace")
+    def create_elsewhere(self, path: str, address: str) -> None:
+        """Make a workspace on another computer: not possible yet."""
+        self._refuse(f"workspace {path} cannot be made at {address}: all workspaces are in this process")
+
+    @operation(name="createWorkspaceWithTopology")
+    def create_with_topology(self, path: str, topology: object) -> None:
+        """Make a workspace in which agents and artifacts have positions: not supported."""
+        self._refuse(f"workspace {path}: workspaces have no topology; createWorkspace makes one without")
+
+    @operation(name="linkWorkspace")
+    def link_workspace(self, path: str, local_name: str) -> None:
+        """Let a name in this workspace lead to another workspace."""
+        here = self._here.path
+        self._tree.link(resolve_path(here, local_name), resolve_path(here, path))
+
+    @operation(name="linkWorkspaces")
+    def link_workspaces(self, source: str, target: str, local_name: str) -> None:
+        """Let a name in one workspace lead to another one."""
+        here = self._here.path
+        above = self._tree.find(resolve_path(here, source)).path
+        self._tree.link(resolve_path(above, local_name), resolve_path(here, target))
+
+    @operation(name="linkRemoteWorkspace")
+    def link_remote_workspace(self, *arguments: object) -> None:
+        """Link a workspace of another system: not possible yet."""
+        self._refuse(
+            "workspaces of other processes cannot be linked yet; linkWorkspace links one of this process"
+        )
+
+    @operation(name="mountWorkspace")
+    def mount_workspace(self, mas_url: str, remote_path: str, local_path: str) -> None:
+        """Mount a workspace of another system: not possible yet."""
+        self._refuse(
+            f"{mas_url}{remote_path} cannot be mounted at {local_path}: other processes cannot be reached yet"
+        )
+
+    def _refuse(self, message: str) -> NoReturn:
+        request = self.current.request
+        self.fail(message, "not_supported", f"{request.operation}/{len(request.arguments)}")
+
+    def _place(self, path: str) -> tuple[ports.Workspace, str]:
+        """The workspace and the plain name meant by the name or path of an artifact."""
+        if "/" not in path:
+            return self._here, path
+        above, _, name = resolve_path(self._here.path, path).rpartition("/")
+        return self._tree.find(above), name
+
+
+def is_called(wanted: str, type_name: str) -> bool:
+    """Whether a type that was named when an artifact was made is the *wanted* one."""
+    if wanted == type_name:
+        return True
+    return ("." in wanted) != ("." in type_name) and wanted.rpartition(".")[2] == type_name.rpartition(".")[2]
