@@ -51,6 +51,7 @@ KINDS: Final[dict[str, Kind]] = {
     "misspelt-word": Kind("error", "nearly a reserved word"),
     "narrow-handler": Kind("note", "plans for a failure that all have conditions"),
     "nested-too-deeply": Kind("error", "too many brackets in each other"),
+    "no-effect": Kind("warning", "something in a project file that has no effect here"),
     "non-ascii-name": Kind("error", "a name with other letters than a to z"),
     "not-a-belief": Kind("error", "a clause that is neither belief, rule, goal nor plan"),
     "not-a-number": Kind("error", "arithmetic with something that is no number"),

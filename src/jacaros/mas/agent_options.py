@@ -59,7 +59,7 @@ def check_option(name: str, value: str, span: Span | None) -> Diagnostic | None:
         return Diagnostic("error", f"'{value}' does not say how urgent events are", span, hint)
     if name in _WITHOUT_EFFECT:
         why = _WITHOUT_EFFECT[name]
-        return Diagnostic("warning", f"the option '{name}' has no effect: {why}", span)
+        return Diagnostic("warning", f"the option '{name}' has no effect: {why}", span, code="no-effect")
     return None
 
 

@@ -86,11 +86,12 @@ def _check_folder(folder: Path, findings: Findings) -> None:
 def _check_project(path: Path, findings: Findings) -> None:
     findings.files.add(path.resolve())
     try:
-        deployment, diagnostics = read_project(path)
+        reading = read_project(path)
     except ProjectError as error:
         findings.diagnostics += [_of_project(each) for each in error.diagnostics]
         return
-    findings.diagnostics += [_of_project(each) for each in diagnostics]
+    deployment = reading.deployment
+    findings.diagnostics += [_of_project(each) for each in reading.diagnostics]
     folders = (deployment.base_path, *deployment.source_paths)
     findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, folders)]
     different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}

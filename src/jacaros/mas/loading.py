@@ -1,6 +1,5 @@
 """From a file to what is to be run."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -23,10 +22,10 @@ def load_deployment(path: str | Path) -> Deployment:
         raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm or .asl file")])
     from jacaros.mas.project import read_project  # here: a lone program starts sooner without it
 
-    deployment, diagnostics = read_project(path)
-    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
-        raise ProjectError(diagnostics)
-    return replace(deployment, ignored=tuple(diagnostics))
+    deployment = read_project(path).deployment
+    if any(diagnostic.severity == "error" for diagnostic in deployment.ignored):
+        raise ProjectError(deployment.ignored)
+    return deployment
 
 
 def _lone_agent(path: Path) -> Deployment:

@@ -3,9 +3,12 @@
 from contextlib import suppress
 from typing import Final, NoReturn
 
+from jacaros.asl.source import Span
+from jacaros.asl.spelling import close_matches
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS
 from jacaros.mas.project_cursor import ProjectCursor, ProjectPanic, Token, text_of
 from jacaros.mas.project_parts import AgentPart, ProjectPart
+from jacaros.mas.unsupported import INFRASTRUCTURES, JAVA, JAVA_ENVIRONMENT, NODES, Topic, Unsupported
 
 _SECTIONS: Final = (
     "infrastructure",
@@ -17,7 +20,9 @@ _SECTIONS: Final = (
     "aslSourcePath",
     "world",
 )
-_AGENT_KEYS: Final = frozenset({"agentArchClass", "agentClass", "beliefBaseClass", "at"})
+_AGENT_KEYS: Final = ("agentArchClass", "agentClass", "beliefBaseClass", "at")
+_OWN_INFRASTRUCTURES: Final = ("local", "centralised", "centralized")
+"""Infrastructures whose work is done here anyway, in lower case."""
 
 
 def read_mas2j(cursor: ProjectCursor) -> ProjectPart:
@@ -41,10 +46,18 @@ class _Mas2jReader:
         while not cursor.accept("}"):
             if cursor.token.kind == "end":
                 cursor.fail("'{' is not closed", cursor.span_of(opener), "the file ends with }")
+            start = cursor.index
             try:
                 self.section()
             except ProjectPanic:
-                self.to_next_section()
+                self.to_next_section(start)
+                if cursor.token.kind == "end":
+                    return  # nothing of the file's own '}' is known: the error may have swallowed it
+        if cursor.token.kind != "end":
+            cursor.report(
+                f"{cursor.token} stands behind the end of the system",
+                hint="there may be a '}' too many before it",
+            )
 
     def section(self) -> None:
         cursor = self.cursor
@@ -63,11 +76,22 @@ class _Mas2jReader:
             case "environment":
                 self.environment()
             case "infrastructure":
-                self.part.infrastructure.append(self.class_text())
+                self.infrastructure()
             case _:
                 span = cursor.span_of(key)
                 cursor.raw(self.at_section_or_end)
-                cursor.warn(f"'{key.text}' is about Java code and has no effect", span)
+                self.unsupported(JAVA, f"'{key.text}'", span)
+
+    def unsupported(self, topic: Topic, what: str, span: Span) -> None:
+        """Record something that has no effect here."""
+        self.part.unsupported.append(Unsupported(topic, what, span))
+
+    def infrastructure(self) -> None:
+        """How the agents are run; here they always share one process."""
+        token = self.cursor.token
+        self.part.infrastructure.append(self.class_text())
+        if token.text.lower() not in _OWN_INFRASTRUCTURES:
+            self.unsupported(INFRASTRUCTURES, f"the infrastructure {token.text}", self.cursor.span_of(token))
 
     def environment(self) -> None:
         """The class of the environment; one of Java has no effect."""
@@ -75,19 +99,18 @@ class _Mas2jReader:
         self.part.environment = self.class_text()
         name = self.part.environment.partition("(")[0]
         if name not in CARTAGO_ENVIRONMENTS:
-            self.cursor.warn(
-                f"the Java environment {name} has no effect",
-                self.cursor.span_of(token),
-                "write it as an artifact in Python, and here: environment: jacaros.Environment",
-            )
+            self.unsupported(JAVA_ENVIRONMENT, f"the environment {name}", self.cursor.span_of(token))
 
     def no_section(self) -> NoReturn:
-        what = self.cursor.token.text
-        hint = f"the sections are {', '.join(_SECTIONS)}"
-        self.cursor.fail(f"'{what}' is no section of a .mas2j file", hint=hint)
+        token = self.cursor.token
+        close = close_matches(token.text, _SECTIONS)
+        hint = f"did you mean '{close[0]}'?" if close else f"the sections are {', '.join(_SECTIONS)}"
+        self.cursor.fail(f"{token} is no section of a .mas2j file", hint=hint)
 
-    def to_next_section(self) -> None:
-        """After an error: to the next section or the end."""
+    def to_next_section(self, start: int) -> None:
+        """After an error in the section that began at *start*: to the next one or the end."""
+        if self.cursor.index == start:
+            self.cursor.advance()
         while self.cursor.token.kind != "end" and not self.at_section_or_end():
             self.cursor.advance()
 
@@ -104,8 +127,10 @@ class _Mas2jReader:
         """A class with its parameters, as written; ``at "host"`` behind it is left out."""
         name = self.cursor.name("a class name").text
         text = name + self.parameters()
+        at = self.cursor.token
         if self.cursor.accept("at"):
-            self.value("the name of a host")
+            host = self.value("the name of a host")
+            self.unsupported(NODES, f"'at {host.text}'", self.cursor.span_of(at))
         self.cursor.accept(";")
         return text
 
@@ -156,13 +181,15 @@ class _Mas2jReader:
 
     def source(self, agent: AgentPart) -> None:
         token = self.cursor.advance()
-        agent.source = text_of(token)
-        if token.first:
+        if token.first and token.kind == "word" and "/" not in token.text and "." not in token.text:
+            # A file may stand on a line of its own, but then it looks like a file.
             self.cursor.report(
                 f"a ';' is missing behind the agent '{agent.name}'",
                 self.cursor.span_of(token),
                 "each agent of the list ends with ';'",
             )
+            return
+        agent.source, agent.source_span = text_of(token), self.cursor.span_of(token)
 
     def agent_part(self, agent: AgentPart) -> None:
         cursor = self.cursor
@@ -171,13 +198,13 @@ class _Mas2jReader:
             agent.instances = self.count()
             return
         if key.text not in _AGENT_KEYS or key.kind != "word":
-            cursor.fail(
-                f"a ';' is expected behind the agent '{agent.name}'",
-                hint="each agent of the list ends with ';'",
-            )
+            close = close_matches(key.text, _AGENT_KEYS) if key.kind == "word" else []
+            hint = f"did you mean '{close[0]}'?" if close else "each agent of the list ends with ';'"
+            cursor.fail(f"a ';' is expected behind the agent '{agent.name}'", hint=hint)
         cursor.advance()
         if key.text == "at":
             agent.host = text_of(self.value("the name of a host"))
+            self.unsupported(NODES, f"'at' of agent '{agent.name}'", cursor.span_of(key))
             return
         name = cursor.name("a class name")
         text = name.text + self.parameters()
@@ -192,7 +219,7 @@ class _Mas2jReader:
 
     def count(self) -> int:
         token = self.value("a number of agents")
-        if token.kind != "number" or not token.text.isdigit() or int(token.text) < 1:
+        if token.kind != "number" or not token.text.isdecimal() or not 0 < len(token.text.lstrip("0")) < 7:
             self.cursor.fail("the number of agents is a whole number", self.cursor.span_of(token), "as in #3")
         return int(token.text)
 

@@ -1,7 +1,8 @@
 """Tokens of project files, and a place in them."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Final, NoReturn
 
@@ -25,6 +26,8 @@ _TOKEN: Final = re.compile(
     re.VERBOSE,
 )
 OPENERS: Final = {"(": ")", "[": "]", "{": "}"}
+_DEEPEST: Final = 50
+_LONGEST: Final = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +45,23 @@ class Token:
     stop: int
     first: bool
 
+    def __str__(self) -> str:
+        """The token as messages show it."""
+        return (
+            "the end of the file"
+            if self.kind == "end"
+            else self.text
+            if self.kind == "string"
+            else f"'{self.text}'"
+        )
+
 
 class ProjectPanic(Exception):
     """The declaration cannot be read any further; what is wrong has been reported."""
+
+
+class UnclosedPanic(ProjectPanic):
+    """A bracket is not closed: the blocks around it cannot be read any further either."""
 
 
 class ProjectCursor:
@@ -55,6 +72,7 @@ class ProjectCursor:
         self.diagnostics = diagnostics
         self.tokens = _tokenize(file, self.report)
         self.index = 0
+        self._depth = 0
 
     @property
     def token(self) -> Token:
@@ -64,6 +82,10 @@ class ProjectCursor:
     def peek(self) -> Token:
         """The token behind the current one."""
         return self.tokens[min(self.index + 1, len(self.tokens) - 1)]
+
+    def before(self) -> Token:
+        """The token that was taken last."""
+        return self.tokens[self.index - 1]
 
     def advance(self) -> Token:
         """Take the current token; the one of kind ``end`` is never passed."""
@@ -83,13 +105,13 @@ class ProjectCursor:
         """Take this sign or word."""
         token = self.token
         if not self.accept(text):
-            self.fail(f"'{text}' is expected, not {_named(token)}", hint=hint)
+            self.fail(f"'{text}' is expected, not {token}", hint=hint)
         return token
 
     def name(self, what: str) -> Token:
         """Take a name."""
         if self.token.kind != "word":
-            self.fail(f"{what} is expected, not {_named(self.token)}")
+            self.fail(f"{what} is expected, not {self.token}")
         return self.advance()
 
     def lower_name(self, what: str) -> Token:
@@ -116,6 +138,30 @@ class ProjectCursor:
         """Record an error and give up the declaration."""
         self.report(message, span, hint)
         raise ProjectPanic
+
+    def fail_unclosed(self, opener: Token, hint: str | None = None) -> NoReturn:
+        """Blame a bracket that is not closed."""
+        self.report(f"'{opener.kind}' is not closed", self.span_of(opener), hint)
+        raise UnclosedPanic
+
+    @contextmanager
+    def nested(self) -> Iterator[None]:
+        """Read something inside of something of its kind, as deep as people write it."""
+        if self._depth >= _DEEPEST:
+            self.fail("this is nested too deeply")
+        self._depth += 1
+        try:
+            yield
+        finally:
+            self._depth -= 1
+
+    def number(self, token: Token) -> int | float:
+        """The value of a number."""
+        if token.text.lstrip("-").isdigit():
+            if len(token.text) > _LONGEST:
+                self.fail("the number has too many digits", self.span_of(token))
+            return int(token.text)
+        return float(token.text)
 
     def at_key(self) -> bool:
         """Whether ``key:`` stands here."""
@@ -144,7 +190,7 @@ class ProjectCursor:
         while depth:
             token = self.advance()
             if token.kind == "end":
-                self.fail(f"'{opener.kind}' is not closed", self.span_of(opener))
+                self.fail_unclosed(opener)
             depth += (token.kind in OPENERS) - (token.kind in OPENERS.values())
 
 
@@ -153,10 +199,6 @@ def text_of(token: Token) -> str:
     if token.kind != "string":
         return token.text
     return token.text[1:-1].replace('\\"', '"').replace("\\n", "\n")
-
-
-def _named(token: Token) -> str:
-    return "the end of the file" if token.kind == "end" else f"'{token.text}'"
 
 
 def _tokenize(file: SourceFile, report: Callable[[str, Span], None]) -> list[Token]:

@@ -145,10 +145,8 @@ def test_java_parts_are_read_over_with_a_warning(folder: Path):
         """,
     )
     assert [warning.message for warning in deployment.ignored] == [
-        "the Java environment mars.MarsEnv has no effect",
-        "'executionControl' is about Java code and has no effect",
-        "'directives' is about Java code and has no effect",
-        "'classpath' is about Java code and has no effect",
+        "the environment mars.MarsEnv has no effect: environments in Java are not used",
+        "'executionControl', 'directives' and 'classpath' have no effect: that is about Java code (lines 4, 6, 7)",
     ]
     assert deployment.environment == "mars.MarsEnv(gui, 3)"
     assert not deployment.artifact_environment
@@ -166,7 +164,6 @@ def test_errors_of_a_mas2j_file_are_reported_together(folder: Path):
         }
         """
     assert located(report(folder, "p.mas2j", text)) == [
-        ("2:13", "the program of agent 'bob' is not found: dick.asl"),
         ("3:13", "a ';' is missing behind the agent 'bob'"),
         ("4:13", "the name of an agent begins with a lower-case letter"),
         ("4:13", "the program of agent 'Carl' is not found: Carl.asl"),
@@ -383,34 +380,38 @@ def test_what_is_not_supported_is_read_over_with_a_warning(folder: Path):
         }
         """,
     )
+    roles = "the role 'worker' in 'o.g1' and the role 'worker' of 'bob' in 'g1'"
     assert [warning.message for warning in deployment.ignored] == [
-        "roles in organisations are not supported and have no effect",
-        "'host' of a workspace has no effect",
-        "institutions are not supported and have no effect",
-        "organisations are not supported and have no effect",
-        "Java packages are not supported and have no effect",
-        "distribution over nodes are not supported and have no effect",
+        f"{roles} have no effect: roles in organisations are not supported (lines 3, 7)",
+        "'host' of workspace 'w' and the node 'n1' have no effect: a run is one process (lines 4, 12)",
+        "'debug' of workspace 'w' has no effect: there are no windows",
+        "the institution 'i' has no effect: institutions are not supported",
+        "the organisation 'o' has no effect: organisations are not supported",
+        "the package 'lib' has no effect: Java packages are not used",
     ]
     assert all(warning.severity == "warning" for warning in deployment.ignored)
     assert deployment.infrastructure == ("local(pool,4)",)
 
 
-def test_slips_in_names_are_warned_about(folder: Path):
-    deployment = load(
-        folder,
-        "p.jcm",
-        """
+def test_slips_in_names_are_told_with_what_may_be_meant(folder: Path):
+    text = """\
         mas m {
           agent bob { instances: 2  join: lap  focus: clok, lab.bell }
           workspace lab { artifact clock : Clock { focused-by: bop } }
         }
-        """,
-    )
-    assert [(warning.message, warning.hint) for warning in deployment.ignored] == [
-        ("the workspace 'lap' is not declared in the project", "did you mean 'lab'?"),
-        ("the artifact 'clok' is not declared", "did you mean 'clock'?"),
-        ("the artifact 'bell' is not declared in workspace 'lab'", None),
-        ("there is no agent 'bop' in the project", "did you mean 'bob'?"),
+        """
+    found = report(folder, "p.jcm", text)
+    assert located(found) == [
+        ("2:35", "the workspace 'lap' is not declared in the project"),
+        ("2:47", "the artifact 'clok' is not declared in the project"),
+        ("3:56", "there is no agent 'bop' in the project"),
+    ]
+    hints = [line for line in found.splitlines() if line.startswith("hint")]
+    assert hints == [
+        "hint: did you mean 'lab'?",
+        "hint: did you mean 'clock'?",
+        "hint: it is focused when an agent has made it",
+        "hint: did you mean 'bob'?",
     ]
 
 
@@ -435,6 +436,7 @@ def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
         ("3:24", "'p(' is no list of literals: the file ends where a term is expected"),
         ("4:17", "a ':' is missing behind 'goals'"),
         ("7:5", "',' is expected, not 'artifact'"),
+        ("8:3", "':' is expected, not '}'"),
         ("9:13", "the name of a workspace begins with a lower-case letter"),
         ("10:3", "'agnt' is no section of a .jcm file"),
         ("12:9", "two agents have the name 'carl'"),
