@@ -1,7 +1,6 @@
 """The workspaces and artifacts of a project, and the names that lead to them."""
 
 from jacaros.asl.source import Span
-from jacaros.env.environment import DEFAULT_ARTIFACTS
 from jacaros.env.ids import resolve_path
 from jacaros.mas.deployment import FocusSpec, WorkspaceSpec
 from jacaros.mas.project_parts import FocusPart, JoinPart, ProjectPart, WorkspacePart
@@ -9,6 +8,8 @@ from jacaros.mas.project_remarks import Remarks, meant
 from jacaros.mas.unsupported import INSTITUTIONS, ORGANISATIONS, Unsupported
 
 _MAIN = "/main"
+_DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "system"})
+"""The artifacts that every workspace has."""
 
 
 class ProjectPlaces:
@@ -210,6 +211,3 @@ class ProjectPlaces:
         if found not in self._part.unsupported:
             self._part.unsupported.append(found)
         return True
-
-
-_DEFAULT_NAMES = frozenset(name for name, _ in DEFAULT_ARTIFACTS)
