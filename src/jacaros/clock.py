@@ -10,7 +10,8 @@ import heapq
 import itertools
 import selectors
 import time
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
@@ -224,6 +225,19 @@ class VirtualEventLoop(asyncio.SelectorEventLoop):
 
     def _foreign_work_done(self) -> None:
         self.virtual_selector.foreign_work -= 1
+
+
+@contextmanager
+def standing_still(loop: asyncio.AbstractEventLoop) -> Iterator[None]:
+    """Let virtual time stand still while another thread works for *loop*; the wall clock goes on."""
+    selector = loop.virtual_selector if isinstance(loop, VirtualEventLoop) else None
+    if selector is not None:
+        selector.foreign_work += 1
+    try:
+        yield
+    finally:
+        if selector is not None:
+            selector.foreign_work -= 1
 
 
 def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:

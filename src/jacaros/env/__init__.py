@@ -26,6 +26,7 @@ from jacaros.env.observation import Observation, Observer, Signal
 from jacaros.env.operation import (
     OperationOutcome,
     OperationRequest,
+    initializer,
     internal_operation,
     link,
     operation,
@@ -71,6 +72,7 @@ __all__ = [
     "Workspace",
     "WorkspaceError",
     "describe",
+    "initializer",
     "internal_operation",
     "link",
     "operation",

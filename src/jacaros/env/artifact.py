@@ -8,6 +8,7 @@ from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.declaration import declare_function
+from jacaros.env.kernel.external import ExternalSession
 from jacaros.env.kernel.faults import text_of
 from jacaros.env.kernel.interface import Interface, interface_of
 from jacaros.env.kernel.linked_call import call_all
@@ -16,14 +17,17 @@ from jacaros.env.operation import (
     OPERATION,
     Mark,
     OperationRequest,
+    common_operation,
+    initializer,
     internal_operation,
     link,
     operation,
 )
+from jacaros.env.property import ObservableProperty, PropertySnapshot, plain_annotations
 from jacaros.env.values import Atom, Out, Structure, plain
 from jacaros.trace import Cause
 
-__all__ = ["Artifact", "Host", "Out", "internal_operation", "link", "operation"]
+__all__ = ["Artifact", "Host", "Out", "initializer", "internal_operation", "link", "operation"]
 
 T = TypeVar("T")
 
@@ -40,7 +44,11 @@ class Host(Protocol):
         """Last part of the path."""
 
     async def make_artifact(
-        self, name: str, type_name: str, args: Sequence[object] = (), creator: str | None = None
+        self,
+        name: str,
+        type_name: "str | type[Artifact]",
+        args: Sequence[object] = (),
+        creator: str | None = None,
     ) -> ArtifactId:
         """Make an artifact."""
 
@@ -50,8 +58,8 @@ class Host(Protocol):
     def dispose_artifact(self, artifact_id: ArtifactId) -> None:
         """Dispose an artifact."""
 
-    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
-        """Link the out port of an artifact to another artifact."""
+    def link(self, from_id: ArtifactId, port: str | None, to_id: ArtifactId) -> None:
+        """Link the out port of an artifact to another artifact; None for its first port."""
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """The artifacts behind an out port."""
@@ -140,6 +148,7 @@ class Artifact:
         *values: object,
         annotations: tuple[object, ...] | None = None,
         if_new: bool = False,
+        where: tuple[object, ...] = (),
     ) -> None:
         """Give the first (oldest) property called *name* new values; equal values are a change too, as in CArtAgO.
 
@@ -148,6 +157,7 @@ class Artifact:
             values: all its values.
             annotations: None keeps those it has.
             if_new: do nothing when it has these values (and annotations) already: observers hear nothing then.
+            where: values that the property has now, None for any value: the first that has them is updated.
 
         Raises:
             UnknownProperty: there is none.
@@ -156,7 +166,44 @@ class Artifact:
         holder = steps.turns.holder
         if holder is None or holder.task is not None or steps.turns.asking:
             steps.current("updating property", name)
-        steps.publication.properties.update(name, values, annotations, if_new)
+        steps.publication.properties.update(name, values, annotations, if_new, where)
+
+    def update_value(self, name: str, index: int, value: object, where: tuple[object, ...] = ()) -> None:
+        """Give the first property called *name* another value at *index* (from 0); the others stay.
+
+        Args:
+            name: name of the property.
+            index: which of its values.
+            value: the new one.
+            where: as for `update_property`.
+
+        Raises:
+            UnknownProperty: there is none.
+            IndexError: it has fewer values.
+        """
+        self._steps.current("updating property", name)
+        store = self._steps.publication.properties
+        values = list(store.first(name, where).values)
+        values[index] = value
+        store.update(name, tuple(values), None, False, where)
+
+    def annotate_property(self, name: str, *annotations: object, where: tuple[object, ...] = ()) -> None:
+        """Add annotations to the first property called *name*; its values and the annotations that it has stay.
+
+        Args:
+            name: name of the property.
+            annotations: atoms and structures; those that it has already are not added again.
+            where: as for `update_property`.
+
+        Raises:
+            UnknownProperty: there is none.
+        """
+        self._steps.current("annotating property", name)
+        store = self._steps.publication.properties
+        found = store.first(name, where)
+        kept = found.annotations
+        new = tuple(each for each in plain_annotations(annotations) if each not in kept)
+        store.update(name, found.values, (*kept, *new), False, where)
 
     def remove_property(self, name: str, *values: object) -> None:
         """Remove the first property called *name*, with *values* the first that has these values.
@@ -190,6 +237,21 @@ class Artifact:
             UnknownProperty: there is none.
         """
         return tuple(map(plain, self._steps.publication.properties.first(name).values))
+
+    def find_properties(self, name: str, *values: object) -> tuple[ObservableProperty, ...]:
+        """The properties called *name*, with *values* those that have these values (None for any); oldest first."""
+        return self._steps.publication.properties.all(name, values)
+
+    @common_operation("observeProperty")
+    def observe_property(self, name: str, snapshot: Out) -> None:
+        """Give a property as it is now, as an object, to an agent that does not focus the artifact.
+
+        Fails with ``unknown_property(Name)``.
+        """
+        found = self.find_properties(name)
+        if not found:
+            self.fail(f"Property not found {name}", "unknown_property", str(name))
+        snapshot.set(PropertySnapshot(found[0]))
 
     # ---- signals, failure, log
 
@@ -307,11 +369,11 @@ class Artifact:
             )
         self._steps.start(declared, OperationRequest(self.id, declared.name, arguments, None, cause))
 
-    async def call_linked(self, port: str, operation: str, *arguments: object) -> None:
+    async def call_linked(self, port: str | ArtifactId | None, operation: str, *arguments: object) -> None:
         """Call a linked operation of all artifacts behind *port*, and wait for all; a step boundary.
 
         Args:
-            port: one of `ports`.
+            port: one of `ports`, None for the first of them; or one artifact, which need not be linked.
             operation: name of the linked operation.
             arguments: inputs, and `Out` objects for its outputs.
 
@@ -319,17 +381,38 @@ class Artifact:
             OperationFailed: nothing is linked, or a linked operation failed (with its reason).
             InvalidArtifact: the class has no such port.
         """
-        if port not in self.ports:
-            raise InvalidArtifact(
-                f"{type(self).__qualname__} has no out port {port!r}; its ports are {self.ports}"
-            )
-        targets = self.workspace.linked(self.id, port)
-        if not targets:
-            self.fail(
-                f"nothing is linked to port {port} of artifact {self.name}", "not_linked", self.name, port
-            )
+        targets = (port,) if isinstance(port, ArtifactId) else self._behind(port)
         call = call_all(self.workspace.execute_linked, targets, operation, arguments, self.current)
         await self._steps.leave(call, f"calling {operation}")
+
+    def _behind(self, port: str | None) -> tuple[ArtifactId, ...]:
+        if not self.ports or (port is not None and port not in self.ports):
+            offered = f"its ports are {', '.join(self.ports)}" if self.ports else "it has none"
+            raise InvalidArtifact(f"{type(self).__qualname__} has no out port {port!r}; {offered}")
+        port = port if port is not None else self.ports[0]
+        targets = self.workspace.linked(self.id, port)
+        if not targets:
+            # The reason of CArtAgO, in which every call that comes to nothing is an error of the operation.
+            request = self.current.request
+            key = f"{request.operation}/{len(request.arguments)}"
+            self.fail(f"nothing is linked to port {port} of artifact {self.name}", "operation_error", key)
+        return targets
+
+    def external_session(self, cause: Cause | None = None) -> ExternalSession:
+        """Have the artifact for oneself from elsewhere: ``with`` in another thread, ``async with`` in another task.
+
+        It waits for its turn, as an operation does.  At its end the changes are published together; if it ends with
+        an exception they are undone.  A callback of the loop, which cannot wait, uses `start`.
+
+        Args:
+            cause: what led to it, such as the sample of a sensor.
+
+        Raises:
+            InvalidArtifact: (on entering) ``with`` was used in the thread of the loop, or within an operation.
+            OperationFailed: (on entering) the artifact is disposed; reason ``artifact_not_available(Name)`` or
+                ``artifact_disposed(Name)``.
+        """
+        return ExternalSession(self._steps, cause)
 
     def define_operation(
         self,

@@ -9,7 +9,7 @@ from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
 from jacaros.env.kernel.faults import is_interruption, told
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
-from jacaros.env.operation import INTERNAL, Mark, OperationRequest
+from jacaros.env.operation import INIT, Mark, OperationRequest
 from jacaros.env.values import Structure
 from jacaros.errors import InternalError
 
@@ -81,17 +81,21 @@ def init_of(artifact_type: type[Artifact], request: OperationRequest) -> Declare
     (case ``creation/make_failures``, as in CArtAgO).
 
     Raises:
-        OperationFailed: it takes another number of arguments.
+        OperationFailed: none takes that number of arguments.
     """
     count = len(request.arguments)
-    function = getattr(artifact_type, "init", _nothing)
-    declared = declare_method(Mark(INTERNAL), "init", function, artifact_type, 0)
-    if not count and not declared.signature.takes(0):
-        return declare_method(Mark(INTERNAL), "init", _nothing, artifact_type, 0)
-    if not declared.signature.takes(count):
-        raise init_failed(request.artifact, f"its init takes ({declared.signature}), not {count} arguments")
-    return declared
+    inits = artifact_type.interface.inits
+    found = inits.find("init", count)
+    if found is not None:
+        return found
+    if not count:
+        return NO_INIT
+    taken = " or ".join(f"({each.signature})" for each in inits) or "()"
+    raise init_failed(request.artifact, f"its init takes {taken}, not {count} arguments")
 
 
 def _nothing(_: Artifact) -> None:
     """Stand for the ``init`` of an artifact that is made without."""
+
+
+NO_INIT = declare_method(Mark(INIT), "init", _nothing, Artifact, 0)

@@ -13,6 +13,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 OPERATION = "operation"
 LINK = "linked operation"
 INTERNAL = "internal operation"
+INIT = "init"
+EXTERNAL = "external session"
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +73,7 @@ class Mark:
     guard: str | None = None
     pausable: bool = False
     threaded: bool = False
+    common: bool = False
 
 
 _MARKS = "__jacaros_operations__"
@@ -117,6 +120,22 @@ def operation(
             signals are published together when it ends.
     """
     return _marked(function, Mark(OPERATION, name, guard, pausable, threaded))
+
+
+def initializer(function: F, /) -> F:
+    """Make a method a further ``init``: of all of them the one runs that takes the given number of arguments."""
+    setattr(function, _MARKS, (*marks_of(function), Mark(INIT, "init")))
+    return function
+
+
+def common_operation(name: str) -> Callable[[F], F]:
+    """Make a method of `Artifact` itself an operation called *name*, which every artifact has."""
+
+    def decorate(function: F) -> F:
+        setattr(function, _MARKS, (Mark(OPERATION, name, common=True),))
+        return function
+
+    return decorate
 
 
 @overload

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from jacaros.env.errors import InvalidArtifact, UnknownProperty, spelling_hint
-from jacaros.env.values import SCALARS, equal, plain
+from jacaros.env.values import SCALARS, Structure, equal, plain, text
 
 
 @dataclass(slots=True)
@@ -25,6 +25,63 @@ class ObservableProperty:
     annotations: tuple[object, ...]
     key: int
     written: Any = field(default=None, compare=False, repr=False)
+
+
+class PropertySnapshot:
+    """A property at one moment, as the operation ``observeProperty`` gives it: an opaque object for agents.
+
+    The methods with the names of Java are there for ``cartago.invoke_obj`` in programs written for CArtAgO.
+
+    Attributes:
+        name: the name of the property.
+        values: its plain values.
+        annotations: its annotations.
+    """
+
+    __slots__ = ("annotations", "name", "values")
+
+    def __init__(self, of: ObservableProperty) -> None:
+        self.name, self.values, self.annotations = of.name, of.values, of.annotations
+
+    def value(self, index: int = 0) -> object:
+        """One of the values."""
+        return plain(self.values[index])
+
+    def getName(self) -> str:  # noqa: N802 - Java's name
+        """The name of the property."""
+        return self.name
+
+    def getValue(self, index: int = 0) -> object:  # noqa: N802 - Java's name
+        """One of the values."""
+        return self.value(int(index))
+
+    def getValues(self) -> list[object]:  # noqa: N802 - Java's name
+        """All values."""
+        return [plain(value) for value in self.values]
+
+    def intValue(self, index: int = 0) -> int:  # noqa: N802 - Java's name
+        """One of the values as an integer."""
+        return int(self.values[int(index)])  # type: ignore[call-overload,no-any-return]  # it raises if it is none
+
+    def doubleValue(self, index: int = 0) -> float:  # noqa: N802 - Java's name
+        """One of the values as a real number."""
+        return float(self.values[int(index)])  # type: ignore[arg-type]  # it raises if it is none
+
+    def stringValue(self, index: int = 0) -> str:  # noqa: N802 - Java's name
+        """One of the values as a text."""
+        return text(self.values[int(index)])
+
+    def booleanValue(self, index: int = 0) -> bool:  # noqa: N802 - Java's name
+        """One of the values as a truth value."""
+        return bool(self.values[int(index)])
+
+    def __str__(self) -> str:
+        return text(Structure(self.name, self.values)) if self.values else self.name
+
+    toString = __str__  # noqa: N815 - Java's name
+
+    def __repr__(self) -> str:
+        return f"<property {self}>"
 
 
 Change = tuple[ObservableProperty, ObservableProperty]
@@ -79,8 +136,9 @@ class PropertyStore:
         values: tuple[object, ...],
         annotations: tuple[object, ...] | None,
         if_new: bool = False,
+        where: tuple[object, ...] = (),
     ) -> None:
-        """Give the first property called *name* new values; None as annotations keeps the old ones.
+        """Give the first property called *name* that fits *where* new values; None as annotations keeps the old ones.
 
         With *if_new* nothing happens when values and annotations are equal to the old ones.
 
@@ -90,7 +148,7 @@ class PropertyStore:
         properties = self._by_name.get(name)
         if not properties:
             raise self._unknown(name)
-        old = next(iter(properties.values()))
+        old = self.first(name, where) if where else next(iter(properties.values()))
         values = _plain(values)
         kept = old.annotations if annotations is None else plain_annotations(annotations)
         if if_new and _all_equal(values, old.values) and _all_equal(kept, old.annotations):
@@ -123,6 +181,12 @@ class PropertyStore:
             if not template or _fits(template, found.values):
                 return found
         raise self._unknown(name, template)
+
+    def all(self, name: str, template: tuple[object, ...] = ()) -> tuple[ObservableProperty, ...]:
+        """The properties called *name* whose values fit *template* (see `first`), the oldest first."""
+        return tuple(
+            p for p in self._by_name.get(name, _NONE).values() if not template or _fits(template, p.values)
+        )
 
     def _unknown(self, name: str, template: tuple[object, ...] = ()) -> UnknownProperty:
         names = [each for each, properties in self._by_name.items() if properties]

@@ -123,6 +123,8 @@ class Workspace(ports.Workspace):
             on_done(None, OperationOutcome(False, failure.message, failure.reason))
             return OperationExecution(None, request)
         self._making[name] = steps
+        self._registry.add(steps, self._forget)
+        steps.abandon = partial(self._registry.dispose, steps)
         request.on_done = partial(self._made, steps, on_done)
         return steps.initialise(declared, request)
 
@@ -147,13 +149,12 @@ class Workspace(ports.Workspace):
         name = steps.id.name
         if self._making.get(name) is steps:
             del self._making[name]
-        if not outcome.ok:
+        if not outcome.ok or steps.disposed:
             self._registry.dispose(steps)
-            failure = init_failed(steps.id, outcome.message or "")
+            failure = init_failed(steps.id, outcome.message or "its init disposed it")
             on_done(None, OperationOutcome(False, failure.message, failure.reason))
             return
         steps.initialised = True
-        self._registry.add(steps, self._forget)
         self._artifacts[name] = steps.id
         self._changed(steps.id, True)
         on_done(steps.id, SUCCEEDED)
@@ -176,7 +177,7 @@ class Workspace(ports.Workspace):
         if self._personal.get(artifact_id.name) is artifact_id:
             del self._personal[artifact_id.name]
             self._tell(self._watchers_of_all, artifact_id, False)
-        else:
+        elif self._artifacts.get(artifact_id.name) is artifact_id:
             del self._artifacts[artifact_id.name]
             self._changed(artifact_id, False)
 
@@ -360,8 +361,10 @@ class Workspace(ports.Workspace):
         if steps is not None:
             steps.publication.remove(observer)
 
-    def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId, on_done: Told = ignore_outcome) -> None:
-        """Put an artifact behind an out port of another one, beside those that are there.
+    def link(
+        self, from_id: ArtifactId, port: str | None, to_id: ArtifactId, on_done: Told = ignore_outcome
+    ) -> None:
+        """Put an artifact behind an out port of another one, beside those that are there; None: its first port.
 
         Raises:
             UnknownArtifact: one of them is gone.
@@ -369,10 +372,13 @@ class Workspace(ports.Workspace):
         """
         ports = self._steps_of(from_id).ports
         self._steps_of(to_id)
-        if port not in ports:
+        if port is None and ports:
+            port = ports[0]
+        if port is None or port not in ports:
             offer = f"; its ports are {', '.join(ports)}" if ports else "; it has none"
-            message = f"artifact {from_id.name} ({from_id.type_name}) has no out port {port}{offer}"
-            raise OperationFailed(message, Structure("unknown_port", (str.__str__(port),)))
+            wanted = "any" if port is None else str.__str__(port)
+            message = f"artifact {from_id.name} ({from_id.type_name}) has no out port {wanted}{offer}"
+            raise OperationFailed(message, Structure("unknown_port", (wanted,)))
         self._registry.link(from_id, port, to_id)
         on_done(SUCCEEDED)
 

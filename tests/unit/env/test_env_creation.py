@@ -7,9 +7,12 @@ import pytest
 from jacaros.env import (
     Artifact,
     Atom,
+    InvalidArtifact,
     OperationFailed,
+    Out,
     Structure,
     UnknownArtifact,
+    initializer,
     internal_operation,
     operation,
 )
@@ -401,5 +404,152 @@ def test_init_cannot_be_called_by_agents(play):
     async def scene(stage):
         counter = await stage.make(Counter)
         assert stage.call(counter, "init", 3).reason == Structure("unknown_operation", (counter, "init"))
+
+    play(scene)
+
+
+class Several(Artifact):
+    def init(self, start: int = 0):
+        self.define_property("made", "usual", start)
+
+    @initializer
+    def init_in_a_room(self, room: str, start: int):
+        self.define_property("made", room, start)
+
+    @initializer
+    async def init_of_many(self, *rooms: str):
+        await self.sleep(1)
+        self.define_property("made", list(rooms))
+
+
+class Derived(Several):
+    def init_in_a_room(self, room: str, start: int):
+        self.define_property("made", f"derived {room}", start)
+
+
+def test_of_several_inits_the_one_with_that_number_of_arguments_runs(play):
+    async def scene(stage):
+        for kind, args, values in [
+            (Several, (), ("usual", 0)),
+            (Several, (3,), ("usual", 3)),
+            (Several, ("hall", 3), ("hall", 3)),
+            (Several, ("a", "b", "c"), (["a", "b", "c"],)),
+            (Derived, (1,), ("usual", 1)),
+            (Derived, ("hall", 3), ("derived hall", 3)),
+        ]:
+            it = await stage.make(kind, *args)
+            assert stage.property(it, "made") == values
+            assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is no operation"
+            stage.main.dispose_artifact(it)
+
+    play(scene)
+
+
+def test_two_inits_with_one_number_of_arguments_are_a_mistake():
+    with pytest.raises(InvalidArtifact, match="are both init init with 1 arguments"):
+
+        class Twice(Artifact):
+            def init(self, start=0): ...
+
+            @initializer
+            def again(self, start): ...
+
+
+def test_an_init_that_is_an_operation_too_can_be_called_by_agents(play):
+    class Restart(Artifact):
+        @operation
+        def init(self, start: int):
+            self.define_property("start", start)
+
+    async def scene(stage):
+        it = await stage.make(Restart, 1)
+        assert stage.call(it, "init", 2).ok
+        assert len(stage.main.properties(it)) == 2
+
+    play(scene)
+
+
+def test_an_init_whose_arguments_nobody_takes_tells_those_it_takes(play):
+    class Two(Artifact):
+        def init(self, a): ...
+
+        @initializer
+        def other(self, a, b: int): ...
+
+    async def scene(stage):
+        with pytest.raises(OperationFailed) as caught:
+            await stage.make(Two, 1, 2, 3)
+        assert (
+            "its init takes (a: any value) or (a: any value, b: an integer), not 3 arguments"
+            in caught.value.message
+        )
+
+    play(scene)
+
+
+def test_an_operation_asked_of_an_artifact_in_its_init_waits_for_the_end_of_the_init(play):
+    class Early(Artifact):
+        async def init(self, keep, fails=False):
+            self.define_property("ready", False)
+            keep.append(self.id)
+            await self.clock.sleep(1)
+            self.update_property("ready", True)
+            if fails:
+                self.fail("no")
+
+        @operation
+        def ask(self, ready: Out):
+            ready.set(self.value("ready"))
+
+    async def scene(stage):
+        for fails in (False, True):
+            keep, ready = [], Out()
+            made = asyncio.ensure_future(stage.make(Early, keep, fails, name=f"early{int(fails)}"))
+            await stage.clock.sleep(0.5)
+            call = stage.call(keep[0], "ask", ready)
+            await call.wait()
+            assert stage.elapsed == 1.0 + fails
+            if not fails:
+                assert ready.value is True
+                await made
+                continue
+            assert call.reason == Structure("artifact_disposed", ("early1",))
+            with pytest.raises(OperationFailed):
+                await made
+            assert stage.call(keep[0], "ask", ready).reason == Structure(
+                "artifact_not_available", ("early1",)
+            )
+
+    play(scene)
+
+
+def test_an_artifact_that_disposes_itself_in_its_init_is_not_made(play):
+    class Suicidal(Artifact):
+        def init(self):
+            self.on_dispose(lambda: self.log("given back"))
+            self.workspace.dispose_artifact(self.id)
+
+    async def scene(stage):
+        with pytest.raises(OperationFailed, match="cannot be made: its init disposed it"):
+            await stage.make(Suicidal)
+        assert stage.lines == ["[it] given back"]
+        await stage.make(Artifact)
+
+    play(scene)
+
+
+def test_a_making_that_is_dropped_leaves_no_artifact_behind_its_id(play):
+    class Slow(Artifact):
+        async def init(self, keep):
+            keep.append(self.id)
+            await self.sleep(9)
+
+    async def scene(stage):
+        keep = []
+        execution = stage.main.create("slow", Slow, (keep,))
+        await stage.clock.sleep(1)
+        execution.cancel()
+        await stage.clock.sleep(1)
+        assert stage.call(keep[0], "x").reason == Structure("artifact_not_available", ("slow",))
 
     play(scene)

@@ -2,7 +2,16 @@
 
 import pytest
 
-from jacaros.env import Artifact, OperationFailed, Out, Structure, UnknownArtifact, link, operation
+from jacaros.env import (
+    Artifact,
+    ArtifactId,
+    OperationFailed,
+    Out,
+    Structure,
+    UnknownArtifact,
+    link,
+    operation,
+)
 
 
 class Lamp(Artifact):
@@ -192,7 +201,8 @@ def test_nothing_linked_and_no_such_port(play):
         switch = await stage.make(Switch, name="switch")
         call = stage.call(switch, "forward", "refuse")
         await call.wait()
-        assert call.reason == Structure("not_linked", ("switch", "out"))
+        assert call.reason == Structure("operation_error", ("forward/1",)), "as in CArtAgO"
+        assert call.outcome.message == "nothing is linked to port out of artifact switch"
         wrong = stage.call(switch, "wrong_port")
         await wrong.wait()
         assert wrong.reason == Structure("operation_error", ("wrong_port/0",))
@@ -257,7 +267,7 @@ def test_disposing_the_target_fails_the_caller_and_unlinks_it(play):
         assert slow.reason == Structure("artifact_disposed", ("lamp",))
         again = stage.call(switch, "forward", "refuse")
         await again.wait()
-        assert again.reason == Structure("not_linked", ("switch", "out"))
+        assert again.reason == Structure("operation_error", ("forward/1",))
 
     play(scene)
 
@@ -347,5 +357,87 @@ def test_a_link_to_itself_does_not_block(play):
         stage.main.link(myself, "me", myself)
         await stage.call(myself, "ask", answer).wait()
         assert answer.value == 42
+
+    play(scene)
+
+
+class Hub(Artifact):
+    ports = ("first", "second")
+
+    async def init(self, name=None, kind: object = None):
+        if name is not None:
+            made = await self.workspace.make_artifact(name, kind)
+            self.workspace.link(self.id, None, made)
+
+    @operation
+    async def through_any(self, power: Out):
+        await self.call_linked(None, "read", power)
+
+    @operation
+    async def directly(self, target: ArtifactId, power: Out):
+        await self.call_linked(target, "read", power)
+
+    @operation
+    def name_of_first(self, name: Out):
+        (target,) = self.workspace.linked(self.id, "first")
+        name.set(target.name)
+
+
+class Dim(Artifact):
+    def init(self):
+        self.define_property("power", 3)
+
+    @link
+    def read(self, power: Out):
+        power.set(self.value("power"))
+
+
+def test_an_artifact_makes_and_links_another_in_its_init(play):
+    async def scene(stage):
+        hub = await stage.make(Hub, "inner", Dim, name="hub")
+        name, power = Out(), Out()
+        assert stage.call(hub, "name_of_first", name).ok
+        await stage.call(hub, "through_any", power).wait()
+        assert (name.value, power.value) == ("inner", 3)
+
+    play(scene)
+
+
+def test_without_a_port_the_first_one_is_meant(play):
+    async def scene(stage):
+        hub, dim = await stage.make(Hub, name="hub"), await stage.make(Dim, name="dim")
+        stage.main.link(hub, None, dim)
+        assert stage.main.linked(hub, "first") == (dim,)
+        with pytest.raises(OperationFailed, match="has no out port any; it has none"):
+            stage.main.link(dim, None, hub)
+
+    play(scene)
+
+
+def test_a_linked_operation_of_an_artifact_that_is_not_linked_is_called_by_its_id(play):
+    async def scene(stage):
+        hub = await stage.make(Hub, name="hub")
+        lab = stage.environment.create_workspace("/main/lab")
+        dim = await lab.make_artifact("dim", Dim)
+        power = Out()
+        assert (await stage.call(hub, "directly", dim, power).wait()).ok
+        assert power.value == 3
+        lab.dispose_artifact(dim)
+        call = stage.call(hub, "directly", dim, Out())
+        await call.wait()
+        assert call.reason == Structure("artifact_not_available", ("dim",))
+
+    play(scene)
+
+
+def test_an_operation_pending_in_a_linked_call_fails_when_its_artifact_is_disposed(play):
+    async def scene(stage):
+        lamp, switch = await linked(stage)
+        call = stage.call(switch, "forward_slowly", 5)
+        await stage.clock.sleep(0.1)
+        stage.main.dispose_artifact(switch)
+        await call.wait()
+        assert call.reason == Structure("artifact_disposed", ("switch",))
+        assert stage.main.pending(lamp) == (), "the linked operation is dropped with its caller"
 
     play(scene)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jacaros.env import InvalidArtifact, UnknownProperty
+from jacaros.env import Artifact, Atom, InvalidArtifact, Out, Structure, UnknownProperty, operation
 from jacaros.env.property import NO_CHANGES, PropertyStore
 
 
@@ -173,3 +173,120 @@ def test_the_name_of_a_property_begins_with_a_lower_case_letter():
     for wrong in ("Count", "", "1st", "_x"):
         with pytest.raises(InvalidArtifact, match="lower-case"):
             PropertyStore().define(wrong, (), None)
+
+
+class Rooms(Artifact):
+    def init(self):
+        self.define_property("room", "kitchen", "dirty")
+        self.define_property("room", "hall", "dirty")
+        self.define_property("pose", 1, 2)
+
+    @operation
+    def clean(self, room: str):
+        self.update_property("room", room, "clean", where=(room, None))
+
+    @operation
+    def clean_value(self, room: str):
+        self.update_value("room", 1, "clean", where=(room, None))
+
+    @operation
+    def turn(self, index: int, value: float):
+        self.update_value("pose", index, value)
+
+    @operation
+    def grow(self, *values: object):
+        self.update_property("pose", *values)
+
+    @operation
+    def note(self, *annotations: object):
+        self.annotate_property("room", *annotations, where=("hall", None))
+
+    @operation
+    def note_and_clean(self, *annotations: object):
+        self.annotate_property("room", *annotations)
+        self.update_value("room", 1, "clean")
+
+    @operation
+    def dirty(self, rooms: Out):
+        rooms.set([p.values[0] for p in self.find_properties("room", None, "dirty")])
+
+
+def test_the_property_to_update_is_found_by_its_values(play):
+    async def scene(stage):
+        rooms = await stage.make(Rooms)
+        watcher = stage.watch(rooms)
+        names = Out()
+        assert stage.call(rooms, "clean", "hall").ok
+        assert stage.call(rooms, "dirty", names).ok
+        assert names.value == ["kitchen"]
+        assert stage.call(rooms, "clean_value", "kitchen").ok
+        assert watcher.notes[1:] == [
+            "-room('hall','dirty') +room('hall','clean')",
+            "-room('kitchen','dirty') +room('kitchen','clean')",
+        ]
+        call = stage.call(rooms, "clean", "cellar")
+        assert "no observable property room with values like ('cellar', None)" in call.outcome.message
+
+    play(scene)
+
+
+def test_one_of_several_values_is_updated(play):
+    async def scene(stage):
+        rooms = await stage.make(Rooms)
+        watcher = stage.watch(rooms)
+        assert stage.call(rooms, "turn", 1, 7.5).ok
+        assert watcher.notes[1:] == ["-pose(1,2) +pose(1,7.5)"]
+        assert "IndexError" in stage.call(rooms, "turn", 2, 7.5).outcome.message
+
+    play(scene)
+
+
+def test_more_values_and_fewer_values_than_before(play):
+    async def scene(stage):
+        rooms = await stage.make(Rooms)
+        watcher = stage.watch(rooms)
+        for values in [(1, 2, 3), (1,), ()]:
+            assert stage.call(rooms, "grow", *values).ok
+        assert watcher.notes[1:] == ["-pose(1,2) +pose(1,2,3)", "-pose(1,2,3) +pose(1)", "-pose(1) +pose"]
+
+    play(scene)
+
+
+def test_annotations_are_added_once_and_a_later_update_is_not_lost(play):
+    async def scene(stage):
+        rooms = await stage.make(Rooms)
+        watcher = stage.watch(rooms)
+        seen = Structure("seen", (1,))
+        assert stage.call(rooms, "note", seen, Atom("big")).ok
+        assert stage.call(rooms, "note", Atom("big")).ok
+        assert stage.call(rooms, "note_and_clean", seen).ok
+        changes = [change for each in watcher.observations for change in each.changed]
+        assert [(new.values, new.annotations) for _, new in changes] == [
+            (("hall", "dirty"), (seen, "big")),
+            (("hall", "dirty"), (seen, "big")),
+            (("kitchen", "clean"), (seen,)),
+        ]
+
+    play(scene)
+
+
+def test_every_artifact_lets_its_properties_be_looked_at_without_focus(play):
+    async def scene(stage):
+        rooms = await stage.make(Rooms)
+        out = Out()
+        assert stage.call(rooms, "observeProperty", "pose", out).ok
+        snapshot = out.value
+        assert stage.call(rooms, "turn", 1, 7.5).ok
+        assert (snapshot.name, snapshot.values, snapshot.annotations) == ("pose", (1, 2), ())
+        assert (snapshot.value(1), str(snapshot), repr(snapshot)) == (2, "pose(1,2)", "<property pose(1,2)>")
+        assert (snapshot.getName(), snapshot.getValue(), snapshot.getValues()) == ("pose", 1, [1, 2])
+        assert (snapshot.intValue(1), snapshot.doubleValue(0), snapshot.stringValue(0)) == (2, 1.0, "1")
+        assert (snapshot.booleanValue(0), snapshot.toString()) == (True, "pose(1,2)")
+        call = stage.call(rooms, "observeProperty", "posse", Out())
+        assert (call.outcome.message, call.reason) == (
+            "Property not found posse",
+            Structure("unknown_property", ("posse",)),
+        )
+        assert "observeProperty" not in stage.call(rooms, "fly").outcome.message, "lists show what is its own"
+
+    play(scene)

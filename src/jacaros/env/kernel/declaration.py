@@ -27,6 +27,7 @@ class DeclaredOperation:
         pausable: True when it obeys a pause.
         threaded: True when it runs in a worker thread.
         coroutine: True when it runs as a task: it may have several steps, or a thread.
+        common: True when every artifact has it.
         depth: depth of its class in the hierarchy; a deeper class replaces what is above it.
     """
 
@@ -40,6 +41,7 @@ class DeclaredOperation:
     threaded: bool
     coroutine: bool
     depth: int
+    common: bool = False
 
 
 def declare_method(
@@ -109,6 +111,7 @@ def _declare(
         mark.threaded,
         coroutine or mark.threaded,
         depth,
+        mark.common,
     )
 
 

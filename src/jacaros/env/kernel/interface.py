@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.env.errors import InvalidArtifact, spelling_hint
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
-from jacaros.env.operation import LINK, OPERATION, Mark, marks_of
+from jacaros.env.operation import INIT, LINK, OPERATION, Mark, marks_of
 
 
 class OperationTable:
@@ -55,11 +55,13 @@ class OperationTable:
         return other
 
     def __iter__(self) -> Iterator[DeclaredOperation]:
-        return iter({id(each): each for each in (*self._exact.values(), *self._variable.values())}.values())
+        listed = (*self._exact.values(), *self._variable.values())
+        return iter({id(each): each for each in listed if not each.common}.values())
 
     def keys(self) -> list[str]:
-        """Names with numbers of arguments, such as ``inc/1`` and ``sum/any``."""
-        return [f"{name}/{arity}" for name, arity in self._exact] + [f"{name}/any" for name in self._variable]
+        """Names with numbers of arguments, such as ``inc/1`` and ``sum/any``, without what every artifact has."""
+        exact = [f"{name}/{arity}" for (name, arity), each in self._exact.items() if not each.common]
+        return exact + [f"{name}/any" for name in self._variable]
 
     def explain(self, name: str, arity: int) -> str:
         """Say what there is instead of ``name/arity``."""
@@ -87,14 +89,18 @@ class Interface:
         operations: those for agents.
         links: those for other artifacts.
         internals: those it starts itself.
+        inits: those of which one runs when it is made, all called ``init``.
     """
 
     operations: OperationTable
     links: OperationTable
     internals: OperationTable
+    inits: OperationTable
 
     def table(self, kind: str) -> OperationTable:
         """The table of operations of one kind."""
+        if kind == INIT:
+            return self.inits
         if kind == OPERATION:
             return self.operations
         return self.links if kind == LINK else self.internals
@@ -115,7 +121,7 @@ class Interface:
 
     def copy(self) -> "Interface":
         """An interface that can be changed by itself."""
-        return Interface(self.operations.copy(), self.links.copy(), self.internals.copy())
+        return Interface(self.operations.copy(), self.links.copy(), self.internals.copy(), self.inits)
 
 
 def interface_of(artifact_type: type) -> Interface:
@@ -131,7 +137,10 @@ def interface_of(artifact_type: type) -> Interface:
         for attribute, member in vars(each).items():
             if marks_of(member):
                 marks[attribute] = (depth, marks_of(member))
-    interface = Interface(OperationTable(), OperationTable(), OperationTable())
+            if attribute == "init":
+                others = tuple(mark for mark in marks_of(member) if mark.kind != INIT)
+                marks[attribute] = (depth, (*others, Mark(INIT)))
+    interface = Interface(OperationTable(), OperationTable(), OperationTable(), OperationTable())
     for attribute, (depth, declared) in sorted(marks.items(), key=_depth):
         function = getattr(artifact_type, attribute)
         for mark in declared if callable(function) else ():

@@ -1,8 +1,11 @@
 """What every artifact of an environment is given: time, the log, and who is told of defects."""
 
+import asyncio
 import sys
+import threading
 import traceback
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from jacaros.clock import Clock
@@ -24,6 +27,7 @@ class Setting:
         resources: what the host lends to artifacts, such as ``ros`` and ``console``, by name.
         log: takes a line for people, such as ``[lamp] on``.
         tracer: told of every cause, None while nobody watches.
+        loop: where the operations run, None before the first one.
         on_internal_error: told of defects of JaCaROS itself; None lets them escape.
     """
 
@@ -32,6 +36,27 @@ class Setting:
     log: Callable[[str], None] = log_to_stderr
     tracer: Tracer | None = None
     on_internal_error: Callable[[BaseException], None] | None = None
+    loop: asyncio.AbstractEventLoop | None = field(default=None, init=False)
+    _loop_thread: int = field(default=0, init=False)
+
+    def know_loop(self) -> None:
+        """Learn from the caller which loop runs the operations."""
+        if self.loop is None:
+            with suppress(RuntimeError):
+                self.loop = asyncio.get_running_loop()
+                self._loop_thread = threading.get_ident()
+
+    def elsewhere(self) -> bool:
+        """True when called from another thread than the loop's."""
+        return self.loop is not None and self._loop_thread != threading.get_ident()
+
+    def hand_over(self, callback: Callable[[], object]) -> bool:
+        """Call *callback* on the loop, from another thread; False when the loop has ended."""
+        if self.loop is not None:
+            with suppress(RuntimeError):
+                self.loop.call_soon_threadsafe(callback)
+                return True
+        return False
 
     def log_error(self, who: str, what: str, error: BaseException) -> None:
         """Log that *what* went wrong in *who*, with the trace of *error* below the kernel."""

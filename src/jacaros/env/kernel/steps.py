@@ -25,7 +25,14 @@ from jacaros.env.kernel.signature import WrongArguments
 from jacaros.env.kernel.threads import in_thread
 from jacaros.env.kernel.turns import Guard, TurnQueue
 from jacaros.env.observation import Signal
-from jacaros.env.operation import LINK, SUCCEEDED, OperationOutcome, OperationRequest, ignore_outcome
+from jacaros.env.operation import (
+    EXTERNAL,
+    LINK,
+    SUCCEEDED,
+    OperationOutcome,
+    OperationRequest,
+    ignore_outcome,
+)
 from jacaros.env.property import check_name
 from jacaros.env.values import plain
 from jacaros.errors import InternalError
@@ -47,9 +54,9 @@ class Steps:
         disposed: True when it takes no more operations.
         over: True when the last of them has ended and everything has been given back.
         initialised: True once ``init`` has succeeded.
+        abandon: called when the making of the artifact was dropped.
         hook: called first when an initialised artifact ends.
         cleanups: called after that, the last one first.
-        loop: where its operations run, None before the first one.
     """
 
     def __init__(
@@ -72,10 +79,9 @@ class Steps:
         self._closed: asyncio.Future[None] | None = None
         self.over = False
         self._running: dict[OperationExecution, None] = {}
+        self.abandon: Callable[[], object] = self.dispose
         self._started: list[OperationExecution] = []
         self._delayed: list[tuple[Signal, str | None]] = []
-        self.loop: asyncio.AbstractEventLoop | None = None
-        self._loop_thread = 0
 
     @property
     def artifact_type(self) -> type:
@@ -116,8 +122,8 @@ class Steps:
         outside, such as from a callback, as soon as the artifact is free.
         """
         inside = self.inside()
-        if not inside and self.elsewhere():
-            self.hand_over(partial(self.start, declared, request))
+        if not inside and self.setting.elsewhere():
+            self.setting.hand_over(partial(self.start, declared, request))
             return
         if request.cause is None and inside and self.turns.holder is not None:
             request.cause = self.turns.holder.cause
@@ -129,7 +135,7 @@ class Steps:
 
     def initialise(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution:
         """Run the ``init`` of the artifact as its first operation; the number of arguments is right."""
-        self._know_loop()
+        self.setting.know_loop()
         try:
             arguments = declared.signature.bind(request.arguments)
         except WrongArguments as wrong:
@@ -137,6 +143,27 @@ class Steps:
         execution = OperationExecution(self, request, declared, arguments, request.cause)
         self.turns.enter(execution, None)
         return execution
+
+    async def enter_task(self, execution: OperationExecution) -> None:
+        """Give the running task, which is not one of ours, the turn.
+
+        Raises:
+            OperationFailed: the artifact was disposed meanwhile.
+        """
+        execution.task, execution.begun = asyncio.current_task(), True
+        self._running[execution] = None
+        try:
+            await self.turns.retake(execution)
+        except BaseException as error:
+            self.leave_task(execution, error)
+            raise
+        if execution.verdict is not None:
+            self.leave_task(execution, None)
+            raise OperationFailed(execution.verdict.message or "", execution.verdict.reason)
+
+    def leave_task(self, execution: OperationExecution, error: BaseException | None) -> None:
+        """End what `enter_task` began; with an *error* it is undone."""
+        self._end(execution, error)
 
     def _guard(self, execution: OperationExecution) -> Guard | None:
         declared = execution.declared
@@ -156,7 +183,7 @@ class Steps:
             self._run(execution, declared)
         else:
             name = f"{self.id.path} {outcomes.key(execution.request)}"
-            self._know_loop()
+            self.setting.know_loop()
             execution.task = asyncio.get_running_loop().create_task(self._drive(execution), name=name)
             self._running[execution] = None
 
@@ -212,6 +239,9 @@ class Steps:
             return None
         self.publication.freeze()
         try:
+            if declared.kind == EXTERNAL:
+                raised: BaseException | None = await declared.function(execution)
+                return raised
             work = partial(
                 in_thread, execution, partial(declared.function, self._artifact, *execution.arguments)
             )
@@ -247,7 +277,7 @@ class Steps:
             execution.limit.cancel()
         if execution.cancelled:
             if not self.initialised and not self.disposed:
-                self.dispose()
+                self.abandon()
         elif not execution.told:
             self._inform(execution, outcome)
 
@@ -261,7 +291,7 @@ class Steps:
     def _note(self, execution: OperationExecution, error: BaseException) -> None:
         """Log what nobody else would see, or what its author must see."""
         key = outcomes.key(execution.request)
-        if isinstance(error, InternalError):
+        if isinstance(error, InternalError) or execution.request.operation == EXTERNAL:
             return
         if not isinstance(error, OperationFailed):
             self.setting.log_error(self.id.name, f"error in operation {key}, its step is undone:", error)
@@ -304,27 +334,6 @@ class Steps:
             f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; from a callback, "
             "another task or thread use self.start(...) to run an internal operation, or self.external_session()"
         )
-
-    def _know_loop(self) -> None:
-        if self.loop is None:
-            try:
-                self.loop = asyncio.get_running_loop()
-            except RuntimeError:
-                return
-            self._loop_thread = threading.get_ident()
-
-    def elsewhere(self) -> bool:
-        """True when called from another thread than the loop's."""
-        return self.loop is not None and self._loop_thread != threading.get_ident()
-
-    def hand_over(self, callback: Callable[[], object]) -> bool:
-        """Call *callback* on the loop, from another thread; False when the loop has ended."""
-        try:
-            if self.loop is not None:
-                self.loop.call_soon_threadsafe(callback)
-        except RuntimeError:
-            return False
-        return self.loop is not None
 
     def commit(self) -> None:
         """Publish what the step has changed so far; operations that it started may begin."""
@@ -442,6 +451,8 @@ class Steps:
         task, declared = execution.task, execution.declared
         if task is None or declared is None or declared.threaded or not execution.begun:
             return
+        if declared.kind == EXTERNAL:
+            return  # the task is somebody else's
         if asyncio.current_task() is not task and self.turns.holder is execution:
             self._roll_back()
         task.cancel()

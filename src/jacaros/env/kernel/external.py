@@ -1,0 +1,117 @@
+"""External sessions: threads and tasks from elsewhere that work in an artifact as an operation does."""
+
+import asyncio
+import threading
+from collections.abc import Callable
+from functools import partial
+from types import TracebackType
+from typing import Any
+
+from jacaros.clock import standing_still
+from jacaros.env.errors import InvalidArtifact, OperationFailed
+from jacaros.env.execution import OperationExecution
+from jacaros.env.kernel import outcomes
+from jacaros.env.kernel.declaration import DeclaredOperation
+from jacaros.env.kernel.signature import Signature
+from jacaros.env.kernel.steps import Steps
+from jacaros.env.operation import EXTERNAL, OperationOutcome, OperationRequest
+from jacaros.trace import Cause
+
+PATIENCE = 0.2
+"""Seconds after which a waiting thread looks whether the loop is still there."""
+
+
+class ExternalSession:
+    """A turn in an artifact for code that is no operation; see `Artifact.external_session`."""
+
+    def __init__(self, steps: Steps, cause: Cause | None) -> None:
+        self._steps, self._cause = steps, cause
+        self._execution: OperationExecution | None = None
+        self._thread = 0
+        self._entered, self._ended = threading.Event(), threading.Event()
+        self._left: asyncio.Future[BaseException | None] | None = None
+        self._refusal: OperationOutcome | None = None
+
+    def _new_execution(self, function: Callable[..., Any], threaded: bool) -> OperationExecution:
+        steps = self._steps
+        request = OperationRequest(steps.id, EXTERNAL, (), None, self._cause, self._told)
+        declared = DeclaredOperation(
+            EXTERNAL, EXTERNAL, function, function, Signature((), None), None, False, threaded, True, 0
+        )
+        return OperationExecution(steps, request, declared, (), self._cause)
+
+    # ---- a task of the loop
+
+    async def __aenter__(self) -> None:
+        if self._steps.inside():
+            raise InvalidArtifact(f"artifact {self._steps.id.name}: this is within an operation already")
+        if self._steps.disposed:
+            raise _failure(outcomes.not_available(self._steps.id))
+        self._execution = self._new_execution(self._hold, threaded=False)
+        await self._steps.enter_task(self._execution)
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        assert self._execution is not None
+        self._steps.leave_task(self._execution, error)
+
+    # ---- another thread
+
+    def __enter__(self) -> None:
+        if not self._steps.setting.elsewhere():
+            raise InvalidArtifact(
+                f"artifact {self._steps.id.name}: 'with' is for other threads; in a task write 'async with', in a "
+                "callback self.start(...)"
+            )
+        if self._steps.inside():
+            raise InvalidArtifact(f"artifact {self._steps.id.name}: this is within an operation already")
+        self._thread = threading.get_ident()
+        self._wait(self._entered, self._steps.setting.hand_over(self._arrive))
+        if self._refusal is not None:
+            raise _failure(self._refusal)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._wait(self._ended, self._steps.setting.hand_over(partial(self._leave, error)))
+
+    def _wait(self, event: threading.Event, alive: bool) -> None:
+        loop = self._steps.setting.loop
+        while alive and not event.wait(PATIENCE):
+            alive = loop is not None and not loop.is_closed()
+        if not event.is_set():
+            raise _failure(outcomes.not_available(self._steps.id))
+
+    def _arrive(self) -> None:
+        if self._steps.disposed:
+            self._told(outcomes.not_available(self._steps.id))
+        else:
+            self._steps.turns.enter(self._new_execution(self._hold, threaded=True), None)
+
+    async def _hold(self, execution: OperationExecution) -> BaseException | None:
+        """Keep the turn until the thread leaves; gives what ended it."""
+        loop = asyncio.get_running_loop()
+        self._left = loop.create_future()
+        execution.thread = self._thread
+        try:
+            with standing_still(loop):
+                self._entered.set()
+                return await self._left
+        finally:
+            execution.thread = None
+
+    def _leave(self, error: BaseException | None) -> None:
+        if self._left is not None and not self._left.done():
+            self._left.set_result(error)
+
+    def _told(self, outcome: OperationOutcome) -> None:
+        """Take the outcome: it is refused when it had not begun."""
+        if not self._entered.is_set():
+            self._refusal = outcome
+            self._entered.set()
+        self._ended.set()
+
+
+def _failure(outcome: OperationOutcome) -> OperationFailed:
+    return OperationFailed(outcome.message or "", outcome.reason)
