@@ -78,7 +78,7 @@ class ArtifactSpec:
 
     ``arguments`` are plain values: numbers, truth values, strings, lists, `jacaros.env.values.Atom` for names
     without quotes, `jacaros.env.values.Structure`.  ``focused_by`` are agents as written (``*``: all); they
-    have it in their ``focus``.
+    have it in their ``focus``.  ``span`` and ``type_span`` are where its name and its type are written.
     """
 
     name: str
@@ -86,6 +86,7 @@ class ArtifactSpec:
     arguments: tuple[object, ...] = ()
     focused_by: tuple[str, ...] = ()
     span: Span | None = field(default=None, compare=False, repr=False)
+    type_span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

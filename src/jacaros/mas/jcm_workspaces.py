@@ -76,8 +76,9 @@ class JcmWorkspaces(JcmValues):
             finally:
                 self.entries = entries
         agents = tuple(agent for agent, _, _ in focused_by)
-        spec = ArtifactSpec(name.text, text_of(type_token), arguments, agents, cursor.span_of(name))
-        workspace.artifacts.append(ArtifactPart(spec, focused_by, cursor.span_of(type_token)))
+        spans = cursor.span_of(name), cursor.span_of(type_token)
+        spec = ArtifactSpec(name.text, text_of(type_token), arguments, agents, *spans)
+        workspace.artifacts.append(ArtifactPart(spec, focused_by))
 
     def _artifact_entry(self, focused_by: list[AgentName]) -> None:
         key = self.key(("focused-by",), "an artifact")

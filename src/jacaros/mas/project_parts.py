@@ -74,7 +74,6 @@ class ArtifactPart:
 
     spec: ArtifactSpec
     focused_by: list[AgentName] = field(default_factory=list)
-    type_span: Span | None = None
 
 
 @dataclass

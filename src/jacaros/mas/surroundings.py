@@ -1,29 +1,26 @@
 """The environment of a run: workspaces and artifacts of the project, made in the order of the file."""
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jacaros.asl.diagnostics import Diagnostic
 from jacaros.body.body import AgentBody
 from jacaros.body.percepts import PerceptWriter
 from jacaros.body.values import References
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed
-from jacaros.env.ports import Workspace
+from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import (
     AgentSpec,
-    ArtifactSpec,
     Deployment,
     FocusSpec,
-    ProjectError,
-    WorkspaceSpec,
     has_own_artifacts,
 )
+from jacaros.mas.furnishing import artifact_of, furnish, path_of
 from jacaros.project_modules import ProjectModules
 
 if TYPE_CHECKING:
@@ -102,8 +99,8 @@ class Surroundings:
         activity: Activity,
         on_internal_error: Callable[[BaseException], None],
     ) -> None:
-        find_type = TypeFinder(deployment.base_path, modules)
-        self.environment = Environment(clock, resources, find_type, console.log, on_internal_error)
+        self._find_type = TypeFinder(deployment.base_path, modules)
+        self.environment = Environment(clock, resources, self._find_type, console.log, on_internal_error)
         self._console = console
         self._activity = activity
         self._references = References()
@@ -116,17 +113,45 @@ class Surroundings:
         )
 
     def situated_body(self, host: AgentHost, spec: AgentSpec) -> AgentBody:
-        """A body that has joined and focused what the project says; what is not there is told in the log."""
+        """A body that has joined and focused what the project says.
+
+        An artifact that is not there is focused when somebody makes it; what else is wrong is told in the log.
+        """
         body = self.make_body(host)
         body.enter()
+        for workspace in spec.join:
+            self._try(spec, partial(self._join, body, workspace))
+        for focus in spec.focus:
+            self._try(spec, partial(self._focus, host, body, focus))
+        return body
+
+    def _try(self, spec: AgentSpec, do: Callable[[], None]) -> None:
         try:
-            for workspace in spec.join:
-                body.join(path_of(self.environment, workspace))
-            for focus in spec.focus:
-                body.focus(artifact_of(self.environment, focus), focus.namespace)
+            do()
         except OperationFailed as failure:
             self._console.log(f"[{spec.name}] error: {failure.message}", "error")
-        return body
+
+    def _join(self, body: AgentBody, workspace: str) -> None:
+        body.join(path_of(self.environment, workspace))
+
+    def _focus(self, host: AgentHost, body: AgentBody, wanted: FocusSpec) -> None:
+        try:
+            body.focus(artifact_of(self.environment, wanted), wanted.namespace)
+        except UnknownArtifact:
+            if wanted.workspace is None:
+                raise
+            self._focus_later(host, body, wanted, path_of(self.environment, wanted.workspace))
+
+    def _focus_later(self, host: AgentHost, body: AgentBody, wanted: FocusSpec, path: str) -> None:
+        """Focus an artifact as soon as there is one of that name."""
+
+        def look(artifact: "ArtifactId", present: bool) -> None:
+            if present and artifact.name == wanted.artifact:
+                stop()
+                if not host.mind.stopped:
+                    body.focus(artifact, wanted.namespace)
+
+        stop = self.environment.workspace(path).watch(look)
 
     async def furnish(self, deployment: Deployment) -> None:
         """Make the workspaces and artifacts that the project declares.
@@ -134,52 +159,4 @@ class Surroundings:
         Raises:
             ProjectError: one cannot be made.
         """
-        for spec in deployment.workspaces:
-            workspace = _workspace(self.environment, spec)
-            for artifact in spec.artifacts:
-                await _make(workspace, artifact)
-
-
-def _workspace(environment: Environment, spec: WorkspaceSpec) -> Workspace:
-    above = environment.workspace(path_of(environment, spec.parent)) if spec.parent else None
-    path = f"{above.path if above is not None else '/main'}/{spec.name}"
-    if spec.name == "main" and above is None:
-        return environment.workspace("/main")
-    try:
-        return environment.create_workspace(path)
-    except OperationFailed as failure:
-        raise ProjectError([Diagnostic("error", failure.message, spec.span)]) from failure
-
-
-async def _make(workspace: Workspace, spec: ArtifactSpec) -> None:
-    try:
-        await workspace.make_artifact(spec.name, spec.type_name, spec.arguments)
-    except OperationFailed as failure:
-        raise ProjectError([Diagnostic("error", failure.message, spec.span)]) from failure
-
-
-def path_of(environment: Environment, name: str) -> str:
-    """The full path of a workspace that the project calls *name*.
-
-    Raises:
-        UnknownWorkspace: there is none.
-    """
-    for workspace in environment.workspaces():
-        if name in (workspace.name, workspace.path):
-            return workspace.path
-    return environment.workspace(name if name.startswith("/") else f"/main/{name}").path
-
-
-def artifact_of(environment: Environment, focus: FocusSpec) -> "ArtifactId":
-    """The artifact that an agent of the project is to focus.
-
-    Raises:
-        OperationFailed: there is none.
-    """
-    if focus.workspace is not None:
-        return environment.workspace(path_of(environment, focus.workspace)).lookup(focus.artifact)
-    for workspace in environment.workspaces():
-        for artifact in workspace.artifacts():
-            if artifact.name == focus.artifact:
-                return artifact
-    return environment.workspace("/main").lookup(focus.artifact)
+        await furnish(self.environment, deployment.workspaces, self._find_type)

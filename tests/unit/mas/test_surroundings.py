@@ -178,3 +178,174 @@ def test_a_program_without_actions_needs_no_environment(folder: Path) -> None:
     environments: list[object] = []
     run_project(file, until_idle=True, when_started=lambda mas: environments.append(mas.environment))
     assert environments == [None]
+
+
+def test_an_artifact_that_an_agent_makes_later_is_focused_then(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl { focus: lab.late }
+            agent bob: b.asl { join: lab }
+            workspace lab
+        }
+        """,
+        a_asl="+count(X)[artifact_name(late)] <- .print(X); .stopMAS.",
+        b_asl='!go. +!go <- .wait(10); makeArtifact("late", "Counter", [4]).',
+    )
+    result = run_project(file)
+    assert result.lines == ["[ann] 4"]
+    assert "is not declared in workspace 'lab'" in result.errors[0]
+
+
+def test_a_killed_agent_does_not_focus_what_comes_later(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl { focus: lab.late }
+            agent bob: b.asl { join: lab }
+            workspace lab
+        }
+        """,
+        a_asl="+count(X) <- .print(X).",
+        b_asl='!go. +!go <- .kill_agent(ann); makeArtifact("late", "Counter", [4]); .wait(10); .stopMAS.',
+    )
+    result = run_project(file)
+    assert result.lines == []
+    assert result.exit_code == 0
+
+
+def test_all_types_that_there_are_not_are_told_at_their_places_before_anything_is_made(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl
+            workspace lab {
+                artifact c: Counter(1)
+                artifact d: Count(-1)
+                artifact e: tools.Clcok
+            }
+        }
+        """,
+        a_asl="!go. +!go <- .print(hi).",
+    )
+    result = run_project(file)
+    assert result.exit_code == 1
+    assert result.lines == []
+    (text,) = result.errors
+    assert "p.jcm:6:29: error" in text
+    assert "did you mean Counter?" in text
+    assert "p.jcm:7:29: error" in text
+    assert "hint: write a class Clcok(Artifact) in tools.py or artifacts.py beside the project file" in text
+    assert "made c" not in text
+
+
+def test_all_artifacts_that_cannot_be_made_are_told(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl
+            workspace lab {
+                artifact c: Counter(-1)
+                artifact d: Counter(1, 2)
+            }
+        }
+        """,
+        a_asl="!go. +!go <- .print(hi).",
+    )
+    text = run_project(file).errors[-1]
+    assert "p.jcm:5:26: error: artifact c (Counter) cannot be made: negative" in text
+    assert "p.jcm:6:26: error: artifact d (Counter) cannot be made: its init takes" in text
+
+
+def test_texts_become_numbers_where_the_type_wants_numbers(folder: Path) -> None:
+    (folder / "artifacts.py").write_text(
+        """
+from jacaros.env import Artifact
+
+class Taken(Artifact):
+    def init(self, text: str, number: int, real: float, truth: bool, anything):
+        self.define_property("taken", text, number, real, truth, anything)
+""",
+        encoding="utf-8",
+    )
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl { focus: w.a, w.b }
+            workspace w {
+                artifact a: Taken("1", "2", "3.5", "true", "4")
+                artifact b: Taken("x", -5, 6, false, [a, "b", p(-1)])
+            }
+        }
+        """,
+        a_asl="""
+        !go.
+        +!go <- for (taken(T,N,R,B,A)[artifact_name(W)]) { .print([W,T,N,R,B,A]) }; .stopMAS.
+        """,
+    )
+    assert run_project(file).of("ann") == ['[b,"x",-5,6,false,[a,"b",p(-1)]]', '[a,"1",2,3.5,true,"4"]']
+
+
+def test_what_the_project_makes_is_nobodys_own(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl { focus: lab.one }
+            workspace lab {
+                artifact zero: Counter(0)
+                artifact one: Counter(10)
+            }
+        }
+        """,
+        a_asl="""
+        !go.
+        +!go <- inc; ?count(X); .print(X); makeArtifact("mine", "Counter", [100], M); inc;
+                lookupArtifact("mine", Id); focus(Id); .findall(C, count(C), L); .print(L); .stopMAS.
+        """,
+    )
+    assert run_project(file).of("ann") == ["11", "[101,11]"]
+
+
+def test_agents_with_plans_for_jacamos_own_goals_run(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl { focus: lab.c  goals: go }
+            workspace lab { artifact c: Counter(5) }
+        }
+        """,
+        a_asl="""
+        +!jcm::focus_env_art(Art, Delay) <- .print("never asked").
+        +!go : count(X) <- .print(X); .stopMAS.
+        """,
+    )
+    assert run_project(file).lines == ["[ann] 5"]
+
+
+def test_workspaces_of_one_name_are_told_apart_by_their_paths(folder: Path) -> None:
+    file = write(
+        folder,
+        p_jcm="""
+        mas p {
+            agent ann: a.asl { focus: house/kitchen.lamp, in::hotel/kitchen.lamp }
+            workspace hotel/kitchen { artifact lamp: Counter(1) }
+            workspace kitchen { parent: house  artifact lamp: Counter(2) }
+            workspace house
+        }
+        """,
+        a_asl="""
+        !go.
+        +!go : count(X) & in::count(Y) <- .print(X, Y);
+            .findall(P, joinedWsp(_, _, P), L); .print(L); .stopMAS.
+        """,
+    )
+    result = run_project(file)
+    assert result.errors == ["[lamp] made lamp", "[lamp] made lamp"]
+    assert result.of("ann") == ["21", '["/main/hotel/kitchen","/main/house/kitchen","/main"]']
