@@ -20,6 +20,8 @@ from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, at
 
 Annotations = tuple[Term, ...]
 
+_OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
+
 
 def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
     """``+b``: the event belongs to the intention that made it."""
@@ -150,12 +152,28 @@ def delete_belief(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
 ) -> Any:
     """``-b`` and ``--b``: the named annotations (at least the own source) of the first match are taken away."""
+    if annotations is not BY_SELF and _is_property(agent, symbol, arguments, annotations):
+        return None
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
     if removed is None:
         return None
     if agent.condition_waits:
         agent.do_soon(_nothing)
     return _raise(agent, (DELETED[symbol], *removed), annotations, apart)
+
+
+def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
+    """Whether ``-b[source(percept)]`` names one observable property: that is left to its artifact.
+
+    As in CArtAgO, only ``-b(_)[source(percept)]`` takes one away (and ``.abolish``).
+    """
+    if SOURCE_PERCEPT not in annotations:
+        return False
+    row = tuple(map(resolve, arguments))
+    held = agent.held_percepts.get((symbol, *row) if row else symbol)
+    if held is None:
+        return False
+    return _OBSERVABLE_PROPERTY in (held[0] if held.__class__ is list else held)
 
 
 def _remove_first(

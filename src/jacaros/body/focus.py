@@ -148,10 +148,10 @@ class FocusedArtifacts:
         workspace = namespaces.pop(namespace, None)
         if workspace is None:
             return
-        if not namespaces:
-            self._lose(workspace, artifact)
         observer = self._filtered.pop((artifact, namespace), None) or self._observer(namespace)
         workspace.stop_focus(artifact, observer)
+        if not namespaces:
+            self._lose(workspace, artifact)
 
     def end_all(self, workspace: Workspace) -> None:
         """Stop to focus everything in a workspace."""

@@ -20,6 +20,7 @@ formula, plan              its text
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
+from weakref import WeakValueDictionary
 
 from jacaros.env.ids import ArtifactId
 from jacaros.env.values import Atom, Out, Structure, plain
@@ -133,10 +134,22 @@ def unquoted(name: str) -> str:
     return name[1:-1] if name[:1] == "'" and name[-1:] == "'" and len(name) > 1 else name
 
 
-class References:
-    """One opaque reference for each artifact and workspace, so that it always prints the same (``cobj_N``).
+_references: WeakValueDictionary[int, Reference] = WeakValueDictionary()
+"""The references that somebody has, by the identity of their objects, which live as long as they do."""
 
-    Other objects get a new reference each time: keeping them would keep every image of a camera alive.
+
+def reference_to(value: object) -> Reference:
+    """The reference to *value*: as long as anybody has one it is the same one, and prints the same (``cobj_N``)."""
+    known = _references.get(id(value))
+    if known is None:
+        known = _references[id(value)] = Reference(value)
+    return known
+
+
+class References:
+    """Keeps the references to artifacts and workspaces, so that they print the same in the whole run.
+
+    Other objects are not kept: that would keep every image of a camera alive.
     """
 
     def __init__(self) -> None:
@@ -146,7 +159,7 @@ class References:
         """The one reference to *value*, which is kept alive from now on."""
         known = self._kept.get(id(value))
         if known is None:
-            known = self._kept[id(value)] = Reference(value)
+            known = self._kept[id(value)] = reference_to(value)
         return known
 
     def forget(self, value: object) -> None:
@@ -217,7 +230,7 @@ def _other_to_term(value: Any, references: References) -> Term:
         return String(simple)
     if isinstance(simple, (int, float)):
         return number_to_term(simple)
-    return Reference(simple)
+    return reference_to(simple)
 
 
 _BY_CLASS: dict[type, Callable[[Any, References], Term]] = {

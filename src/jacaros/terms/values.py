@@ -139,11 +139,11 @@ class Reference:
     """An opaque object; printed as ``cobj_N``.
 
     Attributes:
-        value: the object; two references are equal when their objects are.
+        value: the object; two references are equal when their objects are the same, or can be hashed and are equal.
         number: for printing.
     """
 
-    __slots__ = ("number", "value")
+    __slots__ = ("__weakref__", "number", "value")
     _count = 0
 
     def __init__(self, value: object) -> None:
@@ -151,12 +151,21 @@ class Reference:
         self.value, self.number = value, Reference._count
 
     def __eq__(self, other: object) -> bool:
-        return other.__class__ is Reference and self.value == other.value
+        if other.__class__ is not Reference:
+            return False
+        left, right = self.value, other.value
+        if left is right:
+            return True
+        # What the classes of projects do when they are asked is their affair: the mind goes on.
+        try:
+            return hash(left) == hash(right) and bool(left == right)
+        except Exception:
+            return False
 
     def __hash__(self) -> int:
         try:
             return hash(self.value)
-        except TypeError:
+        except Exception:
             return id(self.value)
 
     def __repr__(self) -> str:
