@@ -380,3 +380,9 @@ def has_source(annotations: tuple[Term, ...]) -> bool:
         if inner.__class__ is tuple and inner[0] is SOURCE:
             return True
     return False
+
+
+def take_away(table: Table, entry: Any, held: tuple[Term, ...], annotations: tuple[Term, ...]) -> bool:
+    """Take annotations off a belief; it goes when no source is left.  False when the base refuses."""
+    rest = tuple(a for a in held if a not in annotations)
+    return table.set(entry, rest) if has_source(rest) else table.remove(entry)

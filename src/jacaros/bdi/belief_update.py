@@ -5,9 +5,9 @@ The functions for body formulae return the event to be handled by the same inten
 
 from typing import Any
 
-from jacaros.bdi import rescue
+from jacaros.bdi import rescue, unkeyed_percepts
 from jacaros.bdi.act import Percept
-from jacaros.bdi.belief_base import Row, Table, literal, parts, with_source
+from jacaros.bdi.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.rules import OpenFact, Rule
@@ -170,6 +170,8 @@ def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotatio
     if SOURCE_PERCEPT not in annotations:
         return False
     row = tuple(map(resolve, arguments))
+    if not all(map(is_key, row)):
+        return False
     held = agent.held_percepts.get((symbol, *row) if row else symbol)
     if held is None:
         return False
@@ -224,20 +226,6 @@ def _open_row(entry: Any) -> Row | None:
         head = bare(entry.head())
         return head[1:] if head.__class__ is tuple else ()
     return None
-
-
-def take_away(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> bool:
-    """Take annotations off a belief; it goes when no source is left.  False when the base refuses."""
-    rest = tuple(a for a in held if a not in annotations)
-    return table.set(entry, rest) if _has_source(rest) else table.remove(entry)
-
-
-def _has_source(annotations: Annotations) -> bool:
-    for annotation in annotations:
-        inner = bare(annotation)
-        if inner.__class__ is tuple and inner[0] is SOURCE_PERCEPT[0]:
-            return True
-    return False
 
 
 def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = BY_SELF) -> None:
@@ -383,6 +371,9 @@ def take_percepts(agent: Circumstance) -> None:
             for percept in percepts:
                 literal, annotations, kind = percept.literal, percept.annotations, percept.kind
                 symbol, row, is_flat = percept.taken or _taken(percept)
+                if is_flat is None:
+                    _take_unkeyed(agent, percept, symbol, row)
+                    continue
                 # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
                 if kind == "add":
                     change = ADDED[symbol]
@@ -432,8 +423,9 @@ def _is_flat(row: Row) -> bool:
     return True
 
 
-def _taken(percept: Percept) -> tuple[Functor, Row, bool]:
-    """Functor and arguments of a percept, and whether these are flat; kept with it for all who share it."""
+def _taken(percept: Percept) -> tuple[Functor, Row, bool | None]:
+    """Functor and arguments of a percept, and whether these are flat (None: not even to be looked up); kept with it for
+    all who share it."""
     literal = percept.literal
     if literal.__class__ is tuple:
         symbol, row = literal[0], literal[1:]
@@ -441,9 +433,26 @@ def _taken(percept: Percept) -> tuple[Functor, Row, bool]:
         symbol, row, _ = parts(literal)
         if symbol is None:
             raise InternalError(f"a percept is no literal: {literal!r}")
-    is_flat = ATOMIC.issuperset(map(type, row))
+    is_flat: bool | None = ATOMIC.issuperset(map(type, row))
+    if not is_flat and unkeyed_percepts.is_unkeyed(row):
+        is_flat = None
     percept.taken = symbol, row, is_flat
     return symbol, row, is_flat
+
+
+def _take_unkeyed(agent: Circumstance, percept: Percept, symbol: Functor, row: Row) -> None:
+    """Take in a percept that cannot be looked up by what it says."""
+    annotations = percept.annotations
+    own: Row | None
+    if percept.kind == "add":
+        own = unkeyed_percepts.take(agent, symbol, row, annotations)
+    elif percept.kind == "remove":
+        own = unkeyed_percepts.forget(agent, symbol, row, annotations)
+    else:
+        own = unkeyed_percepts.own_row(row)
+    if own is not None:
+        operator = "-" if percept.kind == "remove" else "+"
+        external_change(agent, operator, symbol, own, annotations, percept.cause)
 
 
 def _take_percept(

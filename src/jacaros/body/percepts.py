@@ -89,16 +89,18 @@ class PerceptWriter:
     def _write(
         self, each: ObservableProperty, about: Annotations, namespace: str | None
     ) -> tuple[Term, Annotations]:
-        if each.written is not None and not namespace:
-            known: tuple[Term, Annotations] = each.written
-            return known
-        if each.annotations:
-            own = tuple(to_term(a, self._references) for a in each.annotations)
-            about = annotation_set((*about, *own))
-        written = self._literal(each.name, each.values, namespace), about
+        written: tuple[Term, Annotations] | None = each.written
+        if written is None:
+            if each.annotations:
+                own = tuple(to_term(a, self._references) for a in each.annotations)
+                about = annotation_set((*about, *own))
+            written = each.written = self._literal(each.name, each.values, None), about
         if not namespace:
-            each.written = written
-        return written
+            return written
+        # The very same arguments: by them the mind finds what it is to give up.
+        literal, about = written
+        symbol = symbol_of(f"{namespace}::{each.name}", len(each.values))
+        return (symbol, *literal[1:]) if each.values else symbol, about
 
     def own(self, kind: str, about: ArtifactId, name: str, *arguments: Term) -> Percept:
         """A percept about the agent itself, such as ``joinedWsp(Id,lab,"/main/lab")``.
