@@ -360,7 +360,7 @@ def _abolish_entry(
         external_change(agent, "-", symbol, row, held)
 
 
-def take_percepts(agent: Circumstance) -> None:
+def take_percepts(agent: Circumstance) -> None:  # noqa: C901 - most of an observer's time is spent here
     """Bring the belief base in line with what was noticed, and raise the events, in order."""
     beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
     watched = agent.event_waits or agent.subplans or agent.options.events != "discard"

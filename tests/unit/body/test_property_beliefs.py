@@ -58,7 +58,9 @@ def lines(tmp_path: Path) -> Lines:
         for name, program in programs.items():
             (tmp_path / f"{name}.asl").write_text(program)
         agents = "".join(f"{name};" for name in programs)
-        (tmp_path / "boxes.mas2j").write_text(f"MAS boxes {{ environment: jaca.CartagoEnvironment agents: {agents} }}")
+        (tmp_path / "boxes.mas2j").write_text(
+            f"MAS boxes {{ environment: jaca.CartagoEnvironment agents: {agents} }}"
+        )
         result = run_project(tmp_path / "boxes.mas2j", seconds=10)
         assert not result.errors
         return result.lines
