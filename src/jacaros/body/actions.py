@@ -111,10 +111,7 @@ def _base(situation: Situation, call: Call) -> Workspace:
     whereabouts, intention = situation.whereabouts, call.act.intention
     wanted = call.direction.workspace
     if wanted is None:
-        current = whereabouts.current(intention)
-        if not whereabouts.has_joined(current.path):
-            raise not_joined(current.path)
-        return current
+        return whereabouts.current(intention)
     try:
         if isinstance(wanted, str):
             return whereabouts.named(wanted, intention)

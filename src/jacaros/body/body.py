@@ -5,9 +5,10 @@ from functools import partial
 from typing import Protocol
 
 from jacaros.bdi.act import Act, Completion, Percept
-from jacaros.body.actions import ACTIONS, Situation, keys
+from jacaros.body.actions import ACTIONS, Action, Situation, keys
 from jacaros.body.call import Call, Direction, read
 from jacaros.body.completion import SUCCEEDED, of_operation, refused, succeeded
+from jacaros.body.deadline import Deadline
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
@@ -189,18 +190,29 @@ class AgentBody:
     def _begin(self, call: Call) -> UnderWay | None:
         action = ACTIONS.get((call.name, len(call.arguments)))
         if action is not None and call.direction.artifact is None:
-            return action(self._situation, call, partial(self._finish, call.act.id))
+            return self._by_itself(action, call)
         artifact = self._selection.artifact_for(call)
         if action is not None and self._is_own(artifact, call):
             here = self._environment.workspace(artifact.workspace) if artifact is not self._session else None
-            call.direction = Direction(None, here)
-            return action(self._situation, call, partial(self._finish, call.act.id))
+            call.direction = Direction(None, here, call.direction.timeout)
+            return self._by_itself(action, call)
         if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
             # Printed here and not by the console artifact: it would see values where people want terms.
             self._show("".join(map(display, call.arguments)))
             self._finish(call.act.id, succeeded())
             return None
         return self._execute(call, artifact)
+
+    def _by_itself(self, action: Action, call: Call) -> UnderWay | None:
+        finish = partial(self._finish, call.act.id)
+        if call.direction.timeout is None:
+            return action(self._situation, call, finish)
+        deadline = Deadline(call, self._environment.clock, finish, self._references)
+        try:
+            return deadline.watch(action(self._situation, call, deadline.ended))
+        except OperationFailed:
+            deadline.cancel()
+            raise
 
     def _is_own(self, artifact: ArtifactId, call: Call) -> bool:
         """Whether an artifact stands for the agent itself, and has that operation."""
@@ -215,7 +227,10 @@ class AgentBody:
         for argument in call.arguments:
             arguments.append(to_value(argument, outputs))
         done = partial(self._done, act.id, outputs)
-        request = OperationRequest(artifact, call.name, tuple(arguments), self._agent, act.cause, done)
+        timeout = call.direction.timeout
+        request = OperationRequest(
+            artifact, call.name, tuple(arguments), self._agent, act.cause, done, timeout
+        )
         return self._environment.execute(request)
 
     def _done(self, act_id: int, outputs: Outputs, outcome: OperationOutcome) -> None:

@@ -14,21 +14,24 @@ from jacaros.terms.values import Functor, Reference, String, Term, Var, bare, de
 
 _BY_ARTIFACT = {"artifact_id": "artifact", "aid": "artifact", "artifact_name": "artifact", "art": "artifact"}
 _BY_WORKSPACE = {"wid": "workspace", "wsp": "workspace"}
-_DIRECTIONS = (*_BY_ARTIFACT, *_BY_WORKSPACE)
+_TIMEOUT = "timeout"
+_DIRECTIONS = (*_BY_ARTIFACT, *_BY_WORKSPACE, _TIMEOUT)
 _DIRECTING = ", ".join(_DIRECTIONS)
 
 
 @dataclass(slots=True)
 class Direction:
-    """Where an action is directed by its annotations.
+    """Where an action is directed by its annotations, and how long it may take.
 
     Attributes:
         artifact: an artifact, or the name of one; None when the action does not say.
         workspace: a workspace, or its name or path; None when the action does not say.
+        timeout: seconds; None for no limit.
     """
 
     artifact: ArtifactId | str | None = None
     workspace: Workspace | str | None = None
+    timeout: float | None = None
 
 
 ANYWHERE = Direction()
@@ -81,6 +84,9 @@ def _direction(act: Act) -> Direction:
         name = _name(annotation)
         if annotation.__class__ is not tuple or name == "source":
             continue
+        if len(annotation) == 2 and name == _TIMEOUT:
+            direction.timeout = _seconds(act, annotation)
+            continue
         if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
             message = f"the annotation {text(annotation)} of {act.functor!r} says nothing to the environment"
             hint = spelling_hint(name, _DIRECTIONS)
@@ -95,6 +101,15 @@ def _direction(act: Act) -> Direction:
         except OperationFailed as failure:
             raise unreachable(act, failure) from None
     return direction
+
+
+def _seconds(act: Act, annotation: Term) -> float:
+    """The time in ``timeout(Milliseconds)``."""
+    milliseconds = deref(annotation[1])
+    if milliseconds.__class__ is not float or not 0 <= milliseconds < float("inf"):
+        wanted = f"timeout wants a number of milliseconds, not {text(milliseconds)}"
+        raise unknown_annotation(act, annotation, f"{act.functor!r}: {wanted}")
+    return float(milliseconds) / 1000
 
 
 def _name(annotation: Term) -> str:

@@ -53,9 +53,17 @@ class Whereabouts:
         return self._joined[path]
 
     def current(self, intention: int) -> Workspace:
-        """The workspace where an intention acts."""
+        """The workspace where an intention acts.
+
+        Raises:
+            OperationFailed: the agent has quit all workspaces.
+        """
         found = self._of_intention.get(intention, self._last) if self._of_intention else self._last
-        return found if found.path in self._joined else self._last
+        if found.path in self._joined:
+            return found
+        if not self._joined:
+            raise not_joined(self.home.path)
+        return self._last
 
     def in_order(self, intention: int) -> Iterator[Workspace]:
         """The workspaces where an intention looks for things: the current one, home, then the others."""
@@ -67,12 +75,13 @@ class Whereabouts:
             yield from (w for w in self._joined.values() if w is not current and w is not self.home)
 
     def find(self, path: str, intention: int) -> Workspace:
-        """The workspace at *path*, which starts from the intention's current workspace.
+        """The workspace at *path*, which starts from the intention's current workspace, or from home without one.
 
         Raises:
             OperationFailed: there is none.
         """
-        return self._environment.workspace(resolve_path(self.current(intention).path, path))
+        base = self.current(intention) if self._joined else self.home
+        return self._environment.workspace(resolve_path(base.path, path))
 
     def named(self, name: str, intention: int) -> Workspace:
         """The joined workspace with that path or plain name.
@@ -103,7 +112,7 @@ class Whereabouts:
     def quit(self, workspace: Workspace) -> bool:
         """Leave a workspace; False when it was not joined.
 
-        When none is left, the agent's actions still start from its home.
+        When none is left, the agent can only join one again.
         """
         if self._joined.pop(workspace.path, None) is None:
             return False

@@ -12,6 +12,7 @@ import asyncio
 from collections.abc import Callable, Collection, Sequence
 from typing import Protocol, runtime_checkable
 
+from jacaros.clock import Clock
 from jacaros.env.artifact import Artifact
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
@@ -159,6 +160,10 @@ class Workspace(Protocol):
 
 class Environment(Protocol):
     """All workspaces that can be seen from here."""
+
+    @property
+    def clock(self) -> Clock:
+        """Where artifacts and time limits take time from."""
 
     def workspaces(self) -> Sequence[Workspace]:
         """All workspaces, the oldest first."""

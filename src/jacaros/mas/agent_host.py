@@ -237,12 +237,17 @@ class AgentHost:
         """Begin an external action; without an environment it fails at once."""
         if self.intercept is not None and self.intercept(act):
             return
-        if self.body is None and self.make_body is not None:
-            self.body = self.make_body()
-        if self.body is not None:
-            self.body.act(act)
+        body = self.situated()
+        if body is not None:
+            body.act(act)
         else:
             self._mind.complete(act.id, without_environment(act))
+
+    def situated(self) -> Body | None:
+        """The body, made when it is first asked for; None without an environment."""
+        if self.body is None and self.make_body is not None:
+            self.body = self.make_body()
+        return self.body
 
     def cancel_act(self, act_id: int) -> None:
         """The intention behind an act was dropped."""

@@ -42,6 +42,8 @@ class PythonCode:
 
     def name_met(self, name: str) -> None:
         """A program uses a name with a dot: import the module that it names, if there is one."""
+        if name.startswith("cartago."):
+            self._add_python_objects()
         parts = name.split(".")[:-1]
         for length in range(1, len(parts) + 1):
             module = ".".join(parts[:length])
@@ -50,6 +52,13 @@ class PythonCode:
                     return
                 self._read_module(module)
             self._met[module] = None
+
+    def _add_python_objects(self) -> None:
+        # Imported here: most programs use no Python objects.
+        from jacaros.mas.python_objects import PACKAGE, actions
+
+        if not any(known.startswith(PACKAGE) for known in self.actions):
+            self.actions.update(actions(self.modules))
 
     def _read_module(self, module: str) -> None:
         # Imported here: most projects have no Python code.

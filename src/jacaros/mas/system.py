@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -174,7 +175,12 @@ class System:
 
             random = Random(f"{self._seed}/artifacts")
             resources = Resources(
-                {"ros": self.ros.backend, "console": lambda: self.console.print, "random": lambda: random}
+                {
+                    "ros": self.ros.backend,
+                    "console": lambda: self.console.print,
+                    "random": lambda: random,
+                    "stop": lambda: partial(self.stop_system, 0.0, 0),
+                }
             )
             self._surroundings = Surroundings(
                 self.deployment, self._modules, self.clock, resources, self.console, self.activity, self.fail

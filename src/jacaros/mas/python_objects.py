@@ -1,0 +1,205 @@
+"""The internal actions ``cartago.*``: agents make Python objects, call their methods, and see where they are.
+
+In CArtAgO they are for Java objects.  Values are converted as for artifacts (`jacaros.body.values`); what is no value
+is an opaque reference.  Whatever goes wrong fails the step with ``error(internal_action)``.
+"""
+
+import builtins
+import importlib
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from jacaros.bdi.context import Context
+from jacaros.bdi.internal_action import ActionError, InternalAction, Registry
+from jacaros.body.body import AgentBody
+from jacaros.body.call import name_of
+from jacaros.body.values import to_term, to_value
+from jacaros.env.values import Out, plain
+from jacaros.errors import InternalError
+from jacaros.extension.faults import FAULTS
+from jacaros.extension.literal import REFERENCES
+from jacaros.project_modules import ProjectModules
+from jacaros.terms.text import text
+from jacaros.terms.values import Reference, Term, bare, is_list, make_list
+
+PACKAGE = "cartago."
+"""What the names of all of them begin with."""
+
+
+def actions(modules: ProjectModules) -> Registry:
+    """The internal actions for a project, whose classes are found beside it."""
+    classes = _Classes(modules)
+    table: dict[str, tuple[Callable[..., bool], int, int]] = {
+        "new_obj": (classes.new_object, 3, 3),
+        "invoke_obj": (classes.invoke, 2, 3),
+        "new_array": (_new_array, 3, 3),
+        "array_to_list": (_array_to_list, 2, 2),
+        "current_wsps": (_current_workspaces, 1, 1),
+    }
+    return {
+        PACKAGE + name: InternalAction(PACKAGE + name, function, minimum=least, maximum=most)
+        for name, (function, least, most) in table.items()
+    }
+
+
+class _Classes:
+    """Makes objects of classes, and calls methods of objects and classes.
+
+    Args:
+        modules: of the project.
+    """
+
+    def __init__(self, modules: ProjectModules) -> None:
+        self._modules = modules
+
+    def new_object(self, ctx: Context, class_name: Term, arguments: Term, reference: Term) -> bool:
+        """``cartago.new_obj(Class, Arguments, -Reference)``."""
+        name = name_of(bare(class_name))
+        if name is None:
+            raise ActionError(f"the name of a class is wanted, not {text(class_name)}")
+        made = _call(f"{name}(...)", self._find(name), _values(arguments))
+        return ctx.unify(reference, Reference(made))
+
+    def invoke(self, ctx: Context, target: Term, call: Term, *result: Term) -> bool:
+        """``cartago.invoke_obj(ReferenceOrClass, method(Arguments) {, -Result})``; or an attribute instead of a call."""
+        owner, shown = self._owner(target)
+        call = bare(call)
+        name = name_of(call[0] if isinstance(call, tuple) else call)
+        if name is None:
+            raise ActionError(f"a call such as append(3) is wanted, not {text(call)}")
+        try:
+            member = getattr(owner, name)
+        except AttributeError:
+            raise ActionError(f"{shown} has no method {name}") from None
+        given = [_value(each) for each in call[1:]] if isinstance(call, tuple) else []
+        value = member if not given and not callable(member) else _call(f"{name} of {shown}", member, given)
+        if not result or value is None:
+            return True
+        return ctx.unify(result[0], to_term(value, REFERENCES))
+
+    def _owner(self, target: Term) -> tuple[Any, str]:
+        target = bare(target)
+        if target.__class__ is Reference:
+            return target.value, f"an object of class {type(target.value).__name__}"
+        name = name_of(target)
+        if name is None:
+            raise ActionError(f"an object or the name of a class is wanted, not {text(target)}")
+        return self._find(name), f"class {name}"
+
+    def _find(self, name: str) -> Any:
+        """The class (or function, or module) of that name.
+
+        Beside the project, ``my.shapes.Square`` is in ``my/shapes.py``, and ``Square`` in ``artifacts.py``; else it is
+        looked for among the installed modules and the built-in names of Python.
+        """
+        path, _, last = name.rpartition(".")
+        try:
+            for module in self._modules.load(path or "artifacts"):
+                if hasattr(module, last):
+                    return getattr(module, last)
+            return _installed(name) if path else getattr(builtins, name)
+        except InternalError:
+            raise
+        except FAULTS as error:
+            hint = "; there are Python classes only" if name.startswith(("java.", "javax.")) else ""
+            raise ActionError(f"there is no class {name}: {_said(error)}{hint}") from error
+
+
+def _installed(name: str) -> Any:
+    """What a dotted name means: the longest beginning that is a module, and attributes of it."""
+    parts = name.split(".")
+    for length in range(len(parts) - 1, 0, -1):
+        path = ".".join(parts[:length])
+        try:
+            found: Any = importlib.import_module(path)
+        except ModuleNotFoundError as error:
+            if length > 1 and error.name is not None and f"{path}.".startswith(f"{error.name}."):
+                continue
+            raise
+        for part in parts[length:]:
+            found = getattr(found, part)
+        return found
+    raise ModuleNotFoundError(name)
+
+
+def _call(what: str, function: Any, given: list[Any]) -> Any:
+    if not callable(function):
+        raise ActionError(f"{what} cannot be called: it is {type(function).__name__}")
+    try:
+        return function(*given)
+    except InternalError:
+        raise
+    except FAULTS as error:
+        raise ActionError(f"{what}: {_said(error)}") from error
+
+
+def _said(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+
+
+def _values(arguments: Term) -> list[Any]:
+    if not is_list(bare(arguments)):
+        raise ActionError(f"a list of arguments is wanted, not {text(arguments)}")
+    values: list[Any] = [_bound(value) for value in to_value(bare(arguments))]
+    return values
+
+
+def _value(term: Term) -> Any:
+    return _bound(to_value(term))
+
+
+def _bound(value: Any) -> Any:
+    if isinstance(value, Out):
+        raise ActionError("an argument is an unbound variable; only the result may be one")
+    return value
+
+
+def _new_array(ctx: Context, type_name: Term, items: Term, reference: Term) -> bool:
+    """``cartago.new_array("int[]", List, -Reference)``: a Python list; the type says what its items are."""
+    name = name_of(bare(type_name))
+    if name is None or not name.endswith("[]"):
+        raise ActionError(f'a type such as "int[]" is wanted, not {text(type_name)}')
+    kinds = _ITEMS.get(name.removesuffix("[]").rpartition(".")[2])
+    values = _values(items)
+    for value in values:
+        if kinds is not None and (
+            not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds)
+        ):
+            raise ActionError(f"{value!r} cannot be an item of {name}")
+    if kinds is not None and kinds[0] is float:
+        values = [float(value) for value in values]
+    return ctx.unify(reference, Reference(values))
+
+
+_WHOLE, _REAL = (int,), (float, int)
+_ITEMS: dict[str, tuple[type, ...]] = {
+    **dict.fromkeys(("byte", "short", "int", "long", "Byte", "Short", "Integer", "Long"), _WHOLE),
+    **dict.fromkeys(("float", "double", "Float", "Double"), _REAL),
+    **dict.fromkeys(("boolean", "Boolean"), (bool,)),
+    **dict.fromkeys(("char", "String"), (str,)),
+}
+"""The Python types of items, by the Java names of their types; items of other types may be anything."""
+
+
+def _array_to_list(ctx: Context, reference: Term, result: Term) -> bool:
+    """``cartago.array_to_list(Reference, -List)``: the items of anything that can be iterated over."""
+    target = bare(reference)
+    value = plain(target.value) if target.__class__ is Reference else None
+    if not isinstance(value, Iterable) or isinstance(value, str):
+        raise ActionError(f"an array is wanted, not {text(reference)}")
+    try:
+        items = list(value)
+    except FAULTS as error:
+        raise ActionError(f"the items of {text(reference)}: {_said(error)}") from error
+    return ctx.unify(result, make_list([to_term(item, REFERENCES) for item in items]))
+
+
+def _current_workspaces(ctx: Context, result: Term) -> bool:
+    """``cartago.current_wsps(-Ids)``: the workspaces that the agent has joined, in the order of joining."""
+    body = getattr(ctx.architecture, "situated", lambda: None)()
+    if not isinstance(body, AgentBody):
+        raise ActionError("the project has no environment")
+    body.enter()
+    situation = body.situation
+    ids = [situation.references.of(workspace) for workspace in situation.whereabouts.joined()]
+    return ctx.unify(result, make_list(ids))
