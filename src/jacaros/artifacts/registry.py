@@ -17,7 +17,12 @@ from jacaros.artifacts.ros.velocity import (
     ArtCmdVelMux,
     ArtCmdVelMuxAndOdometry,
 )
+from jacaros.artifacts.tools.barrier import Barrier
+from jacaros.artifacts.tools.clock import Clock
+from jacaros.artifacts.tools.latch import Latch
 from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
+from jacaros.env.default.blackboard import Blackboard
+from jacaros.env.default.console import Console
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 
 BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
@@ -36,6 +41,11 @@ BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
             ArtSimBattery,
             ArtSlamData,
             ArtTutorial,
+            Barrier,
+            Blackboard,
+            Clock,
+            Console,
+            Latch,
         )
     }
 )
@@ -46,6 +56,18 @@ ARTIFACTS = "artifacts"
 
 ALIASES = ("jason.architecture.", "jacaros.")
 """Package names under which the thesis's programs ask for the built-in artifacts."""
+
+
+TOOLS: Mapping[str, type[Artifact]] = MappingProxyType(
+    {
+        "cartago.tools.Barrier": Barrier,
+        "cartago.tools.Clock": Clock,
+        "cartago.tools.Console": Console,
+        "cartago.tools.Latch": Latch,
+        "cartago.tools.TupleSpace": Blackboard,
+    }
+)
+"""The tool artifacts of CArtAgO by their names there."""
 
 
 def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], type[Artifact]]:
@@ -76,12 +98,14 @@ def find_type(
     In this order: a dotted Python path (``my_robot.gripper.Gripper``); a class of the project's own
     modules, where a package in front of the name (``tools.Counter``, as Java programs write) is ignored;
     a built-in by its bare name; a built-in by the thesis's name (``jason.architecture.ArtOdometry``).
+    What begins with ``cartago.tools.`` is a tool of CArtAgO in any case.
 
     Raises:
         UnknownArtifactType: there is none.
     """
     found = (
-        _by_path(name)
+        TOOLS.get(name)
+        or _by_path(name)
         or _of_modules(name.rpartition(".")[2], search_modules)
         or built_in.get(name)
         or _by_alias(name, built_in)
