@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from jacaros.extension.declaring import arithmetic_function, internal_action
     from jacaros.extension.literal import Literal
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
+    from jacaros.mas.errors import GoalFailed
+    from jacaros.mas.mas import Mas
+    from jacaros.mas.python_main import run
 
 __version__ = VERSION
 
@@ -32,8 +35,10 @@ __all__ = [
     "Atom",
     "BeliefBase",
     "Event",
+    "GoalFailed",
     "Intention",
     "Literal",
+    "Mas",
     "Message",
     "Option",
     "Out",
@@ -43,6 +48,7 @@ __all__ = [
     "WrongArguments",
     "arithmetic_function",
     "internal_action",
+    "run",
 ]
 
 _PLACES = {
@@ -53,8 +59,10 @@ _PLACES = {
     "Atom": "jacaros.env.values",
     "BeliefBase": "jacaros.extension.belief_base",
     "Event": "jacaros.extension.views",
+    "GoalFailed": "jacaros.mas.errors",
     "Intention": "jacaros.extension.views",
     "Literal": "jacaros.extension.literal",
+    "Mas": "jacaros.mas.mas",
     "Message": "jacaros.extension.views",
     "Option": "jacaros.extension.views",
     "Out": "jacaros.env.values",
@@ -64,6 +72,7 @@ _PLACES = {
     "WrongArguments": "jacaros.bdi.internal_action",
     "arithmetic_function": "jacaros.extension.declaring",
     "internal_action": "jacaros.extension.declaring",
+    "run": "jacaros.mas.python_main",
 }
 
 

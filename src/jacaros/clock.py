@@ -247,6 +247,11 @@ def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:
     return asyncio.new_event_loop()
 
 
+def clock_of(loop: asyncio.AbstractEventLoop) -> Clock:
+    """The clock of an event loop: the virtual one that `new_event_loop` made it for, or the wall clock."""
+    return loop.virtual_selector.clock if isinstance(loop, VirtualEventLoop) else WallClock()
+
+
 def run(main: Callable[[], Coroutine[Any, Any, T]], clock: Clock) -> T:
     """Run the coroutine function *main* to its end on a fresh loop of *clock*."""
     with asyncio.Runner(loop_factory=lambda: new_event_loop(clock)) as runner:

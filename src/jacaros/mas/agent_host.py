@@ -187,6 +187,11 @@ class AgentHost:
         self._mind = mind
         self.run = mind.run
 
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended."""
+        return self._ended
+
     def halt(self) -> None:
         """Let the mind make no further cycle, also when it is in the middle of its turn."""
         self._ended = True

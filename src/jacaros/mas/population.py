@@ -41,6 +41,7 @@ class Population:
 
     Attributes:
         programs: reads what they run.
+        when_ended: told of every agent that ends before the run does.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class Population:
         self._seed = seed
         self._situate = situate
         self._when_made = when_made
+        self.when_ended: Callable[[str], None] = lambda name: None
         self._specs: dict[str, AgentSpec] = {}
         self._plans: dict[int, ProgramPlans] = {}
 
@@ -153,6 +155,7 @@ class Population:
             self._directory.remove(host.name)
         host.halt()
         host.end()
+        self.when_ended(host.name)
 
 
 def begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:

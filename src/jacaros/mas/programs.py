@@ -68,13 +68,21 @@ class Programs:
             raise AslError(wrong)
         return programs
 
-    def load(self, agent: AgentSpec) -> nodes.Program:
+    def load(self, agent: AgentSpec, written: str | None = None) -> nodes.Program:
         """The program of one agent.
+
+        Args:
+            agent: the agent.
+            written: the text of its program, in place of that of its file.
 
         Raises:
             AslError: the program, or what the project adds, is wrong.
         """
-        program = self.read(agent.source_path, chooses=agent.agent_class is not None)
+        chooses = agent.agent_class is not None
+        if written is None:
+            program = self.read(agent.source_path, chooses)
+        else:
+            program = self._checked(agent.source_path, written, chooses)
         place = f"the declaration of {agent.name}"
         # As in Jason: the project's beliefs are believed first, and its goals come first.
         beliefs = parse_literals(agent.beliefs, place) if agent.beliefs.strip() else ()
@@ -95,19 +103,22 @@ class Programs:
         """
         program = self._read.get(path)
         if program is None:
-            program, warnings = self._parse(path)
-            program = self._prepare(program)
-            found = check_for_run(program, KnownActions(self._code.actions, self._code.hint))
-            for warning in wanted([*warnings, *found]):
-                if _concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):
-                    self._warn(warning.render())
-            self._read[path] = program
+            program = self._read[path] = self._checked(path, text_of(path), chooses)
         return program
 
-    def _parse(self, path: Path) -> tuple[nodes.Program, list[Diagnostic]]:
-        """The program in a file; the project's modules that it names are imported, too."""
+    def _checked(self, path: Path, written: str, chooses: bool) -> nodes.Program:
+        program, warnings = self._parse(path, written)
+        program = self._prepare(program)
+        found = check_for_run(program, KnownActions(self._code.actions, self._code.hint))
+        for warning in wanted([*warnings, *found]):
+            if _concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):
+                self._warn(warning.render())
+        return program
+
+    def _parse(self, path: Path, written: str) -> tuple[nodes.Program, list[Diagnostic]]:
+        """The program in a text; the project's modules that it names are imported, too."""
         try:
-            program, warnings = load_program(str(path), text_of(path), self.include, self._code.functions)
+            program, warnings = load_program(str(path), written, self.include, self._code.functions)
         except AslError as wrong:
             raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
         errors = self._code.take_errors()
@@ -153,7 +164,8 @@ class Programs:
             return _of_library(path.removeprefix(_LIBRARY))
         beside = Path(including).parent / path
         try:
-            file = beside if beside.is_file() else self.find(path)
+            # A program that is no file has nothing beside it.
+            file = beside if beside.is_file() and not including.startswith("<") else self.find(path)
         except FileNotFoundError:
             name = path.rpartition("/")[2]
             if name in TEST_LIBRARY:

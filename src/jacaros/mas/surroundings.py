@@ -10,7 +10,7 @@ from jacaros.body.percepts import PerceptWriter
 from jacaros.body.values import References
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact
+from jacaros.env.errors import OperationFailed, UnknownArtifact, UnknownArtifactType, spelling_hint
 from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
@@ -49,9 +49,13 @@ class TypeFinder:
 
     A project's own artifacts are read at the start, so that a mistake in them is told before anything runs;
     those that come with JaCaROS are imported when the first artifact is made.
+
+    Attributes:
+        given: classes by name that come before all others.
     """
 
     def __init__(self, folder: Path, modules: ProjectModules) -> None:
+        self.given: dict[str, type[Artifact]] = {}
         self._modules = modules
         self._find: Callable[[str], type[Artifact]] | None = None
         if has_own_artifacts(folder):
@@ -59,7 +63,15 @@ class TypeFinder:
 
     def __call__(self, type_name: str) -> "type[Artifact]":
         """The class of that name; raises `UnknownArtifactType`."""
-        return (self._find or self._prepare())(type_name)
+        given = self.given.get(type_name)
+        if given is not None:
+            return given
+        try:
+            return (self._find or self._prepare())(type_name)
+        except UnknownArtifactType:
+            if spelling_hint(type_name, self.given):
+                raise UnknownArtifactType(type_name, self.given) from None
+            raise
 
     def _prepare(self) -> "Callable[[str], type[Artifact]]":
         from jacaros.artifacts.registry import type_finder
@@ -84,6 +96,7 @@ class Surroundings:
 
     Attributes:
         environment: all workspaces and artifacts.
+        types: finds the classes of artifacts.
 
     Raises:
         ModuleUnreadable: the project's own artifacts have a mistake.
@@ -99,8 +112,8 @@ class Surroundings:
         activity: Activity,
         on_internal_error: Callable[[BaseException], None],
     ) -> None:
-        self._find_type = TypeFinder(deployment.base_path, modules)
-        self.environment = Environment(clock, resources, self._find_type, console.log, on_internal_error)
+        self.types = TypeFinder(deployment.base_path, modules)
+        self.environment = Environment(clock, resources, self.types, console.log, on_internal_error)
         self._console = console
         self._activity = activity
         self._references = References()
@@ -159,4 +172,4 @@ class Surroundings:
         Raises:
             ProjectError: one cannot be made.
         """
-        await furnish(self.environment, deployment.workspaces, self._find_type)
+        await furnish(self.environment, deployment.workspaces, self.types)

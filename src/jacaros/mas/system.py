@@ -95,6 +95,7 @@ class System:
         self.population = self._found(prepare, when_made)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
+        self._exit_code: int | None = None
         self._error: BaseException | None = None
 
     def _found(
@@ -211,6 +212,7 @@ class System:
         if self._ending:
             return
         self._ending = True
+        self._exit_code = exit_code
         self.scheduler.stop()
         self.idleness.stop()
         for host in self.directory:
@@ -218,10 +220,20 @@ class System:
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(exit_code)
 
+    def when_ended(self, told: Callable[[int], None]) -> None:
+        """Have *told* called soon after the end of the run, with the exit code."""
+        assert self._ended is not None, "the run has not been started"
+        self._ended.add_done_callback(lambda ended: told(ended.result()))
+
     async def ended(self) -> int:
         """Wait for the end of the run; the exit code."""
         assert self._ended is not None, "the run has not been started"
         return await asyncio.shield(self._ended)
+
+    @property
+    def exit_code(self) -> int | None:
+        """The exit code of the run; None while it goes on."""
+        return self._exit_code
 
     @property
     def error(self) -> BaseException | None:

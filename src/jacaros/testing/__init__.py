@@ -7,11 +7,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from jacaros.mas.pursued_goal import PursuedGoal
     from jacaros.testing.harness import AgentHarness
     from jacaros.testing.judging import Verdict, judge
     from jacaros.testing.junit import write_junit
     from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
-    from jacaros.testing.recorded import ActionFailed, PursuedGoal, RecordedAct, SentMessage
+    from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
     from jacaros.testing.run import RunResult, run_project
     from jacaros.testing.suites import AgentTest, Suite, collect, suite_of
     from jacaros.testing.trial import TrialOptions, run_suite, run_suites
@@ -40,11 +41,11 @@ __all__ = [
 ]
 
 _MODULES = {
-    "harness": ("AgentHarness",),
+    "harness": ("AgentHarness", "PursuedGoal"),
     "judging": ("Verdict", "judge"),
     "junit": ("write_junit",),
     "outcomes": ("Outcome", "Problem", "SuiteOutcome"),
-    "recorded": ("ActionFailed", "PursuedGoal", "RecordedAct", "SentMessage"),
+    "recorded": ("ActionFailed", "RecordedAct", "SentMessage"),
     "run": ("RunResult", "run_project"),
     "suites": ("AgentTest", "Suite", "collect", "suite_of"),
     "trial": ("TrialOptions", "run_suite", "run_suites"),

@@ -15,30 +15,29 @@ moves only when the test lets it::
 
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.errors import AslError
-from jacaros.asl.loader import load_program, parse_formula, parse_literal, parse_term
-from jacaros.bdi import belief_update, goals
-from jacaros.bdi.act import Act, Percept
+from jacaros.asl.loader import load_program, parse_term
+from jacaros.bdi import goals
+from jacaros.bdi.act import Act
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.watched import WatchedGoal
-from jacaros.body.values import to_value
 from jacaros.clock import Timer
-from jacaros.compiler.lowering import Names, lower_value
+from jacaros.compiler.lowering import lower_value
+from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs
+from jacaros.mas.pursued_goal import PursuedGoal
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules
-from jacaros.terms.order import annotation_set
-from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, is_ground, rename, resolve, undo, unify
-from jacaros.terms.values import SOURCE_PERCEPT, Term, annotations_of, bare
+from jacaros.terms.unifier import Trail, rename, undo, unify
+from jacaros.terms.values import Term
 from jacaros.testing.port import HarnessPort
-from jacaros.testing.recorded import Action, PursuedGoal, RecordedAct, SentMessage
+from jacaros.testing.recorded import Action, RecordedAct, SentMessage
 
 _QUANTUM = 50
 _SHOWN = 20
@@ -46,7 +45,7 @@ _LONGEST = 3600.0
 """Seconds of virtual time after which `AgentHarness.run` gives up on an agent that never gets idle."""
 
 
-class AgentHarness:
+class AgentHarness(OpenMind):
     """An agent under test.
 
     Literals, goals and formulae are given as text, in the syntax of the language.
@@ -106,43 +105,16 @@ class AgentHarness:
         wrong = code.take_errors()
         if wrong:
             raise AslError(wrong)
-        self.mind = Agent(name, tree, self._port, Options(), code.actions)
+        self._mind = Agent(name, tree, self._port, Options(), code.actions)
         code.serve(self.mind)
         self.mind.start()
 
+    @property
+    def mind(self) -> Agent:
+        """The agent itself, for what this class does not offer."""
+        return self._mind
+
     # ---- giving
-
-    def add_belief(self, *literals: str) -> None:
-        """Let the agent believe something, as its own note unless the literal names a source; the events are external."""
-        for literal in literals:
-            belief_update.tell(self.mind, _literal(literal))
-
-    def remove_belief(self, *literals: str) -> None:
-        """Take the agent's own notes (or what the named source told) away; the first match of each."""
-        for literal in literals:
-            belief_update.untell(self.mind, _literal(literal))
-
-    def perceive(self, *literals: str) -> None:
-        """Let the agent perceive something from now on: beliefs with ``source(percept)``."""
-        self._perceive("add", literals)
-
-    def perceive_no_more(self, *literals: str) -> None:
-        """End percepts that were given by `perceive`; written as they were."""
-        self._perceive("remove", literals)
-
-    def signal(self, *literals: str) -> None:
-        """Let the agent notice something that does not last: an event, no belief."""
-        self._perceive("signal", literals)
-
-    def _perceive(self, kind: str, literals: Sequence[str]) -> None:
-        percepts = []
-        for literal in literals:
-            term = _literal(literal)
-            if not is_ground(term):
-                raise ValueError(f"a percept has no variables: {literal}")
-            annotations = annotation_set((*annotations_of(term), SOURCE_PERCEPT))
-            percepts.append(Percept(kind, bare(term), annotations))
-        self.mind.perceive(percepts)
 
     def receive(self, sender: str, performative: str, content: str) -> None:
         """Let the agent receive a message: ``agent.receive("boss", "achieve", "clean(kitchen)")``."""
@@ -154,7 +126,7 @@ class AgentHarness:
 
     def achieve(self, goal: str) -> PursuedGoal:
         """Give the agent a goal, with an intention of its own; tells later what became of it."""
-        return PursuedGoal(goal, WatchedGoal(self.mind, _literal(goal)))
+        return PursuedGoal(goal, WatchedGoal(self.mind, literal(goal)))
 
     # ---- letting it reason
 
@@ -256,45 +228,12 @@ class AgentHarness:
             AssertionError: there is none.
         """
         __tracebackhide__ = True
-        wanted = _literal(pattern)
+        wanted = literal(pattern)
         pending = [act for act in self.acts if act.pending]
         found = next((act for act in pending if act.name == pattern or _matches(wanted, act.term)), None)
         if found is None:
             self._complain(f"no act {pattern} is pending")
         return found
-
-    def answers(self, formula: str) -> list[dict[str, Any]]:
-        """All answers of a formula (``battery(L) & L < 20``): values by the names of its variables, as plain values."""
-        names = Names()
-        term = lower_value(parse_formula(formula), names.__getitem__)
-        found = []
-        for _ in self.mind.context.answers(term):
-            found.append({name: to_value(resolve(v)) for name, v in names.items() if name[0] != "_"})
-        undo(self.mind.trail, 0)
-        return found
-
-    def believes(self, formula: str) -> bool:
-        """Whether a formula holds."""
-        return bool(self.answers(formula))
-
-    @property
-    def beliefs(self) -> list[str]:
-        """All beliefs with their annotations, as text."""
-        return [text(literal) for literal in self.mind.beliefs.literals()]
-
-    @property
-    def goals(self) -> list[str]:
-        """All goals that it pursues or is about to, as text without annotations."""
-        return [text(bare(goal)) for goal, _ in goals.desires(self.mind)]
-
-    @property
-    def intentions(self) -> list[list[str]]:
-        """The goals of each intention, the one that it began with first, as text without annotations."""
-        stacks = [
-            [text(bare(goal)) for goal in reversed(goals.goal_literals(intention))]
-            for intention in self.mind.alive.values()
-        ]
-        return [stack for stack in stacks if stack]
 
     # ---- asserting
 
@@ -325,7 +264,7 @@ class AgentHarness:
             self._complain(f"it pursues !{goal}")
 
     def _pursues(self, goal: str) -> bool:
-        pattern = _literal(goal)
+        pattern = literal(goal)
         return any(_matches(pattern, each) for each, _ in goals.desires(self.mind))
 
     def assert_idle(self) -> None:
@@ -348,7 +287,7 @@ class AgentHarness:
         __tracebackhide__ = True
         if not goal.failed:
             self._complain(f"it did not fail: {goal}")
-        if reason is not None and not any(_matches(_literal(reason), each) for each in goal.reasons):
+        if reason is not None and not any(_matches(literal(reason), each) for each in goal.reasons):
             self._complain(f"it failed for another reason than {reason}: {goal}")
 
     def assert_printed(self, part: str) -> None:
@@ -368,7 +307,7 @@ class AgentHarness:
         __tracebackhide__ = True
         begun = iter(self.acts)
         for action in actions:
-            pattern = _literal(action)
+            pattern = literal(action)
             if not any(_matches(pattern, act.term) for act in begun):
                 order = " in this order" if len(actions) > 1 else ""
                 self._complain(f"it did not do {', '.join(actions)}{order}")
@@ -377,7 +316,7 @@ class AgentHarness:
         """Assert that no action that matches one of these was begun."""
         __tracebackhide__ = True
         for action in actions:
-            pattern = _literal(action)
+            pattern = literal(action)
             if any(_matches(pattern, act.term) for act in self.acts):
                 self._complain(f"it did {action}")
 
@@ -421,10 +360,6 @@ class AgentHarness:
     def _complain(self, told: str) -> NoReturn:
         __tracebackhide__ = True
         raise AssertionError(f"{told}\n{self}")
-
-
-def _literal(written: str) -> Term:
-    return lower_value(parse_literal(written))
 
 
 def _matches(pattern: Term, term: Term) -> bool:

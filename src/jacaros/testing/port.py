@@ -19,7 +19,11 @@ class Harness(Protocol):
     """What the port asks of the harness."""
 
     name: str
-    mind: Agent
+
+    @property
+    def mind(self) -> Agent:
+        """The agent."""
+
     others: Collection[str] | None
     prints: list[str]
     logs: list[str]

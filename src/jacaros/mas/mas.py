@@ -1,0 +1,458 @@
+"""Agents, artifacts and robots inside a Python program."""
+
+import asyncio
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from jacaros.clock import Clock, clock_of
+from jacaros.errors import UsageError
+from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
+from jacaros.mas.errors import RunEnded, UnknownAgent
+from jacaros.mas.loading import load_deployment
+from jacaros.mas.options import RunOptions
+from jacaros.mas.population import begin
+from jacaros.mas.printed import OnLog, OnPrint, PrintedConsole, PrintedLine
+from jacaros.mas.running_agent import RunningAgent
+from jacaros.mas.stream import Stream
+from jacaros.mas.system import System
+from jacaros.mas.waits import Waits
+
+if TYPE_CHECKING:
+    from jacaros.env.artifact import Artifact
+    from jacaros.env.environment import Environment
+    from jacaros.env.ids import ArtifactId
+    from jacaros.env.ports import Workspace
+    from jacaros.env.session import Session
+    from jacaros.mas.mailbox import Mailbox, PythonMailboxes
+    from jacaros.mas.surroundings import Surroundings
+
+_PYTHON = "python"
+"""Who messages come from whose sender is not given."""
+
+
+class Mas:
+    """A multi-agent system in a Python program.
+
+    It runs inside ``async with``, on the event loop that the program runs on: whenever the program awaits something, the
+    agents have their turns::
+
+        async def main() -> None:
+            async with Mas(seed=1) as mas:
+                bob = mas.add_agent("bob", "+!greet(X) <- .print(hello, X).")
+                await bob.achieve("greet(world)")
+
+        jacaros.run(main())
+
+    At the end of the block the run is ended, whatever has happened in it: operations are cancelled, robots stand still,
+    artifacts are disposed.  Everything is for the loop's own thread; another thread uses `asyncio.run_coroutine_threadsafe`
+    and ``loop.call_soon_threadsafe``.  Several systems can live on one loop; they share nothing but the clock.
+
+    Args:
+        project: a project file (``.mas2j``, ``.jcm``) or a program (``.asl``), or what one declares; an empty system
+            without.
+        name: of an empty system.
+        folder: of an empty system: where programs, included files and Python modules are looked for; the current folder
+            unless given.
+        seed: of all random numbers, the world's too; None for other numbers in each run.
+        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1`` or ``ros2``.
+        world: world file, or name of a world of JaCaROS, in place of the project's own.
+        namespace: put before relative ROS names.
+        on_print: called with agent and text whenever an agent prints; the standard output gets ``[agent] text`` without.
+        on_log: called with a line for people and its level; the standard error output gets it without.
+
+    Raises:
+        ProjectError: the project file is wrong.
+        UsageError: options that cannot go together.
+    """
+
+    def __init__(
+        self,
+        project: str | Path | Deployment | None = None,
+        *,
+        name: str = "mas",
+        folder: str | Path | None = None,
+        seed: int | None = None,
+        ros: str = "memory",
+        world: str | Path | None = None,
+        namespace: str = "",
+        on_print: OnPrint | None = None,
+        on_log: OnLog | None = None,
+    ) -> None:
+        self._deployment = _deployment(project, name, Path(folder) if folder is not None else Path.cwd())
+        self._options = RunOptions(seed=seed, ros=ros, world=world, namespace=namespace)
+        self._options.check()
+        self._console = PrintedConsole(on_print, on_log)
+        self._begun: tuple[System, Waits] | None = None
+        self._agents: dict[str, RunningAgent] = {}
+        self._sessions: list[Session] = []
+        self._mailboxes: PythonMailboxes | None = None
+
+    # ---- beginning and end
+
+    async def __aenter__(self) -> "Mas":
+        """Make what the project declares, and let its agents begin.
+
+        Raises:
+            JacarosError: it cannot be started; the text tells what is wrong.
+        """
+        if self._begun is not None:
+            raise UsageError("this system has run already; make another Mas")
+        clock = clock_of(asyncio.get_running_loop())
+        options = replace(self._options, fast=clock.virtual)
+        options.check()
+        system = System(self._deployment, clock, self._console, options)
+        waits = Waits(clock)
+        self._begun = system, waits
+        system.population.when_ended = waits.agent_ended
+        try:
+            await system.start()
+        except BaseException:
+            await system.close()
+            waits.run_ended("the run could not be started")
+            raise
+        system.when_ended(lambda code: waits.run_ended(f"the run ended with exit code {code}"))
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        system, waits = self._running
+        waits.run_ended("the run has ended")
+        for session in self._sessions:
+            session.close()
+        system.end(0)
+        await system.close()
+        if system.error is not None and (error is None or isinstance(error, RunEnded)):
+            raise system.error
+
+    @property
+    def _running(self) -> tuple[System, Waits]:
+        if self._begun is None:
+            raise RunEnded("the system has not begun to run: use it inside `async with Mas(...) as mas:`")
+        return self._begun
+
+    @property
+    def _open(self) -> System:
+        """The running system.
+
+        Raises:
+            RunEnded: it does not run (any more).
+        """
+        system, _ = self._running
+        if system.exit_code is not None:
+            raise RunEnded("the run has ended")
+        return system
+
+    def stop(self, exit_code: int = 0) -> None:
+        """End the run, as ``.stopMAS`` does; the block goes on, and no agent has another turn."""
+        self._running[0].end(exit_code)
+
+    async def ended(self) -> int:
+        """Wait until the run ends by itself (``.stopMAS``) or by `stop`; its exit code.
+
+        Raises:
+            InternalError: a defect of JaCaROS ended it.
+        """
+        system, _ = self._running
+        code = await system.ended()
+        if system.error is not None:
+            raise system.error
+        return code
+
+    @property
+    def exit_code(self) -> int | None:
+        """The exit code of the run; None while it goes on."""
+        return self._begun[0].exit_code if self._begun is not None else None
+
+    async def until_idle(self, timeout: float | None = None) -> None:
+        """Wait until no agent has anything to do or to wait for, and no operation is under way.
+
+        Worlds, batteries and processes of artifacts do not count: they never end.
+
+        Args:
+            timeout: seconds of the run's clock; None to wait as long as it takes.
+
+        Raises:
+            TimeoutError: they were still busy then.
+            RunEnded: the run ended before.
+        """
+        system, waits = self._running
+        idle: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        stop = system.idleness.watch(lambda: None if idle.done() else idle.set_result(None))
+        if system.scheduler.idle:
+            system.idleness.look()
+        try:
+            await waits.wait(idle, lambda: "the agents did not get idle", timeout)
+        finally:
+            stop()
+
+    # ---- time
+
+    @property
+    def clock(self) -> Clock:
+        """The run's clock: that of the event loop."""
+        return self._running[0].clock
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait for so many seconds of the run's clock."""
+        await self.clock.sleep(seconds)
+
+    # ---- agents
+
+    def add_agent(
+        self,
+        name: str | AgentSpec,
+        program: str | Path | None = None,
+        *,
+        beliefs: str = "",
+        goals: str = "",
+        join: Iterable[str] = (),
+        focus: "Iterable[str | FocusSpec | ArtifactId]" = (),
+        options: Mapping[str, str] | None = None,
+        agent_class: str | None = None,
+        architectures: Sequence[str] = (),
+        belief_base: str | None = None,
+    ) -> RunningAgent:
+        """Make an agent, and let it begin; it has its first turn when the caller awaits something.
+
+        Args:
+            name: of the agent; or all that is known of it, as project files declare it.
+            program: its program as text; or the path of a file, the one called ``NAME.asl`` unless given.
+            beliefs: further initial beliefs, as text, separated by commas.
+            goals: further initial goals, likewise.
+            join: workspaces that it joins, by path or name.
+            focus: artifacts that it focuses before its goals begin: names (looked for in all workspaces), paths or ids.
+            options: settings such as ``verbose`` and ``events``, as in project files.
+            agent_class, architectures, belief_base: Python classes of the project, as in project files.
+
+        Raises:
+            AslError: the program is wrong; the text shows each mistake in its line.
+            UsageError: there is an agent of that name.
+            OperationFailed: a workspace or an artifact is not there.
+            RunEnded: the run has ended.
+        """
+        system = self._open
+        if isinstance(name, AgentSpec):
+            spec, written = name, None
+        else:
+            written = program if isinstance(program, str) else None
+            spec = AgentSpec(
+                name,
+                self._source_of(name, program),
+                name,
+                options=dict(options or {}),
+                beliefs=beliefs,
+                goals=goals,
+                join=tuple(join),
+                focus=tuple(map(_focus, focus)),
+                agent_class=agent_class,
+                architecture_classes=tuple(architectures),
+                belief_base_class=belief_base,
+            )
+        if spec.name in system.directory.names():
+            raise UsageError(f"there is an agent {spec.name} already; every name is given once")
+        if spec.join or spec.focus:
+            spec = _placed(spec, self._surroundings.environment)
+        tree = system.population.programs.load(spec, written)
+        host = system.population.add(spec, tree)
+        begin(host, spec, tree)
+        return self.agent(spec.name)
+
+    def _source_of(self, name: str, program: str | Path | None) -> Path:
+        if isinstance(program, str):
+            return Path(f"<{name}>")  # as diagnostics show it
+        wanted = str(program) if program is not None else f"{name}.asl"
+        try:
+            return self._open.population.programs.find(wanted)
+        except FileNotFoundError:
+            folders = ", ".join(map(str, self._open.population.programs.folders))
+            raise UsageError(f"there is no program {wanted} in {folders}") from None
+
+    def agent(self, name: str) -> RunningAgent:
+        """The agent of that name.
+
+        Raises:
+            UnknownAgent: there is none; the text has names that may have been meant.
+        """
+        system, waits = self._running
+        host = system.directory.find(name)
+        if host is None:
+            raise UnknownAgent(name, [each.name for each in system.directory])
+        known = self._agents.get(name)
+        if known is None or known.ended:
+            known = self._agents[name] = RunningAgent(host, waits, system.population.end)
+        return known
+
+    @property
+    def agents(self) -> tuple[RunningAgent, ...]:
+        """All agents, in the order of their making."""
+        return tuple(self.agent(host.name) for host in self._running[0].directory)
+
+    # ---- messages and output
+
+    def send(self, receiver: str, performative: str, content: object, sender: str = _PYTHON) -> None:
+        """Send a message to an agent: ``mas.send("bob", "achieve", "clean(kitchen)")``.
+
+        Args:
+            receiver: its name.
+            performative: ``tell``, ``achieve``, ``untell``, ``signal`` …
+            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.env.values`).
+            sender: whom it is from, as the agent is told; answers reach a `mailbox` of that name, if there is one.
+
+        Raises:
+            UnknownAgent: nobody of that name takes part.
+            AslError: the text is no term.
+        """
+        from jacaros.mas.mailbox import Mailbox
+
+        known = self._mailboxes.find(sender) if self._mailboxes is not None else None
+        system, waits = self._open, self._running[1]
+        (known or Mailbox(sender, system.deliver, system.agent_names, waits)).send(
+            receiver, performative, content
+        )
+
+    def mailbox(self, name: str) -> "Mailbox":
+        """The mailbox of Python code under that name, made when it is first asked for; agents can send to it then.
+
+        Raises:
+            UsageError: there is an agent of that name.
+        """
+        from jacaros.mas.mailbox import Mailbox, PythonMailboxes
+
+        system, waits = self._open, self._running[1]
+        if self._mailboxes is None:
+            self._mailboxes = PythonMailboxes()
+            system.directory.join(self._mailboxes)
+        known = self._mailboxes.find(name)
+        if known is None:
+            if name in system.directory.names():
+                raise UsageError(f"there is an agent {name}; a mailbox needs a name of its own")
+            known = Mailbox(name, system.deliver, system.agent_names, waits)
+            self._mailboxes.add(known)
+        return known
+
+    def output(self, agent: str | None = None) -> Stream[PrintedLine]:
+        """What agents print from now on, as an asynchronous iterator that ends with the run.
+
+        Args:
+            agent: only what this one prints.
+        """
+        _, waits = self._running
+        stream: Stream[PrintedLine] = Stream(waits, f"{agent or 'no agent'} printed nothing")
+        self._console.add(stream, agent)
+        return stream
+
+    # ---- the environment
+
+    @property
+    def _surroundings(self) -> "Surroundings":
+        return self._open.surroundings()
+
+    @property
+    def environment(self) -> "Environment":
+        """All workspaces and artifacts."""
+        return self._surroundings.environment
+
+    def add_artifact_types(self, *types: "type[Artifact]") -> None:
+        """Let agents make artifacts of these classes, by their names; they come before all others of the name."""
+        self._surroundings.types.given.update({each.__name__: each for each in types})
+
+    def create_workspace(self, path: str) -> str:
+        """Make a workspace; its full path.
+
+        Args:
+            path: full, or from ``/main``.
+
+        Raises:
+            OperationFailed: it is there already, or the workspace above it is not.
+        """
+        full = path if path.startswith("/") else f"/main/{path}"
+        return self.environment.create_workspace(full).path
+
+    async def make_artifact(
+        self,
+        name: str,
+        artifact_type: "str | type[Artifact]",
+        arguments: Sequence[object] = (),
+        *,
+        workspace: str = "/main",
+    ) -> "ArtifactId":
+        """Make an artifact, and wait until its ``init`` has ended.
+
+        Args:
+            name: unique in the workspace.
+            artifact_type: the class, or the name of one: of the project, of JaCaROS, or given by `add_artifact_types`.
+            arguments: plain values for ``init``.
+            workspace: where, by path or name.
+
+        Raises:
+            OperationFailed: it cannot be made; with message and reason.
+        """
+        place = _workspace(self.environment, workspace)
+        return await place.make_artifact(name, artifact_type, arguments)
+
+    def session(self, name: str, workspace: str = "/main") -> "Session":
+        """A working session: Python code that uses artifacts itself, see `jacaros.env.session.Session`.
+
+        It is closed at the end of the run at the latest.
+
+        Args:
+            name: who works.
+            workspace: where it begins, by path or name.
+
+        Raises:
+            OperationFailed: there is no such workspace.
+        """
+        from jacaros.env.session import Session
+
+        environment = self.environment
+        session = Session(environment, name, _workspace(environment, workspace).path)
+        self._sessions.append(session)
+        return session
+
+    def __repr__(self) -> str:
+        if self._begun is None:
+            return f"<Mas {self._deployment.name}, not begun>"
+        code = self.exit_code
+        how = "running" if code is None else f"ended with exit code {code}"
+        return f"<Mas {self._deployment.name}, {how}>"
+
+
+def _deployment(project: str | Path | Deployment | None, name: str, folder: Path) -> Deployment:
+    if isinstance(project, Deployment):
+        return project
+    if project is not None:
+        return load_deployment(project)
+    return Deployment(name, folder, artifact_environment=True, source_paths=(folder,))
+
+
+def _focus(wanted: "str | FocusSpec | ArtifactId") -> FocusSpec:
+    if isinstance(wanted, FocusSpec):
+        return wanted
+    if isinstance(wanted, str):
+        workspace, _, name = wanted.rpartition("/")
+        return FocusSpec(name, workspace or None)
+    return FocusSpec(wanted.name, wanted.workspace)
+
+
+def _placed(spec: AgentSpec, environment: "Environment") -> AgentSpec:
+    """The same agent with the full paths of what it joins and focuses.
+
+    Raises:
+        OperationFailed: one is not there.
+    """
+    from jacaros.mas.furnishing import artifact_of, path_of
+
+    join = tuple(path_of(environment, path) for path in spec.join)
+    found = [(artifact_of(environment, each), each.namespace) for each in spec.focus]
+    focus = tuple(FocusSpec(artifact.name, artifact.workspace, namespace) for artifact, namespace in found)
+    return replace(spec, join=join, focus=focus)
+
+
+def _workspace(environment: "Environment", name: str) -> "Workspace":
+    from jacaros.mas.furnishing import path_of
+
+    return environment.workspace(path_of(environment, name))

@@ -1,0 +1,73 @@
+"""What the agents of an embedded system print, and what people are told."""
+
+import sys
+from collections.abc import Callable
+from typing import NamedTuple
+
+from jacaros.mas.console import StandardConsole
+from jacaros.mas.stream import Stream
+
+
+class PrintedLine(NamedTuple):
+    """A line that an agent printed.
+
+    Attributes:
+        agent: its name.
+        text: the line, without the name.
+    """
+
+    agent: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"[{self.agent}] {self.text}"
+
+
+OnPrint = Callable[[str, str], None]
+"""Called with the name of an agent and what it prints."""
+
+OnLog = Callable[[str, str], None]
+"""Called with a line for people and its level: ``debug``, ``info``, ``warning`` or ``error``."""
+
+
+class PrintedConsole:
+    """The console of an embedded system.
+
+    Args:
+        on_print: shows what agents print; on the standard output, as ``[agent] text``, unless given.
+        on_log: tells people; on the standard error output unless given.
+    """
+
+    def __init__(self, on_print: OnPrint | None, on_log: OnLog | None) -> None:
+        standard = StandardConsole(output=_Standard("stdout"), errors=_Standard("stderr"))  # type: ignore[arg-type]
+        self._on_print = on_print or standard.print
+        self._on_log = on_log or standard.log
+        self._streams: list[tuple[str | None, Stream[PrintedLine]]] = []
+
+    def add(self, stream: Stream[PrintedLine], agent: str | None) -> None:
+        """Put lines into a stream from now on: those of one agent, or of all."""
+        self._streams.append((agent, stream))
+
+    def print(self, agent: str, text: str) -> None:
+        """Show a line of an agent's output."""
+        self._on_print(agent, text)
+        for wanted, stream in self._streams:
+            if wanted in (None, agent):
+                stream.put(PrintedLine(agent, text))
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Tell people about what happens."""
+        self._on_log(text, level)
+
+
+class _Standard:
+    """A standard output as it is at the time of writing: tests and notebooks put others in its place."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def write(self, text: str) -> int:
+        return int(getattr(sys, self._name).write(text))
+
+    def flush(self) -> None:
+        getattr(sys, self._name).flush()
