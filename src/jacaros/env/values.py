@@ -6,6 +6,7 @@ of the language: the body joins the two.
 """
 
 import dataclasses
+import enum
 from typing import Any
 
 
@@ -91,8 +92,8 @@ def plain(value: Any) -> object:
 
     Lists, tuples and dictionaries are copied; a dataclass or named tuple becomes a `Structure` with the
     class name, first letter in lower case; numpy scalars and arrays (known by their ``tolist``) become
-    numbers and lists; members of ``StrEnum`` and ``IntEnum`` become texts and numbers.  What is none of
-    these stays as it is: an opaque reference.
+    numbers and lists; members of ``StrEnum`` and ``IntEnum`` become texts and numbers, those of other
+    enumerations atoms: their names in lower case.  What is none of these stays as it is: an opaque reference.
     """
     kind = type(value)
     if kind in SCALARS:
@@ -111,6 +112,8 @@ def plain(value: Any) -> object:
         return {plain_key(key): plain(item) for key, item in value.items()}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return _structure(kind, (getattr(value, field.name) for field in dataclasses.fields(value)))
+    if isinstance(value, enum.Enum):
+        return Atom(value.name.lower())
     if hasattr(value, "tolist") and hasattr(value, "dtype"):
         return plain(value.tolist())
     return value
@@ -128,8 +131,13 @@ def plain_key(key: Any) -> Any:
     return key if isinstance(converted, (list, dict)) else converted
 
 
+def functor_of(kind: type) -> str:
+    """The functor of the structure that stands for a dataclass or named tuple: ``pose`` for ``Pose``."""
+    return kind.__name__[:1].lower() + kind.__name__[1:]
+
+
 def _structure(kind: type, values: Any) -> object:
-    functor = kind.__name__[:1].lower() + kind.__name__[1:]
+    functor = functor_of(kind)
     arguments = tuple(plain(value) for value in values)
     return Structure(functor, arguments) if arguments else Atom(functor)
 

@@ -1,21 +1,15 @@
 """The parameters of an operation: how many arguments it takes, of which kinds, and which are outputs."""
 
 import inspect
-import types
 import typing
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any, NamedTuple
 
 from jacaros.env.errors import InvalidArtifact
-from jacaros.env.values import Atom, Out, Structure, text
-
-Accept = Callable[[Any], object]
-"""Takes an argument and gives what the operation receives; raises `Unsuitable`."""
-
-
-class Unsuitable(Exception):
-    """An argument is not of the kind that a parameter takes."""
+from jacaros.env.kernel.acceptance import kind_of
+from jacaros.env.kernel.kinds import Accept, Unsuitable, shown
+from jacaros.env.values import Atom, Out, Structure
 
 
 class WrongArguments(Exception):
@@ -81,12 +75,13 @@ class Signature:
             else:
                 for position, argument in enumerate(arguments):
                     bound.append(self._parameter(position).accept(argument))
-        except Unsuitable:
+        except Unsuitable as unsuitable:
             position = len(bound)
             parameter = self._parameter(position)
+            part = f": {unsuitable}" if str(unsuitable) else ""
             raise WrongArguments(
                 f"parameter {parameter.name} (number {position + 1}) wants {parameter.expected}, "
-                f"got {_shown(arguments[position])}"
+                f"got {shown(arguments[position])}{part}"
             ) from None
         return tuple(bound)
 
@@ -132,6 +127,7 @@ def _annotations(function: Callable[..., object]) -> dict[str, Any]:
         return {name: _known(kind) for name, kind in typing.get_type_hints(function).items()}
     except Exception:
         names = {**vars(typing), "Out": Out, "Atom": Atom, "Structure": Structure}
+        names.update(getattr(function, "__globals__", {}))
         return {name: _resolved(kind, names) for name, kind in written_annotations(function).items()}
 
 
@@ -147,7 +143,12 @@ def written_annotations(function: Callable[..., object]) -> dict[str, Any]:
 
 
 def _resolved(kind: Any, names: dict[str, Any]) -> Any:
-    return _known(names.get(kind.rpartition(".")[2], object) if isinstance(kind, str) else kind)
+    if not isinstance(kind, str):
+        return _known(kind)
+    try:
+        return _known(eval(kind, names))  # it is the author's own code
+    except Exception:
+        return _known(names.get(kind.rpartition(".")[2], object))
 
 
 def _known(kind: Any) -> Any:
@@ -155,151 +156,11 @@ def _known(kind: Any) -> Any:
 
 
 def _parameter(each: inspect.Parameter, annotation: Any, takes_outputs: bool) -> Parameter:
-    expected = "any value" if annotation is object else _described(annotation)
+    kind = kind_of(annotation)
     optional = each.default is not each.empty
-    accept = _anything if takes_outputs else _acceptor(annotation)
-    return Parameter(each.name, expected, annotation is Out, optional, accept)
-
-
-def _described(annotation: Any) -> str:
-    if annotation is Out:
-        return "an unbound variable (it is an output)"
-    if isinstance(annotation, types.UnionType) or typing.get_origin(annotation) is typing.Union:
-        return " or ".join(_described(member) for member in typing.get_args(annotation))
-    return _DESCRIPTIONS.get(annotation) or _plain_name(annotation)
-
-
-def _plain_name(annotation: Any) -> str:
-    if isinstance(annotation, type) and not typing.get_args(annotation):
-        return annotation.__name__
-    return str(annotation).replace("typing.", "")
-
-
-_DESCRIPTIONS: dict[Any, str] = {
-    int: "an integer",
-    float: "a number",
-    str: "a text",
-    bool: "true or false",
-    list: "a list",
-    dict: "a map",
-    Atom: "an atom",
-    Structure: "a structure",
-    type(None): "nothing",
-    object: "any value",
-}
-
-
-def _shown(argument: object) -> str:
-    return "an unbound variable" if isinstance(argument, Out) else text(argument, quoted=True)
-
-
-def _acceptor(annotation: Any) -> Accept:
-    simple = _ACCEPTORS.get(annotation)
-    if simple is not None:
-        return simple
-    origin = typing.get_origin(annotation)
-    if isinstance(annotation, types.UnionType) or origin is typing.Union:
-        return _any_of(tuple(_acceptor(member) for member in typing.get_args(annotation)))
-    if origin is typing.Literal:
-        return _one_of(typing.get_args(annotation))
-    if origin in (list, dict):
-        return _container(origin, typing.get_args(annotation))
-    if isinstance(annotation, type) and not _is_mere_protocol(annotation):
-        return _instance_of(annotation)
-    return _input
+    accept = _anything if takes_outputs else kind.accept
+    return Parameter(each.name, kind.expected, annotation is Out, optional, accept)
 
 
 def _anything(argument: object) -> object:
     return argument
-
-
-def _input(argument: object) -> object:
-    if isinstance(argument, Out):
-        raise Unsuitable
-    return argument
-
-
-def _integer(argument: object) -> object:
-    if type(argument) is int:
-        return argument
-    if isinstance(argument, float) and argument.is_integer():
-        return int(argument)
-    raise Unsuitable
-
-
-def _real(argument: object) -> object:
-    if type(argument) is float:
-        return argument
-    if type(argument) is int:
-        try:
-            return float(argument)
-        except OverflowError:
-            raise Unsuitable from None
-    raise Unsuitable
-
-
-def _is_mere_protocol(kind: type) -> bool:
-    return bool(getattr(kind, "_is_protocol", False) and not getattr(kind, "_is_runtime_protocol", False))
-
-
-def _instance_of(kind: type) -> Accept:
-    def accept(argument: object) -> object:
-        if isinstance(argument, kind):
-            return argument
-        raise Unsuitable
-
-    return accept
-
-
-def _any_of(acceptors: tuple[Accept, ...]) -> Accept:
-    """The first member that takes the argument as it is wins over one that would convert it."""
-
-    def accept(argument: object) -> object:
-        converted: list[object] = []
-        for each in acceptors:
-            try:
-                result = each(argument)
-            except Unsuitable:
-                continue
-            if result is argument:
-                return argument
-            converted.append(result)
-        if not converted:
-            raise Unsuitable
-        return converted[0]
-
-    return accept
-
-
-def _one_of(choices: tuple[object, ...]) -> Accept:
-    def accept(argument: object) -> object:
-        if argument in choices:
-            return argument
-        raise Unsuitable
-
-    return accept
-
-
-def _container(kind: type, members: tuple[Any, ...]) -> Accept:
-    accept_members = [_acceptor(member) for member in members]
-
-    def accept_list(argument: object) -> object:
-        if not isinstance(argument, list):
-            raise Unsuitable
-        return [accept_members[0](item) for item in argument]
-
-    def accept_dict(argument: object) -> object:
-        if not isinstance(argument, dict):
-            raise Unsuitable
-        return {accept_members[0](key): accept_members[1](item) for key, item in argument.items()}
-
-    return accept_list if kind is list else accept_dict
-
-
-_ACCEPTORS: dict[Any, Accept] = {
-    object: _input,
-    Any: _input,
-    int: _integer,
-    float: _real,
-    type(None): _instance_of(type(None)),
-}

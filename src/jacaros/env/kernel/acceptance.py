@@ -1,0 +1,291 @@
+"""What a parameter takes: from its Python annotation to a check that converts plain values, with words for people."""
+
+import collections.abc
+import enum
+import sys
+import types
+import typing
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from jacaros.env.kernel import records
+from jacaros.env.kernel.kinds import ANYTHING, Accept, Kind, Unsuitable, alternatives, got, instance_of
+from jacaros.env.values import Atom, Out, Structure, equal, text
+
+
+def kind_of(annotation: Any) -> Kind:
+    """The kind of values that a parameter with *annotation* takes; one that says nothing takes any input."""
+    simple = _SIMPLE.get(annotation) if _hashable(annotation) else None
+    if simple is not None:
+        return simple
+    annotation = _unwrapped(annotation)
+    origin, members = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin in (typing.Union, types.UnionType):
+        return alternatives([kind_of(member) for member in members])
+    if origin is typing.Literal:
+        return _choice(members)
+    container = origin if origin is not None else annotation
+    made = _CONTAINERS.get(container) if _hashable(container) else None
+    if made is not None:
+        return made(members)
+    if _of_numpy(container, "ndarray"):
+        return _array(container, members)
+    if isinstance(container, type):
+        return _kind_of_class(container)
+    return ANYTHING
+
+
+def _hashable(annotation: Any) -> bool:
+    return isinstance(annotation, collections.abc.Hashable)
+
+
+def _unwrapped(annotation: Any) -> Any:
+    """What stands behind new types, annotated types and aliases."""
+    while True:
+        if isinstance(annotation, typing.NewType):
+            annotation = annotation.__supertype__
+        elif typing.get_origin(annotation) is typing.Annotated:
+            annotation = typing.get_args(annotation)[0]
+        elif type(annotation).__name__ == "TypeAliasType":
+            annotation = annotation.__value__
+        else:
+            return _SAME.get(annotation, annotation) if _hashable(annotation) else annotation
+
+
+def _kind_of_class(kind: type) -> Kind:
+    simple = _SIMPLE.get(kind)
+    if simple is not None:
+        return simple
+    if issubclass(kind, enum.Enum):
+        return _member(kind)
+    if _of_numpy(kind, "generic"):
+        return _numpy_scalar(kind)
+    fields = records.fields_of(kind)
+    if fields is not None:
+        return records.record(kind, fields, kind_of)
+    if getattr(kind, "_is_protocol", False) and not getattr(kind, "_is_runtime_protocol", False):
+        return ANYTHING
+    return instance_of(kind, kind.__name__)
+
+
+def _integer(argument: object) -> object:
+    if type(argument) is int:
+        return argument
+    if isinstance(argument, float) and argument.is_integer():
+        return int(argument)
+    raise Unsuitable
+
+
+def _real(argument: object) -> object:
+    if type(argument) is float:
+        return argument
+    if type(argument) is int:
+        try:
+            return float(argument)
+        except OverflowError:
+            raise Unsuitable from None
+    raise Unsuitable
+
+
+def _choice(choices: tuple[object, ...]) -> Kind:
+    def accept(argument: object) -> object:
+        for choice in choices:
+            if argument is choice or equal(argument, choice):
+                return argument
+        raise Unsuitable
+
+    return Kind(" or ".join(text(choice, quoted=True) for choice in choices), accept)
+
+
+def _member(kind: type[enum.Enum]) -> Kind:
+    """A member of an enumeration, by its name, in any case of letters, or by its value."""
+    members = list(kind)
+    by_name = {member.name.lower(): member for member in members}
+
+    def accept(argument: object) -> object:
+        if isinstance(argument, kind):
+            return argument
+        found = by_name.get(argument.lower()) if isinstance(argument, str) else None
+        if found is None:
+            found = next((member for member in members if equal(argument, member.value)), None)
+        if found is None:
+            raise Unsuitable
+        return found
+
+    return Kind(f"one of {', '.join(by_name)}", accept)
+
+
+def _list_like(make: Callable[[list[Any]], object]) -> Callable[[tuple[Any, ...]], Kind]:
+    def kind(members: tuple[Any, ...]) -> Kind:
+        each = kind_of(members[0]) if members else None
+
+        def accept(argument: object) -> object:
+            if not isinstance(argument, list):
+                raise Unsuitable
+            return make(
+                argument if each is None else [_element(each, i, item) for i, item in enumerate(argument)]
+            )
+
+        return Kind("a list" if each is None or each is ANYTHING else f"a list, each {each.expected}", accept)
+
+    return kind
+
+
+def _element(kind: Kind, index: int, item: object) -> object:
+    try:
+        return kind.accept(item)
+    except Unsuitable as unsuitable:
+        raise Unsuitable(f"element {index + 1} {got(item, unsuitable)}") from None
+
+
+def _tuple(members: tuple[Any, ...]) -> Kind:
+    """A tuple of certain members from a list of that length; ``tuple[T, ...]`` from one of any length."""
+    if not members or members[-1] is Ellipsis:
+        return _list_like(tuple)(members[:1])
+    kinds = [kind_of(member) for member in members]
+
+    def accept(argument: object) -> object:
+        if not isinstance(argument, list):
+            raise Unsuitable
+        if len(argument) != len(kinds):
+            raise Unsuitable(f"it has {len(argument)}")
+        return tuple(
+            _element(kind, i, item) for i, (kind, item) in enumerate(zip(kinds, argument, strict=True))
+        )
+
+    return Kind(f"a list of {len(kinds)} ({', '.join(kind.expected for kind in kinds)})", accept)
+
+
+def _set_of(make: Callable[[list[Any]], object]) -> Callable[[list[Any]], object]:
+    def accept(items: list[Any]) -> object:
+        try:
+            return make(items)
+        except TypeError:
+            raise Unsuitable("lists and maps cannot be members of a set") from None
+
+    return accept
+
+
+def _mapping(members: tuple[Any, ...]) -> Kind:
+    keys, values = (kind_of(member) for member in members) if members else (None, None)
+
+    def accept(argument: object) -> object:
+        if not isinstance(argument, dict):
+            raise Unsuitable
+        if keys is None or values is None:
+            return argument
+        return {
+            _part("key", keys, key, key): _part("the value", values, item, key)
+            for key, item in argument.items()
+        }
+
+    if keys is None or values is None:
+        return Kind("a map", accept)
+    return Kind(f"a map from {keys.expected} to {values.expected}", accept)
+
+
+def _part(what: str, kind: Kind, item: object, key: object) -> Any:
+    try:
+        return kind.accept(item)
+    except Unsuitable as unsuitable:
+        where = what if what == "key" else f"{what} of {text(key, quoted=True)}"
+        raise Unsuitable(f"{where} {got(item, unsuitable)}") from None
+
+
+def _of_numpy(kind: Any, name: str) -> bool:
+    """True for a class of numpy, which whoever wrote the annotation has loaded."""
+    numpy = sys.modules.get("numpy")
+    wanted = getattr(numpy, name, None)
+    return isinstance(wanted, type) and isinstance(kind, type) and issubclass(kind, wanted)
+
+
+def _array(container: Any, members: tuple[Any, ...]) -> Kind:
+    numpy = sys.modules["numpy"]
+    kinds = (kind for member in members for kind in typing.get_args(member))
+    wanted = next((kind for kind in kinds if _of_numpy(kind, "generic")), None)
+
+    def accept(argument: object) -> object:
+        if isinstance(argument, container):
+            return argument
+        if not isinstance(argument, list):
+            raise Unsuitable
+        try:
+            made = numpy.array(argument)
+        except (ValueError, TypeError):
+            raise Unsuitable from None
+        if made.dtype.kind not in "biuf":
+            raise Unsuitable
+        if wanted is None:
+            return made
+        converted = made.astype(wanted)
+        if not _of_numpy(wanted, "floating") and not numpy.array_equal(made, converted):
+            raise Unsuitable
+        return converted
+
+    whole = wanted is not None and _of_numpy(wanted, "integer")
+    return Kind(f"a list of {'integers' if whole else 'numbers'} (or of such lists of equal length)", accept)
+
+
+def _numpy_scalar(kind: Any) -> Kind:
+    integral = _of_numpy(kind, "integer")
+
+    def accept(argument: object) -> object:
+        if isinstance(argument, kind):
+            return argument
+        number = _integer(argument) if integral else _real(argument)
+        try:
+            return kind(number)
+        except OverflowError:
+            raise Unsuitable from None
+
+    return Kind("an integer" if integral else "a number", accept)
+
+
+def _takes_none(argument: object) -> object:
+    if argument is None:
+        return argument
+    raise Unsuitable
+
+
+class _Word(NamedTuple):
+    kind: type
+    expected: str
+
+
+_WORDS = (
+    _Word(str, "a text"),
+    _Word(bool, "true or false"),
+    _Word(Atom, "an atom"),
+    _Word(Structure, "a structure"),
+    _Word(Out, "an unbound variable (it is an output)"),
+)
+
+_SIMPLE: dict[Any, Kind] = {
+    object: ANYTHING,
+    Any: ANYTHING,
+    int: Kind("an integer", _integer),
+    float: Kind("a number", _real),
+    type(None): Kind("nothing", _takes_none),
+    None: Kind("nothing", _takes_none),
+    **{each.kind: instance_of(each.kind, each.expected) for each in _WORDS},
+}
+
+_SAME: dict[Any, Any] = {typing.List: list, typing.Dict: dict, typing.Tuple: tuple, typing.Set: set}  # noqa: UP006
+
+_LIST, _MAP = _list_like(lambda items: items), _mapping
+_CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {
+    list: _LIST,
+    tuple: _tuple,
+    set: _list_like(_set_of(set)),
+    frozenset: _list_like(_set_of(frozenset)),
+    dict: _MAP,
+    collections.abc.Mapping: _MAP,
+    collections.abc.MutableMapping: _MAP,
+    collections.abc.Sequence: _LIST,
+    collections.abc.MutableSequence: _LIST,
+    collections.abc.Collection: _LIST,
+    collections.abc.Iterable: _LIST,
+    collections.abc.Set: _list_like(_set_of(set)),
+}
+
+__all__ = ["Accept", "Kind", "Unsuitable", "kind_of"]
