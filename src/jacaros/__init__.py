@@ -14,12 +14,15 @@ TYPE_CHECKING = (
 
 if TYPE_CHECKING:
     from jacaros.bdi.internal_action import ActionError, WrongArguments
+    from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
     from jacaros.extension.agent import Agent
     from jacaros.extension.architecture import Action, AgentArch
     from jacaros.extension.belief_base import BeliefBase
+    from jacaros.extension.conversation import ReceivedMessage
     from jacaros.extension.declaring import arithmetic_function, internal_action
     from jacaros.extension.literal import Literal
+    from jacaros.extension.python_agent import PythonAgent, UnknownAgent
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
     from jacaros.mas.errors import GoalFailed
     from jacaros.mas.mas import Mas
@@ -40,11 +43,15 @@ __all__ = [
     "Literal",
     "Mas",
     "Message",
+    "OperationFailed",
     "Option",
     "Out",
     "Percept",
     "Plan",
+    "PythonAgent",
+    "ReceivedMessage",
     "Structure",
+    "UnknownAgent",
     "WrongArguments",
     "arithmetic_function",
     "internal_action",
@@ -64,11 +71,15 @@ _PLACES = {
     "Literal": "jacaros.extension.literal",
     "Mas": "jacaros.mas.mas",
     "Message": "jacaros.extension.views",
+    "OperationFailed": "jacaros.env.errors",
     "Option": "jacaros.extension.views",
     "Out": "jacaros.env.values",
     "Percept": "jacaros.extension.views",
     "Plan": "jacaros.extension.views",
+    "PythonAgent": "jacaros.extension.python_agent",
+    "ReceivedMessage": "jacaros.extension.conversation",
     "Structure": "jacaros.env.values",
+    "UnknownAgent": "jacaros.extension.python_agent",
     "WrongArguments": "jacaros.bdi.internal_action",
     "arithmetic_function": "jacaros.extension.declaring",
     "internal_action": "jacaros.extension.declaring",

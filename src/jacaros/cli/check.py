@@ -15,6 +15,7 @@ from jacaros.cli.reports import as_json, as_sarif
 from jacaros.errors import UsageError
 from jacaros.mas.checking import Findings, check_files
 
+_KINDS = (".asl", ".mas2j", ".jcm", ".py")
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
@@ -36,8 +37,8 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
     help="Leave out warnings of this kind; may be given more often.",
 )
 def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str, ...]) -> int:
-    """Tell what is wrong in each FILE: an agent program (.asl), a project (.mas2j, .jcm) with the programs of
-    its agents, or a folder with all of them.
+    """Tell what is wrong in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
+    with the programs of its agents, or a folder with all of them.
 
     All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
     `// jacaros: ignore CODE` switches a warning off for its line, or, on a line of its own, for the clause below
@@ -46,7 +47,7 @@ def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str
     unknown = [code for code in ignore if code not in KINDS]
     if unknown:
         raise UsageError(f"there is no code {unknown[0]}")
-    findings = check_files([existing(file) for file in files])
+    findings = check_files([existing(file, _KINDS) for file in files])
     if not findings.files and not findings.diagnostics:
         raise no_programs(files)
     findings.diagnostics = [

@@ -78,7 +78,8 @@ def _indented(text: str) -> Iterator[str]:
 def _project(deployment: Deployment) -> Iterator[str]:
     yield deployment.name
     for agent in deployment.agents:
-        yield f"  agent {agent.name}: {agent.source_path}"
+        written = " (in Python)" if agent.is_python else ""
+        yield f"  agent {agent.name}: {agent.source_path}{written}"
     for workspace in deployment.workspaces:
         yield f"  workspace {workspace.name}"
         for artifact in workspace.artifacts:

@@ -66,7 +66,7 @@ def command(
     view: bool,
     quiet: bool,
 ) -> int:
-    """Run FILE: an agent program (.asl) or a project (.mas2j, .jcm).
+    """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
 
     What agents print goes to the standard output as `[agent] text`, everything else to the standard error
     output.
@@ -107,7 +107,7 @@ def check_file(file: Path) -> None:
     if file.is_file():
         return
     if file.is_dir():
-        raise UsageError(f"{file} is a folder; give a .asl, .mas2j or .jcm file in it")
+        raise UsageError(f"{file} is a folder; give a .asl, .py, .mas2j or .jcm file in it")
     beside = [each.name for each in file.parent.glob("*.*") if each.suffix in (".asl", ".mas2j", ".jcm")]
     import difflib  # here: only for a file that is not there
 

@@ -48,7 +48,12 @@ class AgentClasses:
         wrong: list[Diagnostic] = []
         for spec in agents:
             try:
-                self._objects(spec)
+                if spec.is_python:
+                    from jacaros.mas import python_agents  # here: most projects have none
+
+                    python_agents.check(self._modules, spec, self._warn_once)
+                else:
+                    self._objects(spec)
             except JacarosError as error:
                 found = error.diagnostics if isinstance(error, ProjectError) else ()
                 wrong += [d for d in found if d not in wrong]
@@ -70,6 +75,10 @@ class AgentClasses:
         Raises:
             ProjectError: a class cannot be found or begun.
         """
+        if spec.is_python:
+            from jacaros.mas import python_agents
+
+            return python_agents.make(self._modules, spec, run, seed)
         objects = self._objects(spec)
         if any(objects):
             return self._custom(spec, program, run, seed, options, code, plans, objects)
@@ -161,6 +170,11 @@ class AgentClasses:
             hint = f"write it in Python: a class {last}(jacaros.{kind}) in {file}" if own else None
             self._warn(Diagnostic("warning", f"the Java class {name} has no effect", spec.span, hint))
         return made
+
+    def _warn_once(self, warning: Diagnostic) -> None:
+        if warning.message not in self._warned:
+            self._warned.add(warning.message)
+            self._warn(warning)
 
     def _project_error(self, spec: AgentSpec, message: str) -> ProjectError:
         return ProjectError([Diagnostic("error", message, spec.span)])

@@ -112,6 +112,9 @@ class Run(Protocol):
     def kill_agent(self, name: str, delay: float, killer: str) -> bool:
         """End an agent on behalf of another; False when there is none of that name, or it does not accept."""
 
+    def end_agent(self, name: str) -> None:
+        """End an agent at once, without asking it; nothing when there is none of that name."""
+
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file."""
 
@@ -275,8 +278,10 @@ class AgentHost:
 
     def print(self, text: str) -> None:
         """Show a line of the program's output; an agent that has ended prints nothing more."""
-        if self._ended:
-            return
+        if not self._ended:
+            self._show(text)
+
+    def _show(self, text: str) -> None:
         try:
             self._run.console.print(self.name, text)
         except BrokenPipeError:

@@ -49,6 +49,8 @@ def check_files(paths: Sequence[Path]) -> Findings:
             _check_folder(path, findings)
         elif path.suffix in PROJECTS:
             _check_project(path, findings)
+        elif path.suffix == ".py":
+            _check_python_agent(path, findings)
         else:
             _check_program(path, (path.parent,), findings)
     findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
@@ -96,8 +98,18 @@ def _check_project(path: Path, findings: Findings) -> None:
     findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, folders)]
     different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}
     for agent in different.values():
-        if agent.source_path.is_file():
+        if agent.is_python:
+            findings.files.add(agent.source_path.resolve())
+        elif agent.source_path.is_file():
             _check_program(agent.source_path, folders, findings, agent)
+
+
+def _check_python_agent(path: Path, findings: Findings) -> None:
+    """Check that the class of a lone agent written in Python can be found."""
+    findings.files.add(path.resolve())
+    agent = AgentSpec(path.stem, path, path.stem)
+    deployment = Deployment(path.stem, path.parent, (agent,))
+    findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, (path.parent,))]
 
 
 def _of_classes(deployment: Deployment, folders: tuple[Path, ...]) -> list[Diagnostic]:

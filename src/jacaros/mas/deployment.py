@@ -47,7 +47,7 @@ class AgentSpec:
     Attributes:
         name: the name of the agent in the run.
         declared_name: the name in the project file, without the number of the instance.
-        source_path: its AgentSpeak program.
+        source_path: its AgentSpeak program, or the Python file of its class.
         options: settings such as ``verbose`` and ``events``, and keys of the user's own, as text.
         beliefs, goals: literals separated by commas, as text (see `jacaros.asl.loader.parse_literals`).
         join: workspaces it joins at its start, in order; all workspaces of ``focus`` are among them.
@@ -70,6 +70,11 @@ class AgentSpec:
     belief_base_class: str | None = None
     host: str | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_python(self) -> bool:
+        """Whether it is an agent written in Python."""
+        return self.source_path.suffix == ".py"
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,16 @@ _PROJECTS: Final = (".mas2j", ".jcm")
 
 
 def load_deployment(path: str | Path) -> Deployment:
-    """What the project file *path* declares; a lone `.asl` file is a system of one agent of its name.
+    """What the project file *path* declares; a lone `.asl` or `.py` file is a system of one agent of its name.
 
     Raises:
         ProjectError: with all errors of the file, also when a program of an agent is not found.
     """
     path = Path(path)
-    if path.suffix == ".asl":
+    if path.suffix in (".asl", ".py"):
         return _lone_agent(path)
     if path.suffix not in _PROJECTS:
-        raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm or .asl file")])
+        raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm, .asl or .py file")])
     from jacaros.mas.project import read_project  # here: a lone program starts sooner without it
 
     deployment = read_project(path).deployment

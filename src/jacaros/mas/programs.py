@@ -69,7 +69,7 @@ class Programs:
         return programs
 
     def load(self, agent: AgentSpec, written: str | None = None) -> nodes.Program:
-        """The program of one agent.
+        """The program of one agent; of one that is written in Python an empty one.
 
         Args:
             agent: the agent.
@@ -78,6 +78,8 @@ class Programs:
         Raises:
             AslError: the program, or what the project adds, is wrong.
         """
+        if agent.is_python and written is None:
+            return nodes.Program()
         chooses = agent.agent_class is not None
         if written is None:
             program = self.read(agent.source_path, chooses)

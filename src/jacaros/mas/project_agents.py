@@ -14,6 +14,7 @@ from jacaros.mas.project_places import ProjectPlaces
 from jacaros.mas.project_remarks import Remarks
 
 _PROGRAM: Final = ".asl"
+_PYTHON: Final = ".py"
 
 
 class ProjectAgents:
@@ -55,7 +56,7 @@ class ProjectAgents:
         """The file of an agent's program."""
         written = (agent.source or agent.name).removeprefix("file:")
         span = agent.source_span or agent.span
-        files = [written] if written.endswith(_PROGRAM) else [written + _PROGRAM, written]
+        files = [written] if written.endswith((_PROGRAM, _PYTHON)) else [written + _PROGRAM, written]
         for folder in agent.folders:
             for file in files:
                 if (folder / file).is_file():

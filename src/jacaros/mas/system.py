@@ -189,6 +189,10 @@ class System:
         return self._surroundings
 
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
+        if spec.is_python:
+            if self._has_environment:
+                self.surroundings().situate_python(host, spec)
+            return
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)
         if self._surroundings is not None:
@@ -286,6 +290,12 @@ class System:
         False when there is none of that name, or it does not accept its end.
         """
         return self.population.kill(name, delay, killer)
+
+    def end_agent(self, name: str) -> None:
+        """End an agent at once, without asking it; nothing when there is none of that name."""
+        host = self.directory.find(name)
+        if host is not None:
+            self.population.end(host)
 
     def list_files(self, folder: str) -> Sequence[str]:
         """The files in a folder and in the folders in it, as paths that begin with *folder*, sorted.

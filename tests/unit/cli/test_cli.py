@@ -63,7 +63,7 @@ def test_wrong_usage_is_told_with_code_2(
     [
         ("wrong.asl", '!go.\n+!go <- .print("hi".', "wrong.asl:2:"),
         ("wrong.mas2j", "MAS wrong { agents: nobody; }", "wrong.mas2j:1:"),
-        ("wrong.txt", "", "no .mas2j, .jcm or .asl file"),
+        ("wrong.txt", "", "no .mas2j, .jcm, .asl or .py file"),
     ],
 )
 def test_a_wrong_project_is_told_with_code_1(

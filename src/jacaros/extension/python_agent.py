@@ -1,0 +1,322 @@
+"""Agents written in Python: the class to be subclassed."""
+
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Mapping, Sequence
+from inspect import iscoroutinefunction
+from random import Random
+from typing import Any, Protocol
+
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.clock import Clock
+from jacaros.env.observed import PropertyChange
+from jacaros.env.session import Session
+from jacaros.env.signal_stream import ReceivedSignal
+from jacaros.env.values import text
+from jacaros.errors import JacarosError
+from jacaros.extension.conversation import ReceivedMessage, content_of, heard
+from jacaros.extension.in_environment import InEnvironment
+from jacaros.extension.literal import Literal
+from jacaros.terms.unifier import rename
+from jacaros.terms.values import Term
+
+
+class UnknownAgent(JacarosError):
+    """A message is for an agent that is not there."""
+
+
+class Host(Protocol):
+    """What runs an agent written in Python, as far as the agent may use it."""
+
+    name: str
+    options: Mapping[str, str]
+    beliefs: tuple[Literal, ...]
+
+    @property
+    def clock(self) -> Clock:
+        """The run's clock."""
+
+    @property
+    def session(self) -> Session:
+        """The agent's session in the environment."""
+
+    @property
+    def random(self) -> Random:
+        """The agent's own generator."""
+
+    def print(self, text: str) -> None:
+        """Show a line of output."""
+
+    def log(self, level: str, text: str) -> None:
+        """Tell people something."""
+
+    def say(self, receiver: str, performative: str, content: Term, reply: str | None = None) -> None:
+        """Send a message; raises `UnknownAgent`."""
+
+    async def ask(self, receiver: str, performative: str, content: Term, timeout: float | None) -> SpeechAct:
+        """Send a question and wait for the answer; raises `UnknownAgent` and TimeoutError."""
+
+    async def next_message(self, timeout: float | None) -> ReceivedMessage:
+        """Wait for the next message; raises TimeoutError."""
+
+    def start(self, work: Coroutine[Any, Any, Any]) -> Awaitable[Any]:
+        """Run a coroutine beside the others of the agent."""
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait on the run's clock."""
+
+    async def turn(self) -> None:
+        """Let others have their turn."""
+
+    def agent_names(self) -> Sequence[str]:
+        """Names of all agents."""
+
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
+        """Make an agent."""
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent."""
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        """End the run."""
+
+    def register_service(self, service: str) -> None:
+        """This agent provides a service."""
+
+    def deregister_service(self, service: str) -> None:
+        """It does not any more."""
+
+    def providers(self, service: str) -> Sequence[str]:
+        """Who provides a service."""
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Have this agent told of providers."""
+
+
+class PythonAgent(InEnvironment):
+    """An agent written in Python; to be subclassed.
+
+    A project names the file of the subclass: ``agent painter: painter.py`` in a ``.jcm`` file, ``painter
+    painter.py;`` in a ``.mas2j`` file.  `run` is what the agent does.  Whoever prefers to be called overrides
+    `on_message`, `on_signal` or `on_property` as well, or instead.  It takes time from `sleep` and `clock` only,
+    and random numbers from `random`: then a run with ``--clock fast`` and a seed is repeatable.
+
+    The agent stays when `run` is over, with all that it focuses: it is ended by an exception in its code, by
+    other agents, or with the run.  Its operations under way are cancelled then, and its ``finally`` blocks run.
+    """
+
+    _host: Host
+
+    def __init_subclass__(cls, **keywords: object) -> None:
+        super().__init_subclass__(**keywords)
+        if not iscoroutinefunction(cls.run):
+            raise TypeError(f"{cls.__name__}.run is no coroutine: write async def run(self)")
+
+    # --- what may be overridden ----------------------------------------------------------------------------
+
+    async def run(self) -> None:
+        """What the agent does, from its beginning on."""
+
+    def on_message(self, message: ReceivedMessage) -> Any:
+        """Called with every message but the answers to `ask`, ``def`` or ``async def``; one after the other.
+
+        A question that it does not reply to is answered with what it returns; None means that there is no answer.
+        """
+
+    def on_signal(self, signal: ReceivedSignal) -> Any:
+        """Called with every signal of the focused artifacts, ``def`` or ``async def``; one after the other."""
+
+    def on_property(self, change: PropertyChange) -> Any:
+        """Called with every change of a property of the focused artifacts; as `on_signal`."""
+
+    def accept_kill(self, killer: str) -> bool:
+        """Whether the agent called *killer* may end this one by ``.kill_agent``."""
+        return True
+
+    # --- what it is ----------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._host.name
+
+    @property
+    def options(self) -> Mapping[str, str]:
+        """Its options in the project file: ``[speed=0.5]``, or ``speed: 0.5`` in a ``.jcm`` file."""
+        return self._host.options
+
+    @property
+    def beliefs(self) -> tuple[Literal, ...]:
+        """The literals that the project file gives it as ``beliefs``."""
+        return self._host.beliefs
+
+    @property
+    def session(self) -> Session:
+        """Its working session in the environment.
+
+        Raises:
+            WorkspaceError: the project has no environment.
+        """
+        return self._host.session
+
+    @property
+    def clock(self) -> Clock:
+        """The run's clock."""
+        return self._host.clock
+
+    @property
+    def random(self) -> Random:
+        """Its random numbers, which follow from the seed of the run."""
+        return self._host.random
+
+    # --- time, people --------------------------------------------------------------------------------------
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait on the run's clock."""
+        await self._host.sleep(seconds)
+
+    async def _turn(self) -> None:
+        await self._host.turn()
+
+    def start(self, work: Coroutine[Any, Any, Any]) -> Awaitable[Any]:
+        """Run a coroutine beside `run`; it can be awaited.
+
+        It is cancelled when the agent ends, and an exception in it ends the agent, as one in `run` does.
+        """
+        return self._host.start(work)
+
+    def print(self, *values: object) -> None:
+        """Print a line: all values one after the other, as ``.print`` does."""
+        self._host.print("".join(map(text, values)))
+
+    def log(self, message: str, level: str = "info") -> None:
+        """Tell people something; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+        self._host.log(level, message)
+
+    # --- messages ------------------------------------------------------------------------------------------
+
+    def send(self, receiver: str | Sequence[str], performative: str, content: object) -> None:
+        """Send a message.
+
+        Args:
+            receiver: name of an agent, or several names.
+            performative: ``tell``, ``achieve``, ``untell`` ….
+            content: a text that is AgentSpeak (with ``tellHow`` and its like, the text of plans), a `Literal`,
+                or another Python value.
+
+        Raises:
+            UnknownAgent: there is no such agent.
+            AslError: the text is not AgentSpeak.
+        """
+        said = content_of(content, performative)
+        for name in (receiver,) if isinstance(receiver, str) else receiver:
+            self._host.say(name, performative, rename(said))
+
+    def broadcast(self, performative: str, content: object) -> None:
+        """Send a message to all other agents."""
+        self.send([name for name in self.agent_names() if name != self.name], performative, content)
+
+    async def ask(
+        self, receiver: str, question: object, performative: str = "askOne", timeout: float | None = None
+    ) -> Any:
+        """Ask an agent, and wait for the answer.
+
+        Args:
+            receiver: name of the agent.
+            question: a text such as ``"position(X, Y)"``, or a `Literal`.
+            performative: ``askOne``, ``askAll`` or ``askHow``.
+            timeout: seconds to wait at most.
+
+        Returns:
+            For ``askOne`` a `Literal` (or another value), None when there is no answer; for the others a list.
+
+        Raises:
+            UnknownAgent: there is no such agent.
+            TimeoutError: the time is over.
+            AslError: the text is not AgentSpeak.
+        """
+        answer = await self._host.ask(receiver, performative, content_of(question, performative), timeout)
+        if answer.performative == "untell":
+            return None if performative in ("askOne", "ask-one") else []
+        return heard(answer.content)
+
+    async def receive(self, timeout: float | None = None) -> ReceivedMessage:
+        """Wait for the next message; answers to `ask` are not among them.
+
+        Raises:
+            TimeoutError: none came within *timeout* seconds.
+        """
+        return await self._host.next_message(timeout)
+
+    def messages(self) -> AsyncIterator[ReceivedMessage]:
+        """All messages, for ``async for``: those that have come already, and those to come."""
+        return _Messages(self._host)
+
+    # --- other agents --------------------------------------------------------------------------------------
+
+    def agent_names(self) -> tuple[str, ...]:
+        """Names of all agents, in the order of their making."""
+        return tuple(self._host.agent_names())
+
+    def create_agent(self, name: str, source: str | None = None, agent_class: str | None = None) -> str:
+        """Make an agent and start it; gives its name, which is another one when *name* is taken.
+
+        Args:
+            name: of the agent.
+            source: its program (``bob.asl``, ``bob.py``), NAME.asl unless given.
+            agent_class: its class, for an AgentSpeak agent as in ``ag-class``.
+
+        Raises:
+            JacarosError: it cannot be made; the log says why.
+        """
+        classes = {} if agent_class is None else {"agentClass": agent_class}
+        made = self._host.create_agent(name, source, classes)
+        if made is None:
+            raise JacarosError(f"agent {name} cannot be made; the log says why")
+        return made
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds; False when there is none of that name, or it does not accept."""
+        return self._host.kill_agent(name, delay)
+
+    def stop_system(self, exit_code: int = 0, delay: float = 0.0) -> None:
+        """End the run after *delay* seconds."""
+        self._host.stop_system(delay, exit_code)
+
+    def register_service(self, service: str) -> None:
+        """Tell the directory facilitator that this agent provides a service."""
+        self._host.register_service(service)
+
+    def deregister_service(self, service: str) -> None:
+        """Take that back."""
+        self._host.deregister_service(service)
+
+    def providers(self, service: str) -> tuple[str, ...]:
+        """The agents that provide a service, in the order in which they registered."""
+        return tuple(self._host.providers(service))
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Have this agent told ``provider(Agent, Service)`` of all providers, those to come as well."""
+        self._host.subscribe_to_service(service)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r})"
+
+
+def overridden(agent: PythonAgent, name: str) -> Callable[..., Any] | None:
+    """The handler that a subclass has, or None."""
+    if getattr(type(agent), name) is getattr(PythonAgent, name):
+        return None
+    method: Callable[..., Any] = getattr(agent, name)
+    return method
+
+
+class _Messages:
+    """The messages for an agent, without end."""
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+
+    def __aiter__(self) -> "_Messages":
+        return self
+
+    async def __anext__(self) -> ReceivedMessage:
+        return await self._host.next_message(None)
