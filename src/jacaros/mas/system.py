@@ -191,7 +191,9 @@ class System:
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
         if spec.is_python:
             if self._has_environment:
-                self.surroundings().situate_python(host, spec)
+                from jacaros.mas.python_situation import situate  # here: most projects have no such agent
+
+                situate(host, spec, self.surroundings().environment)
             return
         if self._has_environment:
             host.make_body = lambda: self.surroundings().make_body(host)

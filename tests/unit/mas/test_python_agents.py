@@ -621,7 +621,7 @@ def test_what_is_wrong_with_the_file_is_told_before_anything_runs(
     result = run(tmp_path, m_mas2j=f"MAS m {{\n  agents: {agent};\n}}", a_py=code)
     assert result.exit_code == 1
     assert told in result.errors[0]
-    assert f"{tmp_path}/m.mas2j:2:11: error: " in result.errors[0]
+    assert result.errors[0].startswith(f"{tmp_path}/m.mas2j:2:1")
     assert result.lines == []
 
 
@@ -648,3 +648,24 @@ def test_its_file_may_stand_in_a_folder_and_import_others(tmp_path: Path) -> Non
     )
     assert run(tmp_path, m_mas2j="MAS m { agents: a a.py; b src/agt/a.py; }").of("a") == ["4"]
     assert run(tmp_path, m_mas2j='MAS m { agents: b "src/agt/a.py"; }').lines == ["[b] 4"]
+
+
+def test_what_it_is_to_focus_may_come_later(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        m_jcm="""mas m {
+            agent a: a.py { focus: w.counter, w.other }
+            agent bob { join: w }
+            workspace w { artifact other: Counter(7) }
+        }""",
+        a_py="""
+class A(PythonAgent):
+    async def run(self):
+        self.print(self.value("count"))
+        await self.until(lambda: self.has_property("count", 5))
+        self.print(self.clock.now() % 100)
+""",
+        bob_asl='!go. +!go <- .wait(1000); makeArtifact(counter, "Counter", [5]).',
+    )
+    assert result.lines == ["[a] 7", "[a] 1"]
+    assert all("error" not in line for line in result.errors)
