@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from jacaros.extension.belief_base import BeliefBase
     from jacaros.extension.conversation import ReceivedMessage
     from jacaros.extension.declaring import arithmetic_function, internal_action
+    from jacaros.extension.errors import UnknownAgent
     from jacaros.extension.literal import Literal
-    from jacaros.extension.python_agent import PythonAgent, UnknownAgent
+    from jacaros.extension.python_agent import PythonAgent
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
     from jacaros.mas.errors import GoalFailed
     from jacaros.mas.mas import Mas
@@ -79,7 +80,7 @@ _PLACES = {
     "PythonAgent": "jacaros.extension.python_agent",
     "ReceivedMessage": "jacaros.extension.conversation",
     "Structure": "jacaros.env.values",
-    "UnknownAgent": "jacaros.extension.python_agent",
+    "UnknownAgent": "jacaros.extension.errors",
     "WrongArguments": "jacaros.bdi.internal_action",
     "arithmetic_function": "jacaros.extension.declaring",
     "internal_action": "jacaros.extension.declaring",

@@ -19,10 +19,6 @@ from jacaros.terms.unifier import rename
 from jacaros.terms.values import Term
 
 
-class UnknownAgent(JacarosError):
-    """A message is for an agent that is not there."""
-
-
 class Host(Protocol):
     """What runs an agent written in Python, as far as the agent may use it."""
 

@@ -15,8 +15,9 @@ from jacaros.env.errors import WorkspaceError
 from jacaros.env.session import Session
 from jacaros.errors import JacarosError
 from jacaros.extension.conversation import ReceivedMessage
+from jacaros.extension.errors import UnknownAgent
 from jacaros.extension.literal import Literal
-from jacaros.extension.python_agent import PythonAgent, UnknownAgent, overridden
+from jacaros.extension.python_agent import PythonAgent, overridden
 from jacaros.mas.activity import AgentTimer
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.attendance import Attendance
@@ -221,7 +222,7 @@ class PythonAgentHost(AgentHost):
         target = self.name if receiver == "self" else receiver
         sender = "self" if target == self.name else self.name
         if not self.send(SpeechAct(performative, sender, target, content, id, reply)):
-            raise UnknownAgent(f"there is no agent '{receiver}' to send to")
+            raise UnknownAgent(receiver, self.agent_names())
 
     async def ask(self, receiver: str, performative: str, content: Term, timeout: float | None) -> SpeechAct:
         """Send a question and wait for the answer.
@@ -235,6 +236,8 @@ class PythonAgentHost(AgentHost):
         try:
             self._say(receiver, performative, content, id, None)
             await self._wait_for(answer, timeout, f"no answer from {receiver}")
+            if answer.result().performative == "undelivered":
+                raise UnknownAgent(receiver, self.agent_names())
             return answer.result()
         finally:
             self.inbox.forget(id)

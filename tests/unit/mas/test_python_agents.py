@@ -301,7 +301,7 @@ async def run(self):
         self.print(type(error).__name__)
 """
     assert alone(tmp_path, body).of("a") == [
-        "there is no agent 'nobody' to send to",
+        "there is no agent nobody; there are a",
         "self",
         "no message within 1.5 s",
         "AslError",
@@ -432,7 +432,7 @@ def compute(self, x):
             "self.value('count')",
             "UnknownProperty: no observable property count is known: no artifact is focused",
         ),
-        ("self.send('x', 'tell', 'p')", "UnknownAgent: there is no agent 'x' to send to"),
+        ("self.send('x', 'tell', 'p')", "UnknownAgent: there is no agent x; there are a"),
         ("await self.act('x')", "OperationFailed: no artifact of workspace /main has an operation x/0"),
         ("self.focus('x')", "UnknownArtifact: workspace /main has no artifact x"),
         ("self.join('x')", "UnknownWorkspace: there is no workspace /main/x; did you mean /main?"),
