@@ -54,6 +54,7 @@ class AgentSpec:
         focus: artifacts it focuses on at its start, in order.
         agent_class, architecture_classes, belief_base_class: class names as written; without use here.
         host: the computer that is asked for, without use here.
+        python_class: the class of an agent written in Python, in place of a file.
         span: where it is declared.
     """
 
@@ -69,12 +70,13 @@ class AgentSpec:
     architecture_classes: tuple[str, ...] = ()
     belief_base_class: str | None = None
     host: str | None = None
+    python_class: type | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
     def is_python(self) -> bool:
         """Whether it is an agent written in Python."""
-        return self.source_path.suffix == ".py"
+        return self.python_class is not None or self.source_path.suffix == ".py"
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from jacaros.env.ids import ArtifactId
     from jacaros.env.ports import Workspace
     from jacaros.env.session import Session
+    from jacaros.extension.python_agent import PythonAgent
     from jacaros.mas.mailbox import Mailbox, PythonMailboxes
     from jacaros.mas.surroundings import Surroundings
 
@@ -205,7 +206,7 @@ class Mas:
     def add_agent(
         self,
         name: str | AgentSpec,
-        program: str | Path | None = None,
+        program: "str | Path | type[PythonAgent] | None" = None,
         *,
         beliefs: str = "",
         goals: str = "",
@@ -220,7 +221,8 @@ class Mas:
 
         Args:
             name: of the agent; or all that is known of it, as project files declare it.
-            program: its program as text; or the path of a file, the one called ``NAME.asl`` unless given.
+            program: its program as text; or the path of a file (``.asl`` or ``.py``), the one called ``NAME.asl`` unless
+                given; or the class of an agent written in Python.
             beliefs: further initial beliefs, as text, separated by commas.
             goals: further initial goals, likewise.
             join: workspaces that it joins, by path or name.
@@ -238,6 +240,7 @@ class Mas:
         if isinstance(name, AgentSpec):
             spec, written = name, None
         else:
+            python_class = program if isinstance(program, type) else None
             written = program if isinstance(program, str) else None
             spec = AgentSpec(
                 name,
@@ -251,6 +254,7 @@ class Mas:
                 agent_class=agent_class,
                 architecture_classes=tuple(architectures),
                 belief_base_class=belief_base,
+                python_class=python_class,
             )
         if spec.name in system.directory.names():
             raise UsageError(f"there is an agent {spec.name} already; every name is given once")
@@ -261,8 +265,8 @@ class Mas:
         begin(host, spec, tree)
         return self.agent(spec.name)
 
-    def _source_of(self, name: str, program: str | Path | None) -> Path:
-        if isinstance(program, str):
+    def _source_of(self, name: str, program: "str | Path | type[PythonAgent] | None") -> Path:
+        if isinstance(program, (str, type)):
             return Path(f"<{name}>")  # as diagnostics show it
         wanted = str(program) if program is not None else f"{name}.asl"
         try:

@@ -103,6 +103,8 @@ class PythonAgentHost(AgentHost):
         task = asyncio.get_running_loop().create_task(without_exit(work), name=f"agent {self.name}")
         self._tasks[task] = None
         self.attendance.add(task)
+        # A task that is cancelled before its first step never came to await the coroutine.
+        task.add_done_callback(lambda _: work.close())
         task.add_done_callback(self._done)
         return task
 

@@ -37,6 +37,8 @@ def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
     Raises:
         ProjectError: the file has no such class, or several, or a mistake.
     """
+    if spec.python_class is not None:
+        return spec.python_class
     found = _classes(_module(modules, spec))
     wanted = spec.options.get("class") or spec.agent_class
     file = spec.source_path

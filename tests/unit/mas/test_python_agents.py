@@ -4,6 +4,9 @@ from pathlib import Path
 
 import pytest
 
+import jacaros
+from jacaros import Literal, Mas, PythonAgent
+from jacaros.errors import UsageError
 from jacaros.testing import RunResult, run_project
 
 ARTIFACTS = """
@@ -669,3 +672,47 @@ class A(PythonAgent):
     )
     assert result.lines == ["[a] 7", "[a] 1"]
     assert all("error" not in line for line in result.errors)
+
+
+class Echo(PythonAgent):
+    async def run(self) -> None:
+        async for message in self.messages():
+            if message.performative == "tell":
+                self.send(message.sender, "tell", Literal("heard", (message.content.functor,)))
+            else:
+                raise ValueError(message.performative)
+
+
+def test_it_is_added_to_a_system_in_a_python_program(tmp_path: Path) -> None:
+    (tmp_path / "lone.py").write_text(
+        "from jacaros import PythonAgent\nclass Lone(PythonAgent): ...\n", encoding="utf-8"
+    )
+    lines: list[str] = []
+
+    async def main() -> None:
+        async with Mas(folder=tmp_path, on_log=lambda text, level: lines.append(text)) as mas:
+            echo = mas.add_agent("echo", Echo)
+            mas.add_agent("lone", tmp_path / "lone.py")
+            box = mas.mailbox("tester")
+            box.send("echo", "tell", "hello(1)")
+            assert str((await box.get(timeout=1)).content) == 'heard("hello")'
+            await mas.until_idle()
+            with pytest.raises(UsageError, match="agent echo is written in Python"):
+                echo.achieve("x")
+            box.send("echo", "achieve", "hello(1)")
+            await mas.until_idle()
+            assert echo.ended
+            assert [agent.name for agent in mas.agents] == ["lone"]
+
+    jacaros.run(main(), clock="fast")
+    assert len(lines) == 1
+    assert lines[0].startswith("[echo] error: the agent has ended: ValueError: achieve")
+
+
+def test_it_may_be_ended_before_its_first_step(tmp_path: Path) -> None:
+    async def main() -> None:
+        async with Mas(folder=tmp_path) as mas:
+            mas.add_agent("echo", Echo).kill()
+            assert mas.agents == ()
+
+    jacaros.run(main(), clock="fast")
