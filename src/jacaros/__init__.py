@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from jacaros.bdi.internal_action import ActionError, WrongArguments
     from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
+    from jacaros.errors import JacarosError
     from jacaros.extension.agent import Agent
     from jacaros.extension.architecture import Action, AgentArch
     from jacaros.extension.belief_base import BeliefBase
@@ -41,6 +42,7 @@ __all__ = [
     "Event",
     "GoalFailed",
     "Intention",
+    "JacarosError",
     "Literal",
     "Mas",
     "Message",
@@ -69,6 +71,7 @@ _PLACES = {
     "Event": "jacaros.extension.views",
     "GoalFailed": "jacaros.mas.errors",
     "Intention": "jacaros.extension.views",
+    "JacarosError": "jacaros.errors",
     "Literal": "jacaros.extension.literal",
     "Mas": "jacaros.mas.mas",
     "Message": "jacaros.extension.views",

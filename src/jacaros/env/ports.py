@@ -18,7 +18,6 @@ from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observer
 from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
-from jacaros.env.property import ObservableProperty
 from jacaros.trace import Cause
 
 Told = Callable[[OperationOutcome], None]
@@ -73,9 +72,6 @@ class Workspace(Protocol):
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
         """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``; raises `UnknownArtifact`."""
-
-    def properties(self, artifact_id: ArtifactId) -> tuple[ObservableProperty, ...]:
-        """The observable properties of an artifact, as observers know them; raises `UnknownArtifact`."""
 
     # ---- asked for
 

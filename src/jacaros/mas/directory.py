@@ -19,6 +19,7 @@ class Directory(Generic[H]):
         self._hosts: dict[str, H] = {}
         self._names: tuple[str, ...] | None = ()
         self._others: list[Participants] = []
+        self._watchers: list[Callable[[str, bool], None]] = []
         self.find: Callable[[str], H | None] = self._hosts.get
 
     def add(self, name: str, host: H) -> None:
@@ -26,13 +27,24 @@ class Directory(Generic[H]):
         if self._is_taken(name):
             raise ValueError(f"there is an agent {name} already")
         self._hosts[name] = host
-        self._names = None
+        self._changed(name, True)
 
     def remove(self, name: str) -> H | None:
         """Take an agent out; None when there is none of that name."""
         host = self._hosts.pop(name, None)
-        self._names = None
+        if host is not None:
+            self._changed(name, False)
         return host
+
+    def watch(self, watcher: Callable[[str, bool], None]) -> Callable[[], None]:
+        """Call *watcher* with the name of every agent of this run that comes (True) or goes; gives what ends that."""
+        self._watchers.append(watcher)
+        return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None
+
+    def _changed(self, name: str, present: bool) -> None:
+        self._names = None
+        for watcher in tuple(self._watchers):
+            watcher(name, present)
 
     def join(self, others: Participants) -> Callable[[], None]:
         """Let others take part; gives what ends that."""

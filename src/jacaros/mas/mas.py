@@ -136,6 +136,15 @@ class Mas:
         return self._begun
 
     @property
+    def system(self) -> System:
+        """The run itself, for what this class does not offer; it may change with every version.
+
+        Raises:
+            RunEnded: it has not begun.
+        """
+        return self._running[0]
+
+    @property
     def _open(self) -> System:
         """The running system.
 
