@@ -19,7 +19,7 @@ from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project import read_project
 from jacaros.mas.python_code import PythonCode
-from jacaros.project_modules import ProjectModules
+from jacaros.project_modules import ModuleUnreadable, ProjectModules
 
 PROJECTS: Final = (".mas2j", ".jcm")
 _SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
@@ -97,11 +97,38 @@ def _check_project(path: Path, findings: Findings) -> None:
     folders = (deployment.base_path, *deployment.source_paths)
     findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, folders)]
     different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}
+    programs = []
     for agent in different.values():
         if agent.is_python:
             findings.files.add(agent.source_path.resolve())
         elif agent.source_path.is_file():
-            _check_program(agent.source_path, folders, findings, agent)
+            program = _check_program(agent.source_path, folders, findings, agent)
+            if program is not None:
+                programs.append((agent, program))
+    if deployment.artifact_environment:
+        # What agents in Python make, and what programs with errors would make, is not known.
+        known = programs if len(programs) == len(different) else []
+        findings.diagnostics += _of_artifacts(deployment, known, folders)
+
+
+def _of_artifacts(
+    deployment: Deployment, programs: list[tuple[AgentSpec, nodes.Program]], folders: tuple[Path, ...]
+) -> list[Diagnostic]:
+    """What is wrong with the artifacts of a project, and with what its agents do with them."""
+    # Imported here: programs without artifacts are checked without them.
+    from jacaros.artifacts.registry import type_finder
+    from jacaros.mas.action_check import check_actions
+    from jacaros.mas.furnishing import types_of
+
+    artifacts = [artifact for workspace in deployment.workspaces for artifact in workspace.artifacts]
+    try:
+        find_type = type_finder(ProjectModules(*folders))
+        types_of(artifacts, find_type)
+    except ModuleUnreadable as error:
+        return [Diagnostic("error", str(error), code="wrong-project")]
+    except ProjectError as error:
+        return [_of_project(each) for each in error.diagnostics]
+    return check_actions(deployment, programs, find_type)
 
 
 def _check_python_agent(path: Path, findings: Findings) -> None:
@@ -128,8 +155,12 @@ def _of_project(diagnostic: Diagnostic) -> Diagnostic:
 
 def _check_program(
     path: Path, folders: tuple[Path, ...], findings: Findings, agent: AgentSpec | None = None
-) -> None:
-    """Check a program with its includes, and with what a project adds to it for *agent*."""
+) -> nodes.Program | None:
+    """Check a program with its includes, and with what a project adds to it for *agent*.
+
+    Returns:
+        All that the agent runs; None if it cannot be run.
+    """
     findings.files.add(path.resolve())
     code = PythonCode(ProjectModules(*folders))
     programs = Programs(folders, lambda _: None, code)
@@ -146,17 +177,19 @@ def _check_program(
         sources.append(SourceFile(str(path), text_of(path)))
     except AslError as error:
         findings.diagnostics += error.diagnostics
-        return
+        return None
     program, diagnostics = read_program(sources[0], include, code.functions)
     diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
     known = KnownActions(code.actions, code.hint)
-    own = [*diagnostics, *check(_with_additions(program, agent), known, errors)]
+    whole = _with_additions(program, agent)
+    own = [*diagnostics, *check(whole, known, errors)]
     for source in sources:
         own += Suppressions(source).unknown
     if agent is not None and agent.agent_class is not None:
         own = [each for each in own if each.code != NEVER_SELECTED]
     findings.diagnostics += [each for each in own if _concerns_author(each, path)]
+    return None if errors else whole
 
 
 def _concerns_author(diagnostic: Diagnostic, path: Path) -> bool:

@@ -1,0 +1,188 @@
+"""Actions of a project's programs that none of its artifacts can carry out.
+
+Only what is certain is told: a program may make artifacts of types that are worked out at run time, artifacts may
+define operations then, and an architecture may carry out actions itself.
+"""
+
+import inspect
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Final
+
+from jacaros.asl import nodes
+from jacaros.asl.checks.formulas import clauses as clauses_of
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.spelling import close_matches
+from jacaros.asl.walk import walk
+from jacaros.body.actions import keys
+from jacaros.clock import VirtualClock
+from jacaros.env.environment import Environment
+from jacaros.env.errors import UnknownArtifactType
+from jacaros.mas.deployment import AgentSpec, Deployment
+
+if TYPE_CHECKING:
+    from jacaros.env.artifact import Artifact
+
+    FindType = Callable[[str], type[Artifact]]
+
+_MAKES: Final = "makeArtifact"
+_OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWorkspaces", "mountWorkspace"})
+"""Actions that bring artifacts of other systems in."""
+
+_OPEN_ACTIONS: Final = frozenset({".create_agent", ".clone", ".include", ".add_plan", ".load_agent"})
+"""Internal actions that bring programs in which are not those of the project file."""
+
+_OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
+"""What an artifact's Python code does when it offers more than its class declares."""
+
+
+class _NotCertain(Exception):
+    """What the project's artifacts offer is not known before it runs."""
+
+
+def check_actions(
+    deployment: Deployment, programs: Sequence[tuple[AgentSpec, nodes.Program]], find_type: "FindType"
+) -> list[Diagnostic]:
+    """Warnings about actions that no artifact offers, and about types of artifacts that there are not.
+
+    Args:
+        deployment: the project.
+        programs: the agents with all that they run.
+        find_type: finds the project's artifact types.
+    """
+    found = [(agent, list(_steps(program))) for agent, program in programs]
+    makes = [step for _, steps in found for step in steps if _name(step) == _MAKES]
+    warnings = list(_unknown_types(makes, find_type))
+    try:
+        if any(_is_open(program) for _, program in programs):
+            return warnings
+        offered = _Offered(_types(deployment, makes, find_type))
+    except _NotCertain:
+        return warnings
+    if any(_name(step) in _OPEN_WORLD for _, steps in found for step in steps):
+        return warnings
+    for agent, steps in found:
+        if not (agent.architecture_classes or agent.agent_class):
+            warnings += filter(None, map(offered.blame, steps))
+    return warnings
+
+
+def _steps(program: nodes.Program) -> Iterator[nodes.Literal]:
+    """The actions in the plans of a program."""
+    for node in walk(*clauses_of(program)):
+        if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
+            yield node.action
+
+
+def _is_open(program: nodes.Program) -> bool:
+    """Whether a program brings in other ones at run time, or lets a test answer its actions."""
+    for node in walk(*clauses_of(program), *program.goals):
+        if isinstance(node, nodes.InternalAction) and node.name in _OPEN_ACTIONS:
+            return True
+        if isinstance(node, nodes.Literal) and node.functor == "fake_action":
+            return True
+    return False
+
+
+def _name(action: nodes.Literal) -> str:
+    return action.functor
+
+
+def _type_of(action: nodes.Literal) -> str | None:
+    """The type that ``makeArtifact(Name,Type,...)`` names; None when it is worked out at run time."""
+    if len(action.arguments) < 2:
+        return None
+    wanted = action.arguments[1]
+    if isinstance(wanted, nodes.String):
+        return wanted.value
+    if isinstance(wanted, nodes.Literal) and not wanted.arguments:
+        return wanted.functor
+    return None
+
+
+def _unknown_types(makes: Sequence[nodes.Literal], find_type: "FindType") -> Iterator[Diagnostic]:
+    for action in makes:
+        name = _type_of(action)
+        if name is None:
+            continue
+        try:
+            find_type(name)
+        except UnknownArtifactType as unknown:
+            span = action.arguments[1].span
+            yield Diagnostic("warning", str(unknown), span, code="unknown-artifact-type")
+        except Exception:
+            # A module with a mistake in it: a run tells it.
+            continue
+
+
+def _types(
+    deployment: Deployment, makes: Sequence[nodes.Literal], find_type: "FindType"
+) -> "list[type[Artifact]]":
+    """All types that the project makes artifacts of.
+
+    Raises:
+        _NotCertain: not all of them are known.
+    """
+    names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
+    for action in makes:
+        name = _type_of(action)
+        if name is None:
+            raise _NotCertain
+        names.append(name)
+    try:
+        types = [find_type(name) for name in dict.fromkeys(names)]
+    except Exception as error:
+        raise _NotCertain from error
+    if any(map(_offers_more, types)):
+        raise _NotCertain
+    return types
+
+
+def _offers_more(artifact_type: "type[Artifact]") -> bool:
+    """Whether artifacts of a type may define operations, or make other artifacts, at run time."""
+    for each in artifact_type.__mro__:
+        if each.__module__.startswith("jacaros.env.") or each is object:
+            continue
+        try:
+            source = inspect.getsource(each)
+        except (OSError, TypeError):
+            return True
+        if any(method in source for method in _OPEN_METHODS):
+            return True
+    return False
+
+
+class _Offered:
+    """What the artifacts of a project offer to agents."""
+
+    def __init__(self, types: "list[type[Artifact]]") -> None:
+        self._types = types
+        self._main = Environment(VirtualClock()).workspace("/main")
+        self._personal = frozenset(keys())
+
+    def _has(self, name: str, arity: int) -> bool:
+        if f"{name}/{arity}" in self._personal or self._main.providers(name, arity):
+            return True
+        return any(each.interface.operations.find(name, arity) is not None for each in self._types)
+
+    def blame(self, action: nodes.Literal) -> Diagnostic | None:
+        """A warning if nobody can carry *action* out."""
+        span = action.span
+        if span is None or span.file.name.startswith("$") or self._has(action.functor, len(action.arguments)):
+            return None
+        key = f"{action.functor}/{len(action.arguments)}"
+        return Diagnostic(
+            "warning", f"no artifact of the project offers {key}", span, self._hint(key), "unknown-operation"
+        )
+
+    def _hint(self, key: str) -> str | None:
+        known = list(self._personal)
+        for artifact_type in self._types:
+            known += artifact_type.interface.operations.keys()
+        for artifact in self._main.artifacts():
+            known += self._main.offers(artifact)
+        name = key.partition("/")[0]
+        same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
+        close = close_matches(name, [each.partition("/")[0] for each in known], 0.75)
+        if same:
+            return f"there is {', '.join(same)}"
+        return f"did you mean {close[0]}?" if close else None

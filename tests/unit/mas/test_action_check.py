@@ -1,0 +1,157 @@
+"""What `jacaros check` says of a project's artifacts and of the actions of its agents."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.mas.checking import check_files
+
+ARTIFACTS = """
+from jacaros.env import Artifact, Out, operation
+
+class Counter(Artifact):
+    def init(self, start: int = 0):
+        self.define_property("count", start)
+
+    @operation
+    def inc(self, by: int = 1):
+        self.update_property("count", self.value("count") + by)
+
+class Growing(Artifact):
+    def init(self):
+        self.define_operation("more", lambda: None)
+"""
+
+PROJECT = """
+mas p {
+    agent ann: a.asl { focus: lab.c }
+    workspace lab { artifact c: Counter(5) }
+}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
+    return tmp_path
+
+
+def check(folder: Path, program: str, project: str = PROJECT) -> list[Diagnostic]:
+    (folder / "a.asl").write_text(program, encoding="utf-8")
+    (folder / "p.jcm").write_text(project, encoding="utf-8")
+    return check_files([folder / "p.jcm"]).diagnostics
+
+
+def told(diagnostics: list[Diagnostic]) -> list[tuple[str, str, str | None]]:
+    return [(each.code, each.message, each.hint) for each in diagnostics]
+
+
+def test_actions_that_nobody_offers_are_told(folder: Path) -> None:
+    program = """
+    !go.
+    +!go <- inc; inc(2); inc(1, 2); incc; println("x", 1, 2); out(a, 1, 2, 3); jump; joinWorkspace(lab).
+    """
+    assert told(check(folder, program)) == [
+        ("unknown-operation", "no artifact of the project offers inc/2", "there is inc/0, inc/1"),
+        ("unknown-operation", "no artifact of the project offers incc/0", "did you mean inc?"),
+        ("unknown-operation", "no artifact of the project offers jump/0", None),
+    ]
+
+
+def test_operations_of_artifacts_that_programs_make_count(folder: Path) -> None:
+    project = "mas p {\n agent ann: a.asl\n}"
+    program = '!go.\n+!go <- makeArtifact("c", "Counter", [], Id); focus(Id); inc; hop.'
+    assert [each.message for each in check(folder, program, project)] == [
+        "no artifact of the project offers hop/0"
+    ]
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "makeArtifact(d, Type, [])",
+        '.create_agent(bob, "b.asl")',
+        'makeArtifact("g", "Growing")',
+        '+kind("Counter"); ?kind(Type); makeArtifact(d, Type)',
+    ],
+)
+def test_nothing_is_said_where_it_is_not_certain(folder: Path, step: str) -> None:
+    assert check(folder, f"type(x).\n!go.\n+!go : type(Type) <- {step}; .print(Type); jump.") == []
+
+
+def test_agents_with_architectures_of_their_own_are_left_alone(folder: Path) -> None:
+    (folder / "body.py").write_text("from jacaros import AgentArch\n\nclass Body(AgentArch):\n    pass\n")
+    project = PROJECT.replace("focus: lab.c", "focus: lab.c  ag-arch: body.Body")
+    assert check(folder, "!go.\n+!go <- jump.", project) == []
+
+
+def test_types_that_there_are_not_are_told(folder: Path) -> None:
+    program = '!go.\n+!go <- makeArtifact("c", "Countr").'
+    project = "mas p {\n agent ann: a.asl\n}"
+    (found,) = check(folder, program, project)
+    assert found.code == "unknown-artifact-type"
+    assert "Countr" in found.message
+    assert found.span is not None
+    assert (found.span.line, found.span.column) == (2, 27)
+
+
+def test_types_of_the_project_file_are_looked_for(folder: Path) -> None:
+    (found,) = check(folder, "!go.\n+!go <- jump.", PROJECT.replace("Counter(5)", "Cuonter(5)"))
+    assert (found.severity, found.code) == ("error", "wrong-project")
+    assert "did you mean Counter?" in found.message
+
+
+def test_a_mistake_in_the_artifacts_is_told(folder: Path) -> None:
+    (folder / "artifacts.py").write_text("import nothing_of_this_name\n", encoding="utf-8")
+    (found,) = check(folder, "!go.\n+!go <- jump.")
+    assert (found.severity, found.code) == ("error", "wrong-project")
+    assert "artifacts.py:1" in found.message
+
+
+def test_details_of_organisations_are_notes_of_the_checker(folder: Path) -> None:
+    project = """
+    mas p {
+        agent ann: a.asl { roles: boss in o.g, guard in o.g }
+        organisation o: o.xml {
+            group g: team {
+                players: ann cook
+                responsible-for: s
+            }
+            scheme s: work
+        }
+    }
+    """
+    found = check(folder, "!go.\n+!go <- .print(x).", project)
+    assert [
+        (each.severity, each.code, each.span.line if each.span else 0, each.message) for each in found
+    ] == [
+        (
+            "warning",
+            "no-effect",
+            3,
+            "the role 'boss' in 'o.g' has no effect: roles in organisations are not supported",
+        ),
+        (
+            "warning",
+            "no-effect",
+            3,
+            "the role 'guard' in 'o.g' has no effect: roles in organisations are not supported",
+        ),
+        ("warning", "no-effect", 4, "the organisation 'o' has no effect: organisations are not supported"),
+        ("note", "no-effect", 5, "the group 'g' has no effect: organisations are not supported"),
+        (
+            "warning",
+            "no-effect",
+            6,
+            "the role 'cook' of 'ann' in 'g' has no effect: roles in organisations are not supported",
+        ),
+        ("note", "no-effect", 9, "the scheme 's' has no effect: organisations are not supported"),
+    ]
+
+
+def test_a_comment_in_the_project_file_switches_a_warning_off(folder: Path) -> None:
+    project = PROJECT.replace(
+        "focus: lab.c }", "focus: lab.c  roles: boss in o.g } // jacaros: ignore no-effect"
+    )
+    assert check(folder, "!go.\n+!go <- inc.", project) == []
