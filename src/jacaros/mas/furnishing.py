@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
-from jacaros.env.kernel.signature import Parameter, Unsuitable, signature_of
+from jacaros.env.kernel.kinds import Unsuitable
+from jacaros.env.kernel.signature import Parameter, signature_of
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Atom
 from jacaros.mas.deployment import ArtifactSpec, FocusSpec, ProjectError, WorkspaceSpec
