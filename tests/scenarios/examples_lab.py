@@ -26,6 +26,7 @@ PROJECTS = (
     "03_fake_battery/robot_battery.jcm",
     "04_patrol/patrol.jcm",
     "05_house_cleaning/house_cleaning.jcm",
+    "07_shared_robot/shared_robot.jcm",
 )
 
 LONGEST = 3000.0
@@ -71,15 +72,15 @@ def example(project: str, beliefs: str) -> Deployment:
     return replace(deployment, agents=(replace(deployment.agents[0], beliefs=beliefs),))
 
 
-def spoilt(folder: Path, project: str, old: str, new: str) -> Path:
+def spoilt(folder: Path, project: str, old: str, new: str, program: str = "robot.asl") -> Path:
     """A copy of an example with one place of its program changed; gives the copied project file."""
     original = EXAMPLES / project
     copy = folder / "example"
     shutil.copytree(original.parent, copy)
-    program = copy / "robot.asl"
-    text = program.read_text(encoding="utf-8")
+    path = copy / program
+    text = path.read_text(encoding="utf-8")
     assert text.count(old) == 1
-    program.write_text(text.replace(old, new), encoding="utf-8")
+    path.write_text(text.replace(old, new), encoding="utf-8")
     return copy / original.name
 
 

@@ -9,7 +9,7 @@ from examples_lab import EXAMPLES
 from jacaros.testing import collect, run_suites
 from jacaros.testing.suites import Suite
 
-FOLDERS = sorted(path for path in EXAMPLES.iterdir() if (path / "robot.asl").is_file())
+FOLDERS = sorted(path for path in EXAMPLES.iterdir() if (path / "tests").is_dir())
 
 
 def failed(suites: list[Suite]) -> set[str]:
@@ -22,7 +22,7 @@ def failed(suites: list[Suite]) -> set[str]:
 
 
 def test_every_example_has_tests() -> None:
-    assert len(FOLDERS) == 5
+    assert len(FOLDERS) == 6
     tests = {folder.name: sum(len(suite.tests) for suite in collect([folder])) for folder in FOLDERS}
     assert [name for name, number in tests.items() if number < 2] == []
 
@@ -45,13 +45,14 @@ def test_the_tests_of_an_example_pass(folder: Path) -> None:
         ("04_patrol", "operationRecharge; ", "", "goes_to_the_dock_when_the_battery_is_low"),
         ("04_patrol", "Percent < Least", "Percent > Least", "remembers_the_lowest_percentage_only"),
         ("05_house_cleaning", "!return;", "", "comes_back_into_its_room_after_a_recharge"),
+        ("07_shared_robot", "     hand_over;\n", "", "takes_the_robot_when_the_battery_is_low_and_gives_it_back_full"),
     ],
 )  # fmt: skip
 def test_a_spoilt_example_is_noticed(tmp_path: Path, example: str, old: str, new: str, noticed: str) -> None:
     copy = tmp_path / example
     shutil.copytree(EXAMPLES / example, copy)
-    program = copy / "robot.asl"
-    text = program.read_text(encoding="utf-8")
-    assert text.count(old) == 1
-    program.write_text(text.replace(old, new), encoding="utf-8")
+    texts = {path: path.read_text(encoding="utf-8") for path in copy.glob("*.asl")}
+    (program,) = (path for path, text in texts.items() if old in text)
+    assert texts[program].count(old) == 1
+    program.write_text(texts[program].replace(old, new), encoding="utf-8")
     assert noticed in failed([suite for suite in collect([copy]) if suite.path.suffix == ".asl"])

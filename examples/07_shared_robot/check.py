@@ -1,0 +1,76 @@
+"""Did the driver go round the corners, keep off the visitor, and the supervisor recharge in time and end the shift?
+
+Judged from the ground truth.  Only the driver knows the corners, only the supervisor the dock: that the robot was at
+both shows that both drove it.
+"""
+
+import sys
+from bisect import bisect_right
+from collections.abc import Sequence
+from itertools import groupby, pairwise
+from math import hypot
+
+from jacaros.sim import GroundTruth, Sample
+from jacaros.testing import Verdict, judge
+from jacaros.testing.docking import judge_recharging
+from jacaros.testing.paths import distance
+
+CORNERS = ((2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0))
+"""The route, in metres; the robot begins and ends at the last one."""
+
+REACHED = 0.05
+"""A corner is visited when the robot comes so near, in metres."""
+
+APART = 0.4
+"""Metres between the centres of two robots that do not touch, and a little more."""
+
+
+def check(truth: GroundTruth, rounds: int = 4, recharges: int = 2) -> Verdict:
+    """Judge a run of so many rounds and at least so many recharges."""
+    verdict = Verdict()
+    path = [*truth.path("turtlebot"), truth.latest("turtlebot")]
+    visits = corners_of(path)
+    verdict.measure("corners", len(visits) - 1)
+    route = [3, *(number % len(CORNERS) for number in range(rounds * len(CORNERS)))]
+    verdict.expect(visits == route, f"the corners were visited in the order {visits}, not {route}")
+
+    stays = judge_recharging(verdict, truth)
+    verdict.expect(len(stays) >= recharges, f"{len(stays)} recharges, not {recharges}")
+
+    nearest, waited = beside_the_visitor(path, truth.path("visitor"))
+    verdict.measure("metres from the visitor", nearest)
+    verdict.expect(nearest >= APART, f"the robot came as near as {nearest:.2f} m to the visitor")
+    verdict.measure("seconds it waited for the visitor", waited)
+    verdict.expect(waited >= 2.0, "the robot did not wait for the visitor")
+    verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
+
+    before, last = path[-2:]
+    moved = max(last.odometer - before.odometer, abs(last.yaw - before.yaw))
+    verdict.expect(moved < 0.001, "the robot did not stand still at the end")
+    return verdict
+
+
+def corners_of(path: Sequence[Sample]) -> list[int]:
+    """The corners in the order of their visits; coming back to the same one counts once."""
+    near = (
+        next((n for n, (x, y) in enumerate(CORNERS) if distance(sample, x, y) <= REACHED), None)
+        for sample in path
+    )
+    return [corner for corner, _ in groupby(each for each in near if each is not None)]
+
+
+def beside_the_visitor(path: Sequence[Sample], visitor: Sequence[Sample]) -> tuple[float, float]:
+    """How near the robot came to the visitor, and how many seconds it stood within a metre of it."""
+    times = [sample.time for sample in visitor]
+    nearest, waited = float("inf"), 0.0
+    for before, sample in pairwise(path):
+        other = visitor[max(0, bisect_right(times, sample.time) - 1)]
+        apart = hypot(sample.x - other.x, sample.y - other.y)
+        nearest = min(nearest, apart)
+        if apart <= 1.0 and sample.odometer - before.odometer < 0.001:
+            waited += sample.time - before.time
+    return nearest, waited
+
+
+if __name__ == "__main__":
+    sys.exit(judge(check, sys.argv[1:]))

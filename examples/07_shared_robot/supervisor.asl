@@ -1,0 +1,48 @@
+// The supervisor: it lets the driver patrol, takes the robot when the battery is low, and ends the shift.
+
+/* What the agent knows */
+
+dock(1, 1).  // places, in metres
+home(0, 0).
+rounds(4).  // the shift is over after so many
+recharges(0).
+
+/* The battery */
+
++diagnostics("Low Battery") : battery(Percent)
+  <- .print("I want the robot: ", Percent, " % left, that is for the way to the dock");
+     !recharge.
+
++!recharge : dock(X, Y) & recharges(N)
+  <- take_over;  // this plan waits here until the driver has handed it over
+     driveTo(X, Y)[artifact_name("wheels")];
+     ?battery(Percent);  // ? : what is it now?
+     .print("recharge ", N + 1, ", with ", Percent, " % left");
+     operationRecharge;
+     -+recharges(N + 1);
+     hand_over;
+     .print("the battery is full, the driver may have the robot").
+
+/* The end of the shift */
+
++visits(Corners) : rounds(N) & Corners == 4 * N
+  <- .print("I want the robot: the shift is over");
+     !finish.
+
++!finish : home(X, Y) & rounds(N) & recharges(R)
+  <- take_over;
+     driveTo(X, Y)[artifact_name("wheels")];
+     .print("the robot is at home: ", N, " rounds, ", R, " recharges");
+     .stopMAS.
+
+/* Something went wrong: the robot missed the dock, or something stood in its way */
+
+-!recharge[error_msg(Text)]
+  <- !give_up(Text).
+
+-!finish[error_msg(Text)]
+  <- !give_up(Text).
+
++!give_up(Text)
+  <- .print("I need help: ", Text);
+     .stopMAS(0, 1).  // the exit code tells that it went wrong
