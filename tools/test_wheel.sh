@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Build the wheel from a copy of the tree, and try it in a clean venv: a lone program, and the patrol.
+# Build the wheel from a copy of the tree, and try it in a clean venv: a lone program, the patrol, the behaviour tree.
 # The wheel stays in runs/dist for the tests with other interpreters.
 set -euo pipefail
 
@@ -39,4 +39,7 @@ test "$("$jacaros" run hello.asl)" = "[hello] hello"
 "$jacaros" run examples/04_patrol/patrol.jcm --clock fast --for 120 --seed 1 --replay patrol.html >patrol.log
 grep -q '^\[' patrol.log
 grep -q '</html>' patrol.html
-echo "the wheel works: hello, patrol ($(wc -l <patrol.log) lines), replay ($(wc -c <patrol.html) bytes)"
+"$scratch/venv/bin/python" -m pip install --quiet --disable-pip-version-check "$(echo "$scratch"/dist/*.whl)[behaviour-trees]"
+"$jacaros" run examples/07_shared_robot/shared_robot.jcm --clock fast --ground-truth truth.jsonl >shared_robot.log
+"$scratch/venv/bin/python" examples/07_shared_robot/check.py truth.jsonl | grep -q '^passed$'
+echo "the wheel works: hello, shared robot, patrol ($(wc -l <patrol.log) lines), replay ($(wc -c <patrol.html) bytes)"

@@ -1,6 +1,5 @@
 """The shared robot: an AgentSpeak agent and a behaviour tree use the same artifacts."""
 
-import asyncio
 import math
 import subprocess
 import sys
@@ -9,7 +8,8 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, checker, falsified, run, run_of, spoilt, world_with
 
-from jacaros.mas.mas import Mas
+from jacaros.env import Session
+from jacaros.mas.system import System
 from jacaros.sim import Event, GroundTruth, Sample
 from jacaros.testing import run_project
 
@@ -87,10 +87,8 @@ def test_the_robot_may_be_wanted_anywhere(level: float, tmp_path: Path) -> None:
 def test_only_who_has_the_robot_can_hand_it_over() -> None:
     failures = []
 
-    def started(mas: Mas) -> None:
+    def started(mas: System) -> None:
         assert mas.environment is not None
-        from jacaros.env import Session
-
         session = Session(mas.environment, "thief")
         mas.clock.call_later(
             2.0, lambda: failures.append(session.begin("hand_over", artifact="shift").outcome)
@@ -108,7 +106,7 @@ def test_only_who_has_the_robot_can_hand_it_over() -> None:
     ("program", "old", "new", "complaint"),
     [
         ("driver.py", "metres >= CLEAR", "metres >= 0", "the robot bumped into something"),
-        ("driver.py", "memory=True, children=[drive, Act", "memory=True, children=[NextCorner(), drive, Act", "in the order"),
+        ("driver.py", "children=[drive, Act", "children=[NextCorner(), drive, Act", "in the order"),
         ("driver.py", 'HasProperty("wanted_by", "supervisor")', 'HasProperty("wanted_by", "boss")', "recharges"),
         ("supervisor.asl", '+diagnostics("Low Battery")', '+diagnostics("Empty")', "the battery was empty"),
         ("supervisor.asl", "     operationRecharge;", "     .wait(1000);", "before the battery was full"),

@@ -1,6 +1,8 @@
 """What ticks a tree: on the run's clock, and as soon as something has happened."""
 
 import asyncio
+from collections.abc import Mapping
+from typing import Any
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -24,6 +26,7 @@ class TreeRunner:
         root: the root of a tree, or a ``BehaviourTree`` with its visitors and handlers.
         session: how the tree takes part in the environment; it focuses what the tree is to see.
         period: seconds of the run's clock between two ticks at most; None: only when something has happened.
+        setup: what the ``setup`` of the behaviours gets besides ``session``, such as a ``node`` for those of py_trees_ros.
 
     Attributes:
         tree: the ``BehaviourTree``.
@@ -34,7 +37,12 @@ class TreeRunner:
     """
 
     def __init__(
-        self, root: Behaviour | BehaviourTree, session: Session, *, period: float | None = 0.1
+        self,
+        root: Behaviour | BehaviourTree,
+        session: Session,
+        *,
+        period: float | None = 0.1,
+        setup: Mapping[str, Any] | None = None,
     ) -> None:
         if not isinstance(root, (Behaviour, BehaviourTree)):
             raise TypeError(f"a tree needs a root behaviour of py_trees, not {root!r}")
@@ -43,8 +51,8 @@ class TreeRunner:
         self.tree = root if isinstance(root, BehaviourTree) else BehaviourTree(root)
         self.session = session
         self.period = period
-        self._due = False
-        self._ends = False
+        self._setup: dict[str, Any] = {**(setup or {}), "session": session, "wake": self.wake}
+        self._running = self._due = self._ends = False
         self._waiting: asyncio.Future[None] | None = None
 
     async def run(self, forever: bool = False) -> Status:
@@ -58,15 +66,19 @@ class TreeRunner:
             The status of the root: SUCCESS or FAILURE, or what it was when `stop` was called.
 
         Raises:
+            RuntimeError: it is running already.
             Exception: what the author's own behaviours raise.
         """
-        self._ends = self._due = False
+        if self._running:
+            raise RuntimeError(f"the tree '{self.tree.root.name}' is running already")
+        self._running, self._ends, self._due = True, False, False
         off = (self.session.on_change(lambda _: self.wake()), self.session.on_signal(lambda _: self.wake()))
         try:
-            self.tree.setup(session=self.session, wake=self.wake)
+            self.tree.setup(**self._setup)
             await self._tick(forever)
             return self.tree.root.status
         finally:
+            self._running = False
             for each in off:
                 each()
             self._release()
@@ -117,12 +129,14 @@ class TreeRunner:
 
     def _release(self) -> None:
         """Cancel what is under way, whatever the author's behaviours do at their end."""
-        root = self.tree.root
-        for behaviour in root.iterate():
+        behaviours = list(self.tree.root.iterate())
+        for behaviour in behaviours:
             if isinstance(behaviour, ArtifactBehaviour):
                 behaviour.let_go()
         try:
-            if root.status is Status.RUNNING:
-                root.stop(Status.INVALID)
+            for behaviour in behaviours:
+                # Not the root alone: when a tick is broken off, those above do not know yet what runs.
+                if behaviour.status is Status.RUNNING:
+                    behaviour.stop(Status.INVALID)
         finally:
             self.tree.shutdown()

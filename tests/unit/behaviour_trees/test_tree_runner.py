@@ -122,6 +122,45 @@ def test_a_tree_can_run_again(on_rails):
     assert on_rails(scene) == [Status.SUCCESS, Status.SUCCESS, 4]
 
 
+def test_a_tree_runs_once_at_a_time(on_rails):
+    async def scene(rails):
+        runner = rails.runner(Act("drive", 2))
+        task = asyncio.create_task(runner.run())
+        await rails.clock.sleep(1)
+        with pytest.raises(RuntimeError, match=r"the tree 'drive\(2\)' is running already"):
+            await runner.run()
+        return await task
+
+    assert on_rails(scene) is Status.SUCCESS
+
+
+def test_a_tree_can_be_ticked_without_a_runner(on_rails):
+    async def scene(rails):
+        tree = py_trees.trees.BehaviourTree(Act("drive", 2))
+        tree.setup(session=rails.session)
+        while tree.root.status in (Status.INVALID, Status.RUNNING):
+            tree.tick()
+            await rails.clock.sleep(0.5)
+        return tree.root.status, tree.count
+
+    assert on_rails(scene) == (Status.SUCCESS, 5)
+
+
+def test_behaviours_of_others_get_what_they_need(on_rails):
+    class NeedsNode(Wrong):
+        def setup(self, **given):
+            self.node = given["node"]
+
+    async def scene(rails):
+        behaviour = NeedsNode(5)
+        runner = rails.runner(behaviour, setup={"node": "a node of ROS"})
+        rails.clock.call_later(0.15, runner.stop)
+        await runner.run()
+        return behaviour.node
+
+    assert on_rails(scene) == "a node of ROS"
+
+
 def test_it_can_be_stopped_from_outside(on_rails):
     async def scene(rails):
         runner = rails.runner(Act("drive", 9), period=None)
@@ -144,6 +183,28 @@ def test_when_its_task_is_cancelled_the_cart_stops(on_rails):
         return rails.session.value("at")
 
     assert on_rails(scene) == 2
+
+
+def test_when_a_tick_is_broken_off_all_that_runs_is_told(on_rails):
+    class Running(Behaviour):
+        ended = None
+
+        def update(self):
+            return Status.RUNNING
+
+        def terminate(self, new_status):
+            self.ended = new_status
+
+    async def scene(rails):
+        before = Running("before")
+        root = py_trees.composites.Parallel(
+            "p", py_trees.common.ParallelPolicy.SuccessOnAll(), [before, Wrong()]
+        )
+        with pytest.raises(RuntimeError):
+            await rails.runner(root).run()
+        return before.ended
+
+    assert on_rails(scene) is Status.INVALID
 
 
 @pytest.mark.parametrize("ends_badly", [False, True])
