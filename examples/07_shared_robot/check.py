@@ -8,7 +8,7 @@ import sys
 from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import groupby, pairwise
-from math import hypot
+from math import hypot, remainder, tau
 
 from jacaros.sim import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
@@ -44,9 +44,9 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 2) -> Verdict:
     verdict.expect(waited >= 2.0, "the robot did not wait for the visitor")
     verdict.expect(not truth.events_of("bump", "collision"), "the robot bumped into something")
 
-    before, last = path[-2:]
-    moved = max(last.odometer - before.odometer, abs(last.yaw - before.yaw))
-    verdict.expect(moved < 0.001, "the robot did not stand still at the end")
+    speed, turning = speed_at_end(path)
+    verdict.at_most("metres a second at the end", speed, 0.01)
+    verdict.at_most("radians a second at the end", turning, 0.02)
     return verdict
 
 
@@ -70,6 +70,15 @@ def beside_the_visitor(path: Sequence[Sample], visitor: Sequence[Sample]) -> tup
         if apart <= 1.0 and sample.odometer - before.odometer < 0.001:
             waited += sample.time - before.time
     return nearest, waited
+
+
+def speed_at_end(path: Sequence[Sample]) -> tuple[float, float]:
+    """How fast the robot drove and turned at last: metres and radians a second."""
+    last = path[-1]
+    before = next(sample for sample in reversed(path) if sample.time < last.time)
+    seconds = last.time - before.time
+    turned = remainder(last.yaw - before.yaw, tau)
+    return (last.odometer - before.odometer) / seconds, abs(turned) / seconds
 
 
 if __name__ == "__main__":
