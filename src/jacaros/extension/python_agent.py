@@ -19,12 +19,29 @@ from jacaros.terms.unifier import rename
 from jacaros.terms.values import Term
 
 
+class Mail(Protocol):
+    """The messages of an agent written in Python."""
+
+    def say(self, receiver: str, performative: str, content: Term) -> None:
+        """Send a message; raises `UnknownAgent`."""
+
+    async def ask(self, receiver: str, performative: str, content: Term, timeout: float | None) -> SpeechAct:
+        """Send a question and wait for the answer; raises `UnknownAgent` and TimeoutError."""
+
+    async def next_message(self, timeout: float | None) -> ReceivedMessage:
+        """Wait for the next message; raises TimeoutError."""
+
+
 class Host(Protocol):
     """What runs an agent written in Python, as far as the agent may use it."""
 
     name: str
     options: Mapping[str, str]
     beliefs: tuple[Literal, ...]
+
+    @property
+    def mail(self) -> Mail:
+        """Its messages."""
 
     @property
     def clock(self) -> Clock:
@@ -43,15 +60,6 @@ class Host(Protocol):
 
     def log(self, level: str, text: str) -> None:
         """Tell people something."""
-
-    def say(self, receiver: str, performative: str, content: Term, reply: str | None = None) -> None:
-        """Send a message; raises `UnknownAgent`."""
-
-    async def ask(self, receiver: str, performative: str, content: Term, timeout: float | None) -> SpeechAct:
-        """Send a question and wait for the answer; raises `UnknownAgent` and TimeoutError."""
-
-    async def next_message(self, timeout: float | None) -> ReceivedMessage:
-        """Wait for the next message; raises TimeoutError."""
 
     def start(self, work: Coroutine[Any, Any, Any]) -> Awaitable[Any]:
         """Run a coroutine beside the others of the agent."""
@@ -204,7 +212,7 @@ class PythonAgent(InEnvironment):
         """
         said = content_of(content, performative)
         for name in (receiver,) if isinstance(receiver, str) else receiver:
-            self._host.say(name, performative, rename(said))
+            self._host.mail.say(name, performative, rename(said))
 
     def broadcast(self, performative: str, content: object) -> None:
         """Send a message to all other agents."""
@@ -229,7 +237,9 @@ class PythonAgent(InEnvironment):
             TimeoutError: the time is over.
             AslError: the text is not AgentSpeak.
         """
-        answer = await self._host.ask(receiver, performative, content_of(question, performative), timeout)
+        answer = await self._host.mail.ask(
+            receiver, performative, content_of(question, performative), timeout
+        )
         if answer.performative == "untell":
             return None if performative in ("askOne", "ask-one") else []
         return heard(answer.content)
@@ -240,11 +250,11 @@ class PythonAgent(InEnvironment):
         Raises:
             TimeoutError: none came within *timeout* seconds.
         """
-        return await self._host.next_message(timeout)
+        return await self._host.mail.next_message(timeout)
 
     def messages(self) -> AsyncIterator[ReceivedMessage]:
         """All messages, for ``async for``: those that have come already, and those to come."""
-        return _Messages(self._host)
+        return _Messages(self._host.mail)
 
     # --- other agents --------------------------------------------------------------------------------------
 
@@ -308,11 +318,11 @@ def overridden(agent: PythonAgent, name: str) -> Callable[..., Any] | None:
 class _Messages:
     """The messages for an agent, without end."""
 
-    def __init__(self, host: Host) -> None:
-        self._host = host
+    def __init__(self, mail: Mail) -> None:
+        self._mail = mail
 
     def __aiter__(self) -> "_Messages":
         return self
 
     async def __anext__(self) -> ReceivedMessage:
-        return await self._host.next_message(None)
+        return await self._mail.next_message(None)

@@ -12,7 +12,7 @@ class Inbox:
 
     def __init__(self) -> None:
         self._messages: deque[SpeechAct] = deque()
-        self._news = asyncio.Event()
+        self._readers: deque[asyncio.Future[None]] = deque()
         self._asked: dict[str, asyncio.Future[SpeechAct]] = {}
         self._abandoned: set[str] = set()
         self._refuse: Callable[[SpeechAct], None] | None = None
@@ -30,17 +30,34 @@ class Inbox:
             self._refuse(message)
         else:
             self._messages.append(message)
-            self._news.set()
+            self._wake()
 
     def take(self) -> SpeechAct | None:
         """The next message, None while there is none."""
         return self._messages.popleft() if self._messages else None
 
-    async def arrival(self) -> None:
-        """Wait until there is a message."""
-        if not self._messages:
-            self._news.clear()
-            await self._news.wait()
+    def arrival(self) -> "asyncio.Future[None]":
+        """What ends when there may be a message; several readers are served in the order of their asking."""
+        reader: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._readers.append(reader)
+        reader.add_done_callback(self._passed_over)
+        return reader
+
+    def _wake(self) -> None:
+        while self._readers:
+            reader = self._readers.popleft()
+            if not reader.done():
+                reader.set_result(None)
+                return
+
+    def _passed_over(self, reader: "asyncio.Future[None]") -> None:
+        if reader in self._readers:
+            self._readers.remove(reader)
+
+    def give_up(self) -> None:
+        """A reader was cancelled, perhaps when it had been woken already: the message is for the next one."""
+        if self._messages:
+            self._wake()
 
     def ask(self, question: str) -> "asyncio.Future[SpeechAct]":
         """A place for the answer to a question, which `forget` gives up."""

@@ -2,28 +2,24 @@
 
 import asyncio
 from collections.abc import Callable, Coroutine, Iterable, Mapping
-from functools import partial
-from inspect import isawaitable
 from typing import Any
 
 from jacaros.asl.nodes import Literal as LiteralNode
 from jacaros.bdi.act import Completion, Percept
 from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct, message_id
+from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.env.errors import WorkspaceError
 from jacaros.env.session import Session
 from jacaros.errors import JacarosError
-from jacaros.extension.conversation import ReceivedMessage
-from jacaros.extension.errors import UnknownAgent
 from jacaros.extension.literal import Literal
-from jacaros.extension.python_agent import PythonAgent, overridden
-from jacaros.mas.activity import AgentTimer
+from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.attendance import Attendance
 from jacaros.mas.coroutines import without_exit
-from jacaros.mas.inbox import Inbox
+from jacaros.mas.correspondence import Correspondence
 from jacaros.mas.python_faults import fault_lines
+from jacaros.mas.python_handlers import Handlers
 from jacaros.terms.values import Term
 
 _PATIENCE = 5.0
@@ -57,14 +53,15 @@ class PythonAgentHost(AgentHost):
         self.options, self.beliefs = options, beliefs
         self.open_session: Callable[[], Session] | None = None
         self.attendance = Attendance(run.activity, self._settled)
-        self.inbox = Inbox()
+        self.mail = Correspondence(
+            name, self.send, self.agent_names, run.clock, run.activity, self.attendance
+        )
         self.mind = _Task(self, mind_options)
         self._agent = agent
-        self._handlers = _Handlers(self, agent)
+        self._handlers = Handlers(agent, self.mail, self.attendance, self.start)
         self._session: Session | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
-        self._messages = 0
-        self._leaving = False
+        self._leaving = self._closed = False
         agent._host = self
 
     @property
@@ -93,7 +90,7 @@ class PythonAgentHost(AgentHost):
         with self.attendance.waiting():
             while others := [task for task in self._tasks if task is not own]:
                 await asyncio.wait(others)
-        self.inbox.close(self._refuse)
+        self.mail.close()
 
     def start(self, work: Coroutine[Any, Any, Any]) -> "asyncio.Task[Any]":
         """Run a coroutine of the agent; its exception ends the agent."""
@@ -111,7 +108,8 @@ class PythonAgentHost(AgentHost):
     def _done(self, task: "asyncio.Task[Any]") -> None:
         self._tasks.pop(task, None)
         error = None if task.cancelled() else task.exception()
-        if error is not None:
+        # A signal from the keyboard ends the run, wherever it strikes.
+        if error is not None and not self._closed and not isinstance(error, KeyboardInterrupt):
             self._failed(error)
         if self._leaving and not self._tasks and self._session is not None:
             self._session.close()
@@ -158,8 +156,18 @@ class PythonAgentHost(AgentHost):
                     f"[{self.name}] warning: the agent did not end within {_PATIENCE:g} s of its cancellation"
                 )
                 self._run.console.log(told, "warning")
+        self._closed = True
         if self._session is not None:
             self._session.close()
+
+    def _check(self) -> None:
+        """Let an agent that would go on for ever after its end do so no more.
+
+        Raises:
+            JacarosError: everything is closed.
+        """
+        if self._closed:
+            raise JacarosError(f"agent {self.name} has ended")
 
     # ---- time
 
@@ -170,12 +178,14 @@ class PythonAgentHost(AgentHost):
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the run's clock."""
+        self._check()
         with self.attendance.under_way():
             await self._run.clock.sleep(seconds)
         self._run.clock.busy(1)
 
     async def turn(self) -> None:
         """Let others have their turn; it counts as a reasoning cycle, so that a virtual clock moves on."""
+        self._check()
         self._run.clock.busy(1)
         with self.attendance.under_way():
             await asyncio.sleep(0)
@@ -203,93 +213,8 @@ class PythonAgentHost(AgentHost):
 
     def print(self, text: str) -> None:
         """Show a line of output; also while the agent is ending."""
-        if self._tasks or not self._ended:
+        if not self._closed and (self._tasks or not self._ended):
             self._show(text)
-
-    # ---- messages
-
-    def say(self, receiver: str, performative: str, content: Term, reply: str | None = None) -> None:
-        """Send a message.
-
-        Raises:
-            UnknownAgent: there is no such agent.
-        """
-        self._say(receiver, performative, content, self._next_id(), reply)
-
-    def _next_id(self) -> str:
-        self._messages += 1
-        return message_id(self._messages, self.name)
-
-    def _say(self, receiver: str, performative: str, content: Term, id: str, reply: str | None) -> None:
-        target = self.name if receiver == "self" else receiver
-        sender = "self" if target == self.name else self.name
-        if not self.send(SpeechAct(performative, sender, target, content, id, reply)):
-            raise UnknownAgent(receiver, self.agent_names())
-
-    async def ask(self, receiver: str, performative: str, content: Term, timeout: float | None) -> SpeechAct:
-        """Send a question and wait for the answer.
-
-        Raises:
-            UnknownAgent: there is no such agent.
-            TimeoutError: no answer came within *timeout* seconds.
-        """
-        id = self._next_id()
-        answer = self.inbox.ask(id)
-        try:
-            self._say(receiver, performative, content, id, None)
-            await self._wait_for(answer, timeout, f"no answer from {receiver}")
-            if answer.result().performative == "undelivered":
-                raise UnknownAgent(receiver, self.agent_names())
-            return answer.result()
-        finally:
-            self.inbox.forget(id)
-
-    async def next_message(self, timeout: float | None) -> ReceivedMessage:
-        """Wait for the next message.
-
-        Raises:
-            TimeoutError: none came within *timeout* seconds.
-        """
-        while (message := self.inbox.take()) is None:
-            if timeout is None:
-                with self.attendance.waiting():
-                    await self.inbox.arrival()
-            else:
-                arrival = asyncio.ensure_future(self.inbox.arrival())
-                try:
-                    await self._wait_for(arrival, timeout, "no message")
-                finally:
-                    arrival.cancel()
-        return ReceivedMessage(message, self._answer)
-
-    async def _wait_for(self, future: "asyncio.Future[Any]", timeout: float | None, what: str) -> None:
-        if timeout is None:
-            with self.attendance.waiting():
-                await future
-            return
-        over = asyncio.get_running_loop().create_future()
-        timer = AgentTimer(self._run.clock, self._run.activity, timeout, lambda: over.set_result(None))
-        try:
-            with self.attendance.waiting():
-                await asyncio.wait((future, over), return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            timer.cancel()
-            over.cancel()
-        if not future.done():
-            raise TimeoutError(f"{what} within {timeout:g} s")
-
-    def _answer(self, question: SpeechAct, performative: str, content: Term) -> None:
-        receiver = question.sender
-        self._say(receiver, performative, content, self._next_id(), question.id)
-
-    def _refuse(self, message: SpeechAct) -> None:
-        """Answer what nobody reads any more: a question has no answer."""
-        received = ReceivedMessage(message, self._answer)
-        if received.is_question:
-            try:
-                received.reply(None)
-            except UnknownAgent:
-                return
 
 
 class _Task:
@@ -316,7 +241,7 @@ class _Task:
 
     def receive(self, message: SpeechAct) -> None:
         """Take a message in."""
-        self._host.inbox.put(message)
+        self._host.mail.inbox.put(message)
 
     def accept_kill(self, killer: str) -> bool:
         """Whether another agent may end this one."""
@@ -335,52 +260,3 @@ class _Task:
 
     def shut_down_in(self, milliseconds: float) -> None:
         """Nothing: it is cancelled when the time has come."""
-
-
-class _Handlers:
-    """Calls the handlers that an agent has, one after the other, in the order of what happened."""
-
-    def __init__(self, host: PythonAgentHost, agent: PythonAgent) -> None:
-        self._host = host
-        self._on_message = overridden(agent, "on_message")
-        self._on_signal = overridden(agent, "on_signal")
-        self._on_property = overridden(agent, "on_property")
-        self._waiting: asyncio.Queue[Callable[[], Any]] = asyncio.Queue()
-
-    @property
-    def wanted(self) -> bool:
-        """Whether the agent has handlers."""
-        return any((self._on_message, self._on_signal, self._on_property))
-
-    async def serve(self) -> None:
-        """Call them until the agent ends."""
-        if self._on_message is not None:
-            self._host.start(self._read())
-        while True:
-            with self._host.attendance.waiting():
-                handle = await self._waiting.get()
-            done = handle()
-            if isawaitable(done):
-                await done
-
-    def listen(self, session: Session) -> None:
-        """Note what the session of the agent perceives, from its beginning on."""
-        if self._on_signal is not None:
-            on_signal = self._on_signal
-            session.on_signal(lambda signal: self._waiting.put_nowait(partial(on_signal, signal)))
-        if self._on_property is not None:
-            on_change = self._on_property
-            session.on_change(lambda change: self._waiting.put_nowait(partial(on_change, change)))
-
-    async def _read(self) -> None:
-        while True:
-            message = await self._host.next_message(None)
-            self._waiting.put_nowait(partial(self._handle, message))
-
-    async def _handle(self, message: ReceivedMessage) -> None:
-        assert self._on_message is not None
-        answer = self._on_message(message)
-        if isawaitable(answer):
-            answer = await answer
-        if message.is_question and not message.answered:
-            message.reply(answer)

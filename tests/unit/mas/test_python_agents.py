@@ -716,3 +716,18 @@ def test_it_may_be_ended_before_its_first_step(tmp_path: Path) -> None:
             assert mas.agents == ()
 
     jacaros.run(main(), clock="fast")
+
+
+def test_who_does_not_accept_its_end_is_told_of_and_ended(tmp_path: Path) -> None:
+    body = """
+async def run(self):
+    import asyncio
+    while True:
+        try:
+            await self.sleep(1)
+        except asyncio.CancelledError:
+            self.print("no")
+"""
+    result = alone(tmp_path, body, seconds=3, idle=False)
+    assert result.lines == ["[a] no"]
+    assert result.errors[0] == "[a] warning: the agent did not end within 5 s of its cancellation"
