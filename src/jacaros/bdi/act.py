@@ -56,6 +56,7 @@ class Percept:
         cause: the sensor message or property change behind it.
         taken: what the first mind that took it in made of it, for all that share it; theirs alone.
         event: the same for its event.
+        exchange: the same for it and the percept that follows it.
     """
 
     kind: str
@@ -64,3 +65,4 @@ class Percept:
     cause: Cause | None = None
     taken: Any = field(default=None, init=False, compare=False, repr=False)
     event: Any = field(default=None, init=False, compare=False, repr=False)
+    exchange: Any = field(default=None, init=False, compare=False, repr=False)

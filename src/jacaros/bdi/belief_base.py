@@ -189,6 +189,24 @@ class Table:
             del rows[row]
         return True
 
+    def exchange(self, old: Row, new: Row, annotations: tuple[Term, ...]) -> bool:
+        """`end` of one row and `begin` of another at once; False when that needs more."""
+        rows = self.rows
+        if (
+            rows.get(old) is not annotations
+            or new in rows
+            or self.late
+            or self._indexes
+            or self.searches is not None
+        ):
+            return False
+        last, value = rows.popitem()
+        if last is not old and last != old:
+            rows[last] = value
+            del rows[old]
+        rows[new] = annotations
+        return True
+
     def remove(self, row: Any) -> bool:
         """Take out a row, rule or open belief that is held; False when the base refuses."""
         if row in self.late:

@@ -9,7 +9,7 @@ from jacaros.bdi import rescue, unkeyed_percepts
 from jacaros.bdi.act import Percept
 from jacaros.bdi.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Posted
+from jacaros.bdi.event import Event, Posted
 from jacaros.bdi.rules import OpenFact, Rule
 from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
@@ -360,53 +360,39 @@ def _abolish_entry(
         external_change(agent, "-", symbol, row, held)
 
 
-def take_percepts(agent: Circumstance) -> None:  # noqa: C901 - most of an observer's time is spent here
+def take_percepts(agent: Circumstance) -> None:
     """Bring the belief base in line with what was noticed, and raise the events, in order."""
     beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
-    watched = agent.event_waits or agent.subplans or agent.options.events != "discard"
+    watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
     noticed = agent.percepts
     while noticed:
         percepts = noticed.popleft()
         try:
-            for percept in percepts:
-                literal, annotations, kind = percept.literal, percept.annotations, percept.kind
-                symbol, row, is_flat = percept.taken or _taken(percept)
-                if is_flat is None:
-                    _take_unkeyed(agent, percept, symbol, row)
-                    continue
-                # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
-                if kind == "add":
-                    change = ADDED[symbol]
+            if len(percepts) == 2 and not watched:
+                # What is usual, for many agents many times a second: one property has another value.
+                old, new = percepts
+                exchange = old.exchange
+                if exchange is None or exchange[0] is not new:
+                    exchange = _exchange(old, new)
+                _, symbol, row, new_row, removed, added = exchange
+                if symbol is not None and new.literal not in holders:
+                    annotations = new.annotations
+                    held_by = holders.pop(old.literal, None)
                     table = beliefs[symbol]
                     if (
-                        literal in holders
-                        or table.__class__ is not Table
-                        or not is_flat
-                        or not table.begin(row, annotations)
+                        held_by is annotations
+                        and table.__class__ is Table
+                        and table.exchange(row, new_row, annotations)
                     ):
-                        if not _take_percept(agent, symbol, row, literal, annotations):
-                            continue
-                    else:
-                        holders[literal] = annotations
-                elif kind == "remove":
-                    change = DELETED[symbol]
-                    held_by = holders.pop(literal, None)
-                    table = beliefs[symbol]
-                    if (
-                        held_by is not annotations
-                        or table.__class__ is not Table
-                        or not table.end(row, annotations)
-                    ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
+                        holders[new.literal] = annotations
+                        if selects[removed] is not None:
+                            post(old.event or _event(old, removed, row))
+                        if selects[added] is not None:
+                            post(new.event or _event(new, added, new_row))
                         continue
-                else:
-                    change = ADDED[symbol]
-                if watched:
-                    external_change(agent, change.operator, symbol, row, annotations, percept.cause)
-                elif selects[change] is not None:
-                    event = percept.event
-                    if event is None:
-                        event = percept.event = ((change, *row), None, annotations, percept.cause)
-                    post(event)
+                    if held_by is not None:
+                        holders[old.literal] = held_by
+            _apply(agent, percepts, watched)
         except InternalError:
             raise
         except Exception as fault:
@@ -415,17 +401,47 @@ def take_percepts(agent: Circumstance) -> None:  # noqa: C901 - most of an obser
         agent.do_soon(_nothing)
 
 
-def _is_flat(row: Row) -> bool:
-    """Whether a row holds numbers, strings and atoms only."""
-    for argument in row:  # noqa: SIM110 - `all` would make a generator for every percept
-        if argument.__class__ not in ATOMIC:
-            return False
-    return True
+def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
+    """Bring the belief base in line with what was noticed at once, and raise the events, in order."""
+    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
+    for percept in percepts:
+        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
+        symbol, row, is_flat, change = percept.taken or _taken(percept)
+        if is_flat is None:
+            _take_unkeyed(agent, percept, symbol, row)
+            continue
+        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
+        if kind == "add":
+            table = beliefs[symbol]
+            if (
+                literal in holders
+                or table.__class__ is not Table
+                or not is_flat
+                or not table.begin(row, annotations)
+            ):
+                if not _take_percept(agent, symbol, row, literal, annotations):
+                    continue
+            else:
+                holders[literal] = annotations
+        elif kind == "remove":
+            held_by = holders.pop(literal, None)
+            table = beliefs[symbol]
+            if (
+                held_by is not annotations or table.__class__ is not Table or not table.end(row, annotations)
+            ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
+                continue
+        if watched:
+            external_change(agent, change.operator, symbol, row, annotations, percept.cause)
+        elif selects[change] is not None:
+            post(percept.event or _event(percept, change, row))
 
 
-def _taken(percept: Percept) -> tuple[Functor, Row, bool | None]:
-    """Functor and arguments of a percept, and whether these are flat (None: not even to be looked up); kept with it for
-    all who share it."""
+Taken = tuple[Functor, Row, bool | None, Trigger]
+
+
+def _taken(percept: Percept) -> Taken:
+    """Functor and arguments of a percept, whether these are flat (None: not even to be looked up), and the kind of its
+    event; kept with it for all who share it."""
     literal = percept.literal
     if literal.__class__ is tuple:
         symbol, row = literal[0], literal[1:]
@@ -433,11 +449,40 @@ def _taken(percept: Percept) -> tuple[Functor, Row, bool | None]:
         symbol, row, _ = parts(literal)
         if symbol is None:
             raise InternalError(f"a percept is no literal: {literal!r}")
+    change = (DELETED if percept.kind == "remove" else ADDED)[symbol]
     is_flat: bool | None = ATOMIC.issuperset(map(type, row))
     if not is_flat and unkeyed_percepts.is_unkeyed(row):
         is_flat = None
-    percept.taken = symbol, row, is_flat
-    return symbol, row, is_flat
+    taken: Taken = (symbol, row, is_flat, change)
+    percept.taken = taken
+    return taken
+
+
+def _event(percept: Percept, change: Trigger, row: Row) -> Event:
+    """The event of a percept, kept with it for all who share it."""
+    event: Event = ((change, *row), None, percept.annotations, percept.cause)
+    percept.event = event
+    return event
+
+
+def _exchange(old: Percept, new: Percept) -> tuple[Percept, Functor | None, Row, Row, Trigger, Trigger]:
+    """Two percepts as one change of a belief: the second, functor, both rows, and the kinds of the events; kept with the
+    first.  Without a functor they are something else."""
+    symbol, row, is_flat, removed = old.taken or _taken(old)
+    new_symbol, new_row, new_is_flat, added = new.taken or _taken(new)
+    alike = new_symbol is symbol and is_flat and new_is_flat and old.annotations is new.annotations
+    is_one = alike and old.kind == "remove" and new.kind == "add"
+    exchange = (new, symbol if is_one else None, row, new_row, removed, added)
+    old.exchange = exchange
+    return exchange
+
+
+def _is_flat(row: Row) -> bool:
+    """Whether a row holds numbers, strings and atoms only."""
+    for argument in row:  # noqa: SIM110 - `all` would make a generator for every percept
+        if argument.__class__ not in ATOMIC:
+            return False
+    return True
 
 
 def _take_unkeyed(agent: Circumstance, percept: Percept, symbol: Functor, row: Row) -> None:
