@@ -138,14 +138,16 @@ class VirtualClock:
         Args:
             at_most: seconds to move if the next timer is further away, or if there is none.
         """
-        while self._timers and self._timers[0].cancelled:
-            heapq.heappop(self._timers)
-        limit = None if at_most is None else self.elapsed + at_most
-        if not self._timers and limit is None:
+        timers = self._timers
+        while timers and timers[0].cancelled:
+            heapq.heappop(timers)
+        moment = timers[0].when if timers else None
+        if at_most is not None and (moment is None or moment > self.elapsed + at_most):
+            moment = self.elapsed + at_most
+        if moment is None:
             return False
         self._cycles = 0
-        moments = [timer.when for timer in self._timers[:1]]
-        self._move_to(min(moments if limit is None else [*moments, limit]))
+        self._move_to(moment)
         return True
 
     def pending(self) -> Sequence[Timer]:
@@ -153,12 +155,15 @@ class VirtualClock:
         return [timer for timer in self._timers if not timer.cancelled]
 
     def _move_to(self, moment: float) -> None:
-        while self._timers and self._timers[0].when <= moment:
-            timer = heapq.heappop(self._timers)
+        timers = self._timers
+        while timers and timers[0].when <= moment:
+            timer = heapq.heappop(timers)
             if not timer.cancelled:
-                self.elapsed = max(self.elapsed, timer.when)
+                if timer.when > self.elapsed:
+                    self.elapsed = timer.when
                 _call_soon(timer.ring)
-        self.elapsed = max(self.elapsed, moment)
+        if moment > self.elapsed:
+            self.elapsed = moment
 
 
 def _wake(sleeper: asyncio.Future[None]) -> None:
@@ -179,13 +184,21 @@ def _call_soon(callback: Callable[[], None]) -> None:
 class _VirtualSelector(selectors.DefaultSelector):
     """Lets the loop's "sleep until something happens" become a jump of the virtual clock."""
 
+    PATIENCE = 8
+    """As long as the loop has other things to do, it is only this often that it looks for something from outside."""
+
     def __init__(self, clock: VirtualClock) -> None:
         super().__init__()
         self.clock = clock
         self.foreign_work = 0
+        self._passed = 0
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
         if timeout is not None and timeout <= 0:
+            self._passed += 1
+            if self._passed < self.PATIENCE:
+                return []
+            self._passed = 0
             return super().select(0)
         events = super().select(0)
         if events:
@@ -199,12 +212,13 @@ class VirtualEventLoop(asyncio.SelectorEventLoop):
     """An asyncio loop whose waiting is done on a virtual clock: ``asyncio.sleep`` and time-outs take no real time."""
 
     def __init__(self, clock: VirtualClock) -> None:
+        self._virtual_clock = clock
         self.virtual_selector = _VirtualSelector(clock)
         super().__init__(self.virtual_selector)
 
     def time(self) -> float:
         """Seconds of virtual time since the beginning."""
-        return self.virtual_selector.clock.elapsed
+        return self._virtual_clock.elapsed
 
     def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
         self, executor: Any, func: Any, *args: Any

@@ -14,26 +14,27 @@ from jacaros.bdi.intention import Intention
 from jacaros.bdi.sensing import look_around
 from jacaros.bdi.urgency import handle_urgent_event
 from jacaros.errors import InternalError
-from jacaros.terms import arithmetic
+from jacaros.terms.arithmetic import AGENT
 
 
 def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for speed
     """Make at most *fuel* cycles; True when there is more to do."""
-    budget = agent.beliefs.budget
-    if budget is not None:
+    options = agent.options
+    if options.search_limit and agent.beliefs.budget is not None:
+        # Each cycle has the whole budget of searches.
         if fuel > 1:
             return all(run(agent, 1) for _ in range(fuel))
-        # Each cycle has the whole budget of searches.
-        budget.renew()
+        agent.beliefs.budget.renew()
     # Calls inside terms are evaluated for this agent meanwhile.
-    before, arithmetic.agent_call = arithmetic.agent_call, agent.call_own
+    before = AGENT.value
+    AGENT.value = agent.call_own
     agent.running = True
     try:
         begun = fuel
         if agent.asleep:
             edge_signals.awake(agent)
         events, intentions = agent.events, agent.intentions
-        always = agent.options.percept_interval == 1
+        always = options.percept_interval == 1
         while fuel > 0 and not agent.stopped:
             if agent.called or not always:
                 look_around(agent, agent.cycles + begun - fuel)
@@ -79,7 +80,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         return not agent.stopped and (fuel <= 0 or _has_work(agent))
     finally:
         agent.running = False
-        arithmetic.agent_call = before
+        AGENT.value = before
 
 
 def _has_work(agent: Circumstance) -> bool:

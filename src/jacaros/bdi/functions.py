@@ -8,8 +8,7 @@ from jacaros.asl.functions import FunctionNames
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
 from jacaros.compiler.runtime import run
-from jacaros.terms import arithmetic
-from jacaros.terms.arithmetic import ArithmeticFault, settle
+from jacaros.terms.arithmetic import AGENT, ArithmeticFault, settle
 from jacaros.terms.text import text
 from jacaros.terms.unifier import free_variables, resolve, undo
 from jacaros.terms.values import ACTION, Functor, Term, Var, functor
@@ -93,9 +92,9 @@ def _symbol(function: RegisteredFunction) -> Functor:
 @contextmanager
 def evaluating(agent: Circumstance) -> Iterator[None]:
     """While it is open, calls inside terms are evaluated for this agent."""
-    before = arithmetic.agent_call
-    arithmetic.agent_call = lambda term: call_own(agent, term)
+    before = AGENT.value
+    AGENT.value = lambda term: call_own(agent, term)
     try:
         yield
     finally:
-        arithmetic.agent_call = before
+        AGENT.value = before

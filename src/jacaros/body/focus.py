@@ -39,7 +39,7 @@ class FocusObserver:
         """Bring an observation to the mind."""
         writer, namespace = self._writer, self._namespace
         # What another observer has just had written is the same for this one.
-        if observation is writer.newest and namespace == writer.namespace:
+        if observation is writer.newest and namespace is writer.namespace:
             self.notice(writer.written)
         else:
             self.notice(writer.percepts(observation, namespace))

@@ -1,7 +1,6 @@
 """What stands between one mind and its run: Jason's agent architecture."""
 
 from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
-from functools import partial
 from random import Random
 from typing import Any, Protocol
 
@@ -141,7 +140,6 @@ class AgentHost:
         intercept: asked first about each action; True when it answers the action itself.  For tests.
         intercept_stop: the same for the end of the run.
         send: delivers a message; False when there is no such agent.
-        ready: the mind has something to do.
         run: lets the mind make up to so many cycles; True when there is more to do.
     """
 
@@ -151,6 +149,7 @@ class AgentHost:
         "_mind",
         "_random",
         "_run",
+        "_scheduler",
         "_seed",
         "body",
         "intercept",
@@ -158,7 +157,6 @@ class AgentHost:
         "make_body",
         "name",
         "queued",
-        "ready",
         "run",
         "send",
     )
@@ -171,9 +169,9 @@ class AgentHost:
         self.intercept: Callable[[Act], bool] | None = None
         self.intercept_stop: Callable[[float, int], bool] | None = None
         self._run = run
+        self._scheduler = run.scheduler
         # These are called for every message and every turn: there is nothing to be done on their way.
         self.send: Callable[[SpeechAct], bool] = run.deliver
-        self.ready: Callable[[], None] = partial(run.scheduler.make_ready, self)
         self.run: Callable[[int], bool] = _no_turn
         self._seed = seed
         self._random: Random | None = None
@@ -219,6 +217,11 @@ class AgentHost:
             self._mind.receive(message)
 
     # From here on, the port `jacaros.bdi.architecture.Architecture`.
+
+    def ready(self) -> None:
+        """The mind has something to do."""
+        if not self.queued:
+            self._scheduler.make_ready(self)
 
     @property
     def random(self) -> Random:

@@ -86,10 +86,24 @@ AFFIRM = functor("+", 1, kind=ARITHMETIC)
 Evaluator = Callable[..., Term]
 functions: dict[str, Evaluator] = {}
 """Arithmetic functions by name; they are given the evaluated arguments and return a number, or None when the
-arguments are not known yet.  Functions that need an agent are known to `agent_call`."""
+arguments are not known yet.  Functions that need an agent are known to `AGENT`."""
 
-agent_call: Callable[[Term], Term] = lambda term: None  # noqa: E731 - replaced by the agent that is running
-"""The value of a call of a function that needs an agent, or None while it has none."""
+
+class AgentCalls:
+    """Functions that need an agent.
+
+    Attributes:
+        value: gives the value of a call, or None while it has none; replaced by the agent that is running.
+    """
+
+    __slots__ = ("value",)
+
+    def __init__(self) -> None:
+        self.value: Callable[[Term], Term] = lambda term: None
+
+
+AGENT = AgentCalls()
+"""An object, for it is changed at every turn of an agent: a module takes ten times as long for that."""
 
 warn: Callable[[str, Term], None] = lambda what, value: None  # noqa: E731 - replaced by whoever runs agents
 """Told of operands that are no numbers, by what they are for and their value; the result is not a number then, as in
@@ -179,7 +193,7 @@ def _number(operand: Term, term: Term) -> float:
 def call(term: Term) -> Term:
     """Evaluate a function call; the call itself comes back while arguments are unknown."""
     function = functions.get(term[0].name)
-    value = agent_call(term) if function is None else function(*term[1:])
+    value = AGENT.value(term) if function is None else function(*term[1:])
     return term if value is None else value
 
 
