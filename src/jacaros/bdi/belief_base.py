@@ -192,18 +192,17 @@ class Table:
     def exchange(self, old: Row, new: Row, annotations: tuple[Term, ...]) -> bool:
         """`end` of one row and `begin` of another at once; False when that needs more."""
         rows = self.rows
-        if (
-            rows.get(old) is not annotations
-            or new in rows
-            or self.late
-            or self._indexes
-            or self.searches is not None
-        ):
+        if not rows or self.late or self._indexes or self.searches is not None:
             return False
         last, value = rows.popitem()
-        if last is not old and last != old:
-            rows[last] = value
-            del rows[old]
+        if value is annotations and last == old and (not rows or new not in rows):
+            # It was the newest, and mostly the only one.
+            rows[new] = annotations
+            return True
+        rows[last] = value
+        if rows.get(old) is not annotations or new in rows:
+            return False
+        del rows[old]
         rows[new] = annotations
         return True
 

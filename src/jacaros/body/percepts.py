@@ -61,27 +61,23 @@ class PerceptWriter:
         """
         if observation is self.newest and namespace == self.namespace:
             return self.written
-        about_property, about_signal = self._origin(observation.artifact)
-        cause = observation.cause
-        found = [
-            Percept(SIGNAL, self._literal(signal.name, signal.arguments, namespace), about_signal, cause)
-            for signal in observation.signals
-        ]
-        for old, new in observation.changed:
+        artifact, signals, changed, added, removed, cause = observation
+        about_property, about_signal = self._annotations.get(artifact) or self._origin(artifact)
+        found: list[Percept] = []
+        for signal in signals:
+            literal = self._literal(signal.name, signal.arguments, namespace)
+            found.append(Percept(SIGNAL, literal, about_signal, cause))
+        for old, new in changed:
             # What is written of a property is kept with it: for its end, and for all others who observe it.
             written = old.written
             literal, about = (
                 written if written and not namespace else self._write(old, about_property, namespace)
             )
             found.append(Percept(REMOVE, literal, about, cause))
-            written = new.written
-            literal, about = (
-                written if written and not namespace else self._write(new, about_property, namespace)
-            )
-            found.append(Percept(ADD, literal, about, cause))
-        for each in observation.added:
+            found.append(Percept(ADD, *self._write(new, about_property, namespace), cause))
+        for each in added:
             found.append(Percept(ADD, *self._write(each, about_property, namespace), cause))
-        for each in observation.removed:
+        for each in removed:
             found.append(Percept(REMOVE, *self._write(each, about_property, namespace), cause))
         self.newest, self.namespace, self.written = observation, namespace, found
         return found
