@@ -64,9 +64,8 @@ def types_of(
             raise
         except Exception as error:
             told = str(error) or type(error).__name__
-            wrong.append(
-                Diagnostic("error", told, artifact.type_span or artifact.span, _where(artifact.type_name))
-            )
+            hint = None if "did you mean" in told else _where(artifact.type_name)
+            wrong.append(Diagnostic("error", told, artifact.type_span or artifact.span, hint))
     if wrong:
         raise ProjectError(wrong)
     return found
