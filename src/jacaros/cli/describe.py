@@ -1,17 +1,22 @@
 """``jacaros describe TYPE|FILE``."""
 
-import inspect
+import dataclasses
+import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
 from jacaros.env.artifact import Artifact
-from jacaros.env.kernel.declaration import DeclaredOperation
-from jacaros.env.kernel.interface import OperationTable
+from jacaros.env.errors import UnknownArtifactType
+from jacaros.env.manual import Manual, describe
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.loading import load_deployment
+from jacaros.project_modules import ProjectModules
+
+PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
 
 @click.command("describe", short_help="Tell what an artifact type or a project offers.")
@@ -23,20 +28,33 @@ from jacaros.mas.loading import load_deployment
     metavar="FOLDER",
     help="Folder of the project whose own artifacts count (default: this one).",
 )
-def command(what: str, project: Path) -> None:
-    """Tell what WHAT offers: an artifact type (operations), or a project file (agents, artifacts)."""  # fmt: skip
-    if what.endswith((".asl", ".mas2j", ".jcm")):
-        lines = _project(load_deployment(what))
+@click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
+def command(what: str, project: Path, as_json: bool) -> None:
+    """Tell what WHAT offers: an artifact type, a Python file of them, or a project file."""
+    if what.endswith(PROJECT_FILES):
+        described = _Project(load_deployment(what), Path(what).parent)
+        click.echo(_json(described.data()) if as_json else "\n".join(described.lines()))
+        return
+    manuals = [
+        describe(kind) for kind in (_types_in(Path(what)) if what.endswith(".py") else [_find(what, project)])
+    ]
+    if as_json:
+        click.echo(
+            _json([dataclasses.asdict(manual) for manual in manuals] if len(manuals) != 1 else manuals[0])
+        )
     else:
-        lines = _artifact_type(_find(what, project))
-    for line in lines:
-        click.echo(line)
+        click.echo("\n\n".join(map(str, manuals)))
+
+
+def _json(data: Any) -> str:
+    return json.dumps(
+        dataclasses.asdict(data) if isinstance(data, Manual) else data, indent=2, ensure_ascii=False
+    )
 
 
 def _find(name: str, folder: Path) -> type[Artifact]:
     # Imported here: all built-in artifacts come with it.
     from jacaros.artifacts.registry import type_finder
-    from jacaros.env.errors import UnknownArtifactType
 
     try:
         return type_finder(folder)(name)
@@ -44,45 +62,79 @@ def _find(name: str, folder: Path) -> type[Artifact]:
         raise UsageError(str(unknown)) from unknown
 
 
-def _artifact_type(artifact_type: type[Artifact]) -> Iterator[str]:
-    yield artifact_type.__name__
-    yield from _indented(inspect.getdoc(artifact_type) or "")
-    for title, table in (
-        ("operations", artifact_type.interface.operations),
-        ("linked operations", artifact_type.interface.links),
-    ):
-        if list(table):
-            yield f"{title}:"
-            yield from _operations(table)
-    if artifact_type.ports:
-        yield f"out ports: {', '.join(artifact_type.ports)}"
+def _types_in(file: Path) -> list[type[Artifact]]:
+    """The artifact types of a Python file, in their order."""
+    if not file.is_file():
+        raise UsageError(f"there is no file {file}")
+    found = _own_types(ProjectModules(file.parent), file.stem)
+    if not found:
+        raise UsageError(f"{file} has no artifact type (a class derived from jacaros.env.Artifact)")
+    return found
 
 
-def _operations(table: OperationTable) -> Iterator[str]:
-    for declared in sorted(table, key=lambda each: each.name):
-        yield f"  {declared.name}({_parameters(declared)})"
-        summary = (inspect.getdoc(declared.function) or "").partition("\n")[0]
-        if summary:
-            yield f"      {summary}"
+def _own_types(modules: ProjectModules, name: str) -> list[type[Artifact]]:
+    return [
+        each
+        for module in modules.load(name)
+        for each in vars(module).values()
+        if isinstance(each, type) and issubclass(each, Artifact) and each.__module__ == module.__name__
+    ]
 
 
-def _parameters(declared: DeclaredOperation) -> str:
-    return str(declared.signature)
+class _Project:
+    """What a project consists of, and the types of its artifacts."""
 
+    def __init__(self, deployment: Deployment, folder: Path) -> None:
+        from jacaros.artifacts.registry import ARTIFACTS, type_finder
 
-def _indented(text: str) -> Iterator[str]:
-    for line in text.splitlines():
-        yield f"  {line}".rstrip()
+        self._deployment = deployment
+        modules = ProjectModules(folder)
+        find = type_finder(modules)
+        self._unknown: dict[str, str] = {}
+        types: dict[type[Artifact], None] = {}
+        for workspace in deployment.workspaces:
+            for artifact in workspace.artifacts:
+                try:
+                    types[find(artifact.type_name)] = None
+                except UnknownArtifactType as unknown:
+                    self._unknown[artifact.type_name] = str(unknown)
+        types.update(dict.fromkeys(_own_types(modules, ARTIFACTS)))
+        self._manuals = [describe(kind) for kind in types]
 
+    def lines(self) -> Iterator[str]:
+        """For people."""
+        deployment = self._deployment
+        yield deployment.name
+        for agent in deployment.agents:
+            yield f"  agent {agent.name}: {agent.source_path}"
+        for workspace in deployment.workspaces:
+            yield f"  workspace {workspace.name}"
+            for artifact in workspace.artifacts:
+                unknown = self._unknown.get(artifact.type_name)
+                yield f"    artifact {artifact.name}: {artifact.type_name}" + (
+                    f" ({unknown})" if unknown else ""
+                )
+        if deployment.world is not None:
+            yield f"  world {deployment.world}"
+        for manual in self._manuals:
+            yield ""
+            yield str(manual)
 
-def _project(deployment: Deployment) -> Iterator[str]:
-    yield deployment.name
-    for agent in deployment.agents:
-        written = " (in Python)" if agent.is_python else ""
-        yield f"  agent {agent.name}: {agent.source_path}{written}"
-    for workspace in deployment.workspaces:
-        yield f"  workspace {workspace.name}"
-        for artifact in workspace.artifacts:
-            yield f"    artifact {artifact.name}: {artifact.type_name}"
-    if deployment.world is not None:
-        yield f"  world {deployment.world}"
+    def data(self) -> dict[str, Any]:
+        """For programs."""
+        deployment = self._deployment
+        return {
+            "name": deployment.name,
+            "agents": [{"name": agent.name, "source": str(agent.source_path)} for agent in deployment.agents],
+            "workspaces": [
+                {
+                    "name": workspace.name,
+                    "artifacts": [
+                        {"name": each.name, "type": each.type_name} for each in workspace.artifacts
+                    ],
+                }
+                for workspace in deployment.workspaces
+            ],
+            "world": deployment.world,
+            "types": [dataclasses.asdict(manual) for manual in self._manuals],
+        }

@@ -21,7 +21,7 @@ from jacaros.env.errors import (
 )
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId, resolve_path
-from jacaros.env.manual import Manual, describe
+from jacaros.env.manual import Manual, describe, manual_term
 from jacaros.env.observation import Observation, Observer, Signal
 from jacaros.env.operation import (
     OperationOutcome,
@@ -75,6 +75,7 @@ __all__ = [
     "initializer",
     "internal_operation",
     "link",
+    "manual_term",
     "operation",
     "plain",
     "resolve_path",

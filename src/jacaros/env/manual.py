@@ -1,13 +1,19 @@
 """Manuals: what an artifact type offers, for agents, people and the inspector."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.interface import Interface
-from jacaros.env.kernel.signature import Signature, signature_of
+from jacaros.env.kernel.signature import Signature
+from jacaros.env.operation import INTERNAL, LINK, OPERATION
+from jacaros.env.property import ObservableProperty
+from jacaros.env.values import Atom, Structure
+
+NOT_FOR_USERS = ("Properties", "Signals", "Attributes")
+"""Sections of a docstring that are shown elsewhere, or are for authors of artifacts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +39,7 @@ class OperationManual:
 
     Attributes:
         name: what its callers call it.
-        kind: ``operation``, ``linked operation`` or ``internal operation``.
+        kind: ``operation``, ``linked operation`` or ``internal operation``; ``init`` for what makes the artifact.
         usage: name and parameters in one line, outputs with a minus sign.
         parameters: those with a place of their own.
         more: True when any number of further arguments may follow.
@@ -53,50 +59,130 @@ class OperationManual:
 
 
 @dataclass(frozen=True, slots=True)
+class ObservableManual:
+    """A property or a signal.
+
+    Attributes:
+        name: the functor of the belief or event.
+        usage: the name with words for its values.
+        text: what it means, as its author describes it; empty when only the code tells of it.
+    """
+
+    name: str
+    usage: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Manual:
     """An artifact type.
 
     Attributes:
         type_name: name of the class.
         text: what it is for, as its author describes it.
-        usage: how it is made: ``init`` with its parameters.
+        inits: how it is made: each ``init`` with its parameters.
         operations: its operations: for agents, for other artifacts, for itself.
+        properties: its observable properties.
+        signals: what it signals.
         ports: its out ports.
     """
 
     type_name: str
     text: str
-    usage: str
+    inits: tuple[OperationManual, ...]
     operations: tuple[OperationManual, ...]
+    properties: tuple[ObservableManual, ...]
+    signals: tuple[ObservableManual, ...]
     ports: tuple[str, ...]
 
     def __str__(self) -> str:
-        lines = [f"{self.type_name}: {self.text}".rstrip(": "), f"  {self.usage}"]
-        for each in self.operations:
-            lines.append(f"  {each.kind} {each.usage}")
-            lines += [f"      {line}".rstrip() for line in each.text.splitlines()]
+        return "\n".join(self.lines())
+
+    def lines(self) -> Iterator[str]:
+        """The manual for people; what the artifact starts itself is not their concern."""
+        yield self.type_name
+        yield from _indented(self.text, 2)
+        yield from _titled("made with", map(_operation_lines, self.inits))
+        yield from _titled("properties", map(_observable_lines, self.properties))
+        yield from _titled("signals", map(_observable_lines, self.signals))
+        for title, kind in (("operations", OPERATION), ("linked operations", LINK)):
+            yield from _titled(
+                title, [_operation_lines(each) for each in self.operations if each.kind == kind]
+            )
         if self.ports:
-            lines.append(f"  out ports {', '.join(self.ports)}")
-        return "\n".join(lines)
+            yield f"out ports: {', '.join(self.ports)}"
 
 
-def describe(artifact_type: type[Artifact], interface: Interface | None = None) -> Manual:
+def _titled(title: str, parts: Iterable[Iterator[str]]) -> Iterator[str]:
+    began = False
+    for part in parts:
+        if not began:
+            yield f"{title}:"
+        began = True
+        yield from part
+
+
+def _operation_lines(operation: OperationManual) -> Iterator[str]:
+    traits = [
+        word for word, has in (("may wait", operation.guarded), ("pausable", operation.pausable)) if has
+    ]
+    yield f"  {operation.usage}" + (f"  [{', '.join(traits)}]" if traits else "")
+    yield from _indented(operation.text, 6)
+
+
+def _observable_lines(observable: ObservableManual) -> Iterator[str]:
+    yield f"  {observable.usage}"
+    yield from _indented(observable.text, 6)
+
+
+def _indented(text: str, width: int) -> Iterator[str]:
+    for line in text.splitlines():
+        yield f"{' ' * width}{line}".rstrip()
+
+
+def describe(
+    artifact_type: type[Artifact],
+    interface: Interface | None = None,
+    properties: Iterable[ObservableProperty] = (),
+) -> Manual:
     """Describe what artifacts of *artifact_type* offer.
+
+    Properties and signals are those of the sections ``Properties:`` and ``Signals:`` of its docstring, and those that its
+    code defines and sends by name.
 
     Args:
         artifact_type: the class.
         interface: the operations of one artifact that defines more of its own (`Workspace.interface`).
+        properties: those that one artifact has.
     """
+    # Imported here: reading sources is for those who ask for a manual only.
+    from jacaros.env import manual_sources as sources
+
     offered = interface if interface is not None else artifact_type.interface
     tables = (offered.operations, offered.links, offered.internals)
-    init = getattr(artifact_type, "init", None)
+    has = {each.name: _usage(each) for each in properties}
+    written = {**has, **sources.written_properties(artifact_type)}
     return Manual(
         artifact_type.__name__,
-        inspect.cleandoc(artifact_type.__doc__ or ""),
-        f"init({signature_of(init, skip_first=True) if init is not None else ''})",
+        sources.without_sections(inspect.cleandoc(artifact_type.__doc__ or ""), NOT_FOR_USERS),
+        tuple(map(_describe, offered.inits)) or (_NO_INIT,),
         tuple(_describe(declared) for table in tables for declared in table),
+        _observables(sources.described(artifact_type, "Properties"), written),
+        _observables(sources.described(artifact_type, "Signals"), sources.written_signals(artifact_type)),
         tuple(artifact_type.ports),
     )
+
+
+_NO_INIT = OperationManual("init", "init", "init()", (), False, "", False, False)
+
+
+def _usage(observed: ObservableProperty) -> str:
+    return f"{observed.name}({', '.join('_' for _ in observed.values)})" if observed.values else observed.name
+
+
+def _observables(told: dict[str, tuple[str, str]], written: dict[str, str]) -> tuple[ObservableManual, ...]:
+    rest = {name: (usage, "") for name, usage in written.items() if name not in told}
+    return tuple(ObservableManual(name, *each) for name, each in {**told, **rest}.items())
 
 
 def _describe(declared: DeclaredOperation) -> OperationManual:
@@ -118,4 +204,47 @@ def _parameters(signature: Signature) -> tuple[ParameterManual, ...]:
 
 
 def _text(source: Callable[..., object]) -> str:
-    return inspect.cleandoc(source.__doc__ or "")
+    from jacaros.env.manual_sources import without_sections
+
+    return without_sections(inspect.cleandoc(source.__doc__ or ""), ("Raises", "Returns"))
+
+
+def manual_term(manual: Manual) -> Structure:
+    """A manual as a term that agents can take apart.
+
+    ``manual(Type,Text,Inits,Operations,Properties,Signals,Ports)``: Type and all texts are strings, names are atoms.
+    An init is ``init(Parameters,Text)``; an operation, for agents, ``operation(Name,Parameters,Text)``, and for other
+    artifacts ``linked(Name,Parameters,Text)``; a parameter ``input(Name,Expected)``, ``optional(Name,Expected)``,
+    ``output(Name)`` or, for any number of further ones, the atom ``more``.  A property is
+    ``property(Name,Usage,Text)``, a signal ``signal(Name,Usage,Text)``, a port its name.
+    """
+    operations = [each for each in manual.operations if each.kind != INTERNAL]
+    return Structure(
+        "manual",
+        (
+            manual.type_name,
+            manual.text,
+            [Structure("init", (_parameter_terms(each), each.text)) for each in manual.inits],
+            [_operation_term(each) for each in operations],
+            [Structure("property", (Atom(each.name), each.usage, each.text)) for each in manual.properties],
+            [Structure("signal", (Atom(each.name), each.usage, each.text)) for each in manual.signals],
+            [Atom(port) for port in manual.ports],
+        ),
+    )
+
+
+def _operation_term(operation: OperationManual) -> Structure:
+    functor = "linked" if operation.kind == LINK else "operation"
+    return Structure(functor, (Atom(operation.name), _parameter_terms(operation), operation.text))
+
+
+def _parameter_terms(operation: OperationManual) -> list[object]:
+    terms: list[object] = [_parameter_term(parameter) for parameter in operation.parameters]
+    return [*terms, Atom("more")] if operation.more else terms
+
+
+def _parameter_term(parameter: ParameterManual) -> Structure:
+    if parameter.output:
+        return Structure("output", (Atom(parameter.name),))
+    functor = "optional" if parameter.optional else "input"
+    return Structure(functor, (Atom(parameter.name), parameter.expected))

@@ -277,7 +277,7 @@ class Workspace(ports.Workspace):
             UnknownArtifact: it is gone.
         """
         steps = self._steps_of(artifact_id)
-        return describe(steps.artifact_type, steps.interface)
+        return describe(steps.artifact_type, steps.interface, steps.publication.committed())
 
     def operations_changed(self) -> None:
         """Be told that an artifact has other operations now."""

@@ -9,7 +9,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.kernel.kinds import Unsuitable
-from jacaros.env.kernel.signature import Parameter, signature_of
+from jacaros.env.kernel.signature import Parameter
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Atom
 from jacaros.mas.deployment import ArtifactSpec, FocusSpec, ProjectError, WorkspaceSpec
@@ -83,10 +83,10 @@ def fitted(arguments: tuple[object, ...], artifact_type: "type[Artifact]") -> tu
 
     In JaCaMo a number in quotes is a number.  Here it is a text, unless that is not what the parameter takes.
     """
-    init = getattr(artifact_type, "init", None)
+    init = artifact_type.interface.inits.find("init", len(arguments))
     if init is None or not any(isinstance(argument, str) for argument in arguments):
         return arguments
-    signature = signature_of(init, skip_first=True)
+    signature = init.signature
     places: list[Parameter | None] = [*signature.parameters]
     places += [signature.rest] * (len(arguments) - len(places))
     return tuple(

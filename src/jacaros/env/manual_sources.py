@@ -1,0 +1,141 @@
+"""What the source and the docstrings of an artifact type tell of its properties and signals."""
+
+import ast
+import inspect
+import re
+import textwrap
+from collections.abc import Iterable, Iterator
+
+from jacaros.env.artifact import Artifact
+
+_DEFINES = {"define_property": 0, "signal": 0, "signal_to": 1}
+"""The methods that make something observable, and which of their arguments is its name."""
+
+_WORDS: dict[type, str] = {
+    bool: "true or false",
+    int: "number",
+    float: "number",
+    str: "text",
+    list: "list",
+    dict: "map",
+}
+
+Usages = dict[str, str]
+"""From a name to how it is written with its values, such as ``count(start)``."""
+
+Entries = dict[str, tuple[str, str]]
+"""From a name to how it is written, and what its author says of it."""
+
+
+def own_classes(artifact_type: type) -> list[type]:
+    """The class and those above it that their authors wrote, the most general last."""
+    return [each for each in artifact_type.__mro__ if issubclass(each, Artifact) and each is not Artifact]
+
+
+def written_properties(artifact_type: type) -> Usages:
+    """The properties that the code of the class defines by name, the most general class first."""
+    return _written(artifact_type, ("define_property",))
+
+
+def written_signals(artifact_type: type) -> Usages:
+    """The signals that the code of the class sends by name, the most general class first."""
+    return _written(artifact_type, ("signal", "signal_to"))
+
+
+def _written(artifact_type: type, methods: tuple[str, ...]) -> Usages:
+    found: Usages = {}
+    for each in reversed(own_classes(artifact_type)):
+        for name, usage in _calls(each, methods):
+            found.setdefault(name, usage)
+    return found
+
+
+def _calls(kind: type, methods: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(kind)))
+    except (OSError, TypeError, SyntaxError):  # made in a running program: nobody can read it
+        return
+    for node in _in_order(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in methods:
+            place = _DEFINES[node.func.attr]
+            name = node.args[place] if len(node.args) > place else None
+            if isinstance(name, ast.Constant) and isinstance(name.value, str):
+                values = ", ".join(map(_value, node.args[place + 1 :]))
+                yield name.value, f"{name.value}({values})" if values else name.value
+
+
+def _in_order(node: ast.AST) -> Iterator[ast.AST]:
+    for child in ast.iter_child_nodes(node):
+        yield child
+        yield from _in_order(child)
+
+
+def _value(node: ast.expr) -> str:
+    """A word for a value, from the expression that gives it."""
+    if isinstance(node, ast.Starred):
+        return "..."
+    if isinstance(node, ast.Name):
+        return node.id
+    if isinstance(node, ast.Attribute):
+        return node.attr.lstrip("_")
+    if isinstance(node, ast.Constant):
+        return _WORDS.get(type(node.value), "value")
+    if isinstance(node, ast.List | ast.ListComp | ast.Tuple):
+        return "list"
+    if isinstance(node, ast.JoinedStr):
+        return "text"
+    if isinstance(node, ast.Call):
+        return (
+            _value(node.args[0])
+            if node.args and not isinstance(node.args[0], ast.Starred)
+            else _called(node.func)
+        )
+    return "value"
+
+
+def _called(function: ast.expr) -> str:
+    if isinstance(function, ast.Name):
+        return function.id.lower()
+    return function.attr.lstrip("_") if isinstance(function, ast.Attribute) else "value"
+
+
+def described(artifact_type: type, section: str) -> Entries:
+    """The entries of a section such as ``Properties:`` in the docstrings of the class and those above it."""
+    found: Entries = {}
+    for each in reversed(own_classes(artifact_type)):
+        for usages, text in _entries(_section(inspect.cleandoc(each.__doc__ or ""), section)):
+            for usage in usages:
+                found[usage.partition("(")[0]] = (usage, text)
+    return found
+
+
+def _section(doc: str, wanted: str) -> str:
+    for part in re.split(r"\n\s*\n", doc):
+        head, _, rest = part.partition("\n")
+        if head == f"{wanted}:":
+            return inspect.cleandoc(rest)
+    return ""
+
+
+def _entries(section: str) -> Iterator[tuple[list[str], str]]:
+    """Usages with their text; lines that are indented further belong to the entry before."""
+    entries: list[str] = []
+    for line in section.splitlines():
+        if line.startswith(" ") and entries:
+            entries[-1] += f" {line.strip()}"
+        else:
+            entries.append(line.strip())
+    for entry in entries:
+        usage, _, text = entry.partition(": ")
+        yield _usages(usage.rstrip(":")), text
+
+
+def _usages(written: str) -> list[str]:
+    """Several usages are separated by commas outside of their brackets."""
+    return [each.strip() for each in re.split(r",\s*(?![^()]*\))", written)]
+
+
+def without_sections(doc: str, sections: Iterable[str]) -> str:
+    """A docstring without some of its sections."""
+    heads = {f"{section}:" for section in sections}
+    return "\n\n".join(part for part in doc.split("\n\n") if part.partition("\n")[0] not in heads)
