@@ -12,6 +12,9 @@ from jacaros.env.operation import OperationOutcome
 from jacaros.env.session_operation import SessionOperation
 from jacaros.env.values import Atom, Out, Structure, text
 
+MISTAKES = ("unknown_operation", "wrong_op_arguments")
+"""Functors of reasons that tell of a mistake in the tree and not of the world: people are told, too."""
+
 
 @dataclass(frozen=True, slots=True)
 class Failure:
@@ -134,6 +137,8 @@ class Act(ArtifactBehaviour):
         self.feedback_message = message if reason is None else f"{message} [{text(reason, True)}]"
         if self.failure_key is not None:
             self.board.set(self.failure_key, Failure(self.name, message, reason))
+        if isinstance(reason, Structure) and reason.functor in MISTAKES:
+            self.warn(message)
         return Status.FAILURE
 
 

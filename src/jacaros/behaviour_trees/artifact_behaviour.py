@@ -77,7 +77,15 @@ class ArtifactBehaviour(Behaviour):
     def complain(self, what: str, error: Exception) -> None:
         """Show in ``feedback_message`` that the author's own code raised, and log it; not at every tick."""
         self.feedback_message = f"{what} raised {type(error).__name__}: {error}"
-        if self.feedback_message != self._told:
-            self._told = self.feedback_message
+        if self._is_news(self.feedback_message):
             where = f"behaviour '{self.name}': {what} failed:"
             self.session.environment.log_error(self.session.name, where, error)
+
+    def warn(self, text: str) -> None:
+        """Log that the tree itself seems wrong; not at every tick."""
+        if self._is_news(text):
+            self.session.environment.log(f"[{self.session.name}] behaviour '{self.name}': {text}")
+
+    def _is_news(self, text: str) -> bool:
+        told, self._told = self._told, text
+        return told != text

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from py_trees.common import Status
 
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.env.errors import OperationFailed
+from jacaros.env.errors import OperationFailed, UnknownProperty
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observed import ObservedProperty
 from jacaros.env.values import equal, plain, text
@@ -39,10 +39,12 @@ class PropertyCheck(ArtifactBehaviour):
         """Look at the property."""
         try:
             seen = self.session.properties(self.property_name, artifact=self.artifact)
-        except OperationFailed as failure:
-            self.feedback_message = failure.message
+            if not seen:
+                self.session.value(self.property_name, artifact=self.artifact)
+        except (OperationFailed, UnknownProperty) as unknown:
+            self.feedback_message = str(unknown)
             return self.otherwise
-        self.feedback_message = ", ".join(map(_shown, seen)) or f"nobody shows {self.property_name}"
+        self.feedback_message = ", ".join(map(_shown, seen))
         try:
             return Status.SUCCESS if any(map(self._fits, seen)) else self.otherwise
         except Exception as error:
@@ -118,7 +120,7 @@ class PropertiesToBlackboard(ArtifactBehaviour):
     def update(self) -> Status:
         """Copy."""
         missing = [name for name, key in self.keys.items() if not self._copy(name, key)]
-        self.feedback_message = f"nobody shows {', '.join(missing)}" if missing else ""
+        self.feedback_message = f"no focused artifact shows {', '.join(missing)}" if missing else ""
         return Status.SUCCESS
 
     def _copy(self, name: str, key: str) -> bool:

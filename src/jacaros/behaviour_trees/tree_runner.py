@@ -32,7 +32,7 @@ class TreeRunner:
         tree: the ``BehaviourTree``.
 
     Raises:
-        TypeError: *root* is neither a behaviour nor a tree.
+        TypeError: *root* is neither a behaviour nor a tree, or *session* is no session.
         ValueError: *period* is not positive.
     """
 
@@ -46,6 +46,10 @@ class TreeRunner:
     ) -> None:
         if not isinstance(root, (Behaviour, BehaviourTree)):
             raise TypeError(f"a tree needs a root behaviour of py_trees, not {root!r}")
+        if not isinstance(session, Session):
+            raise TypeError(
+                f"a tree takes part by a Session, not by {session!r}; a PythonAgent has one: self.session"
+            )
         if period is not None and not period > 0:
             raise ValueError(f"the period of a tree is a positive number of seconds, not {period!r}")
         self.tree = root if isinstance(root, BehaviourTree) else BehaviourTree(root)

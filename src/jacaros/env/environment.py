@@ -130,6 +130,10 @@ class Environment:
             return self._tree.at(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)
 
+    def log(self, text: str) -> None:
+        """Write a line for people."""
+        self._setting.log(text)
+
     def log_error(self, who: str, what: str, error: BaseException) -> None:
         """Tell people that *what* went wrong in the code of *who*."""
         self._setting.log_error(who, what, error)

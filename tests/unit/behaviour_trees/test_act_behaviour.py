@@ -87,6 +87,28 @@ def test_whatever_is_wrong_is_a_failure_with_its_reason(on_rails, act, told):
     assert feedback.startswith(message)
 
 
+@pytest.mark.parametrize(
+    ("act", "told"),
+    [
+        (
+            lambda: Act("drive"),
+            [
+                "[tree] behaviour 'drive': no artifact of workspace /main has an operation drive/0; cart has drive/1"
+            ],
+        ),
+        (lambda: Act("drive", 20), []),
+    ],
+)
+def test_a_mistake_in_the_tree_is_told_to_people_once(on_rails, act, told):
+    async def scene(rails):
+        runner = rails.runner(act())
+        rails.clock.call_later(30, runner.stop)
+        await runner.run(forever=True)
+        return rails.told
+
+    assert on_rails(scene) == told
+
+
 def test_it_begins_anew_when_it_is_ticked_again(on_rails):
     async def scene(rails):
         runner = rails.runner(Act("drive", 2))

@@ -35,7 +35,7 @@ def status_of(on_rails, behaviour):
         (lambda: PropertyCheck("battery", lambda level: level > 20), Status.SUCCESS, "battery(100)"),
         (lambda: PropertyCheck("battery", lambda level: level < 20), Status.FAILURE, "battery(100)"),
         (lambda: PropertyCheck("battery"), Status.SUCCESS, "battery(100)"),
-        (lambda: PropertyCheck("baterry"), Status.FAILURE, "nobody shows baterry"),
+        (lambda: PropertyCheck("baterry"), Status.FAILURE, "did you mean battery"),
         (lambda: PropertyCheck("battery", artifact="cart"), Status.SUCCESS, "battery(100)"),
         (lambda: PropertyCheck("battery", artifact="crat"), Status.FAILURE, "did you mean cart"),
         (lambda: HasProperty("moving", "stopped"), Status.SUCCESS, "moving(stopped)"),
@@ -105,7 +105,7 @@ def test_properties_go_to_the_blackboard(on_rails):
         return before, after, dict(Blackboard.storage)
 
     before, after, end = on_rails(scene)
-    assert before == ({"/power": 100, "/place": 0}, "nobody shows colour")
+    assert before == ({"/power": 100, "/place": 0}, "no focused artifact shows colour")
     assert after == ({"/power": 100, "/place": 0, "/colour": "red"}, "")
     assert end == {}
 

@@ -250,6 +250,11 @@ def test_a_tree_needs_a_root(on_rails, root):
     on_rails(scene)
 
 
+def test_a_tree_needs_a_session():
+    with pytest.raises(TypeError, match=r"not by 'driver'; a PythonAgent has one: self\.session"):
+        TreeRunner(Timer(1), "driver")
+
+
 @pytest.mark.parametrize("period", [0, -1, float("nan")])
 def test_the_period_is_positive(on_rails, period):
     async def scene(rails):
