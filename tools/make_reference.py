@@ -56,7 +56,7 @@ GROUPS = (
     "functions",
 )
 """The pages about internal actions and functions."""
-SECTIONS = {"Options:": "Options", "Properties:": "Properties"}
+SECTIONS = {"Options:": "Options", "Properties:": "Properties", "Signals:": "Signals"}
 
 
 def main(folder: Path) -> None:

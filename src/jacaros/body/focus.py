@@ -15,6 +15,9 @@ from jacaros.terms.values import String, Term
 Watcher = Callable[[ArtifactId, bool], None]
 """Told of an artifact that is focused (True) or no more."""
 
+_PERSONAL = ("body_", "session_")
+"""With what the names of artifacts begin that stand for agents."""
+
 Notice = Callable[[list[Percept]], None]
 """Where percepts go."""
 
@@ -59,7 +62,7 @@ class FocusedArtifacts:
         self._notice = notice
         self._observers: dict[str | None, FocusObserver] = {}
         self._focused: dict[ArtifactId, dict[str | None, Workspace]] = {}
-        self._watched: dict[Workspace, Callable[[], None]] = {}
+        self._watched: dict[tuple[Workspace, bool], Callable[[], None]] = {}
         self._filtered: dict[tuple[ArtifactId, str | None], Observer] = {}
         self._bodies: dict[str, ArtifactId] = {}
         self._watchers: dict[str, Watcher] = {}
@@ -138,7 +141,7 @@ class FocusedArtifacts:
     def _take(self, workspace: Workspace, artifact: ArtifactId, namespace: str | None) -> None:
         is_first = artifact not in self._focused
         self._focused.setdefault(artifact, {})[namespace] = workspace
-        self._watch(workspace)
+        self._watch(workspace, artifact.name.startswith(_PERSONAL))
         if is_first:
             self._tell(ADD, workspace, artifact)
 
@@ -158,9 +161,10 @@ class FocusedArtifacts:
         for artifact in self.in_workspace(workspace):
             for namespace in tuple(self._focused[artifact]):
                 self.end(artifact, namespace)
-        stop_watching = self._watched.pop(workspace, None)
-        if stop_watching is not None:
-            stop_watching()
+        for personal in (False, True):
+            stop_watching = self._watched.pop((workspace, personal), None)
+            if stop_watching is not None:
+                stop_watching()
 
     def fall_silent(self) -> None:
         """Let the mind notice nothing more."""
@@ -175,16 +179,19 @@ class FocusedArtifacts:
             self._observers[namespace] = observer
         return observer
 
-    def _watch(self, workspace: Workspace) -> None:
-        """Hear of disposed artifacts: their properties go by themselves, ``focusing`` must be seen to."""
-        if workspace in self._watched:
+    def _watch(self, workspace: Workspace, personal: bool) -> None:
+        """Hear of disposed artifacts: their properties go by themselves, ``focusing`` must be seen to.
+
+        Of those that stand for agents too, if need be: there are as many as agents.
+        """
+        if (workspace, personal) in self._watched:
             return
 
         def look(artifact: ArtifactId, present: bool) -> None:
             if not present and artifact in self._focused:
                 self._lose(workspace, artifact)
 
-        self._watched[workspace] = workspace.watch(look)
+        self._watched[workspace, personal] = workspace.watch(look, personal)
 
     def _lose(self, workspace: Workspace, artifact: ArtifactId) -> None:
         for namespace in self._focused.pop(artifact):

@@ -64,8 +64,13 @@ class Workspace(Protocol):
     def lookup(self, name: str) -> ArtifactId:
         """Find an artifact by its name; raises `UnknownArtifact`."""
 
-    def watch(self, watcher: Callable[[ArtifactId, bool], None]) -> Callable[[], None]:
-        """Call *watcher* with every artifact that comes (True) or goes (False); gives what ends that."""
+    def watch(
+        self, watcher: Callable[[ArtifactId, bool], None], personal: bool = False
+    ) -> Callable[[], None]:
+        """Call *watcher* with every artifact that comes (True) or goes (False); gives what ends that.
+
+        With *personal* also with the bodies and sessions of agents, which are many.
+        """
 
     def providers(self, operation: str, arity: int) -> tuple[ArtifactId, ...]:
         """The artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
