@@ -87,17 +87,18 @@ class _Classes:
         return self._find(name), f"class {name}"
 
     def _find(self, name: str) -> Any:
-        """The class (or function, or module) of that name.
+        """The class (or module, which has functions) of that name.
 
         Beside the project, ``my.shapes.Square`` is in ``my/shapes.py``, and ``Square`` in ``artifacts.py``; else it is
-        looked for among the installed modules and the built-in names of Python.
+        looked for among the built-in names of Python and the installed modules.
         """
         path, _, last = name.rpartition(".")
         try:
             for module in self._modules.load(path or "artifacts"):
                 if hasattr(module, last):
                     return getattr(module, last)
-            return _installed(name) if path else getattr(builtins, name)
+            own = self._modules.load(name)
+            return own[0] if own else _installed(name)
         except InternalError:
             raise
         except FAULTS as error:
@@ -106,9 +107,11 @@ class _Classes:
 
 
 def _installed(name: str) -> Any:
-    """What a dotted name means: the longest beginning that is a module, and attributes of it."""
+    """What a name means: a built-in, or the longest beginning that is a module and attributes of it."""
+    if hasattr(builtins, name):
+        return getattr(builtins, name)
     parts = name.split(".")
-    for length in range(len(parts) - 1, 0, -1):
+    for length in range(len(parts), 0, -1):
         path = ".".join(parts[:length])
         try:
             found: Any = importlib.import_module(path)

@@ -1,0 +1,1 @@
++!remove <- lookupArtifact("c",C); disposeArtifact(C).

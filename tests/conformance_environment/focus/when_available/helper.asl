@@ -1,0 +1,2 @@
+!go.
++!go <- .wait(200); .print("making"); makeArtifact("c","Counter",[3]).

@@ -1,0 +1,1 @@
++go <- .print("arrived"); hit; waitForAll; .print("on 2").
