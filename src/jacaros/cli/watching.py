@@ -6,6 +6,7 @@ from types import TracebackType
 
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.meta_events import observe_goals
+from jacaros.cli.goal_news import GoalNews
 from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
 from jacaros.inspector.recorder import Recorder
@@ -16,12 +17,6 @@ from jacaros.mas.console import Console
 from jacaros.mas.system import System
 from jacaros.sim import World
 from jacaros.sim.process import GroundTruthFile
-
-_STATES = {
-    "executing": "pursued",
-    **{state: state for state in ("suspended", "resumed", "achieved", "failed", "dropped")},
-}
-"""States of goals that watchers hear of, in their words."""
 
 
 class Watching:
@@ -60,15 +55,10 @@ class Watching:
             watchers.append(self._view)
         self._watch = Watch(mas.clock, watchers, world)
         self._watch.start()
+        news = GoalNews(partial(self._watch.event, "goal"))
         for host in mas.directory:
             if isinstance(host.mind, Agent):
-                observe_goals(host.mind, partial(self._goal_changed, host.mind.name))
-
-    def _goal_changed(self, agent: str, state: str, goal: str, number: int) -> None:
-        """Tell the watchers what an agent pursues."""
-        told = _STATES.get(state)
-        if told is not None and goal.startswith("!") and self._watch is not None:
-            self._watch.event("goal", {"agent": agent, "goal": goal, "state": told, "id": number})
+                observe_goals(host.mind, partial(news, host.mind.name))
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""

@@ -1,0 +1,50 @@
+"""What watchers of a run are told of the agents' goals: each change once, and goals by numbers of their own."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import count
+
+Tell = Callable[[dict[str, object]], None]
+
+_OPEN = {"executing": "pursued", "resumed": "resumed", "suspended": "suspended"}
+_OVER = ("achieved", "failed", "dropped")
+_AT_WORK = ("pursued", "resumed")
+
+
+@dataclass(slots=True)
+class _Goal:
+    number: int
+    text: str
+    state: str
+
+
+class GoalNews:
+    """Tells watchers of goals, from what minds tell of them.
+
+    A mind tells that it works for a goal whenever a step of that has ended, and its numbers of goals are those of memory,
+    which differ from run to run.
+
+    Args:
+        tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
+            ``dropped``) and ``id``, counted from 1.
+    """
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self._numbers = count(1)
+        self._goals: dict[tuple[str, int], _Goal] = {}
+
+    def __call__(self, agent: str, state: str, goal: str, number: int) -> None:
+        """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""
+        if not goal.startswith("!") or (state not in _OPEN and state not in _OVER):
+            return
+        key, shown = (agent, number), _OPEN.get(state, state)
+        known = self._goals.get(key)
+        if known is None or known.text != goal:
+            known = self._goals[key] = _Goal(next(self._numbers), goal, "")
+        is_news = not (known.state in _AT_WORK and shown in _AT_WORK)
+        known.state = shown
+        if is_news:
+            self._tell({"agent": agent, "goal": goal, "state": shown, "id": known.number})
+        if state in _OVER:
+            del self._goals[key]

@@ -1,0 +1,45 @@
+"""What watchers are told of goals."""
+
+import pytest
+
+from jacaros.cli.goal_news import GoalNews
+
+
+@pytest.fixture
+def told():
+    """What was told, as ``id state goal``; called with what a mind tells."""
+    lines = []
+    news = GoalNews(lambda goal: lines.append(f"{goal['id']} {goal['agent']} {goal['state']} {goal['goal']}"))
+
+    def hear(*states, agent="bob", goal="!patrol", number=139_867):
+        for state in states:
+            news(agent, state, goal, number)
+        return lines
+
+    return hear
+
+
+def test_work_for_a_goal_is_told_once(told):
+    assert told("executing", "executing", "executing", "achieved") == [
+        "1 bob pursued !patrol",
+        "1 bob achieved !patrol",
+    ]
+
+
+def test_a_goal_that_is_resumed_is_not_pursued_anew(told):
+    told("executing", "suspended", "resumed", "executing", "failed")
+    assert [line.split()[2] for line in told()] == ["pursued", "suspended", "resumed", "failed"]
+
+
+def test_goals_are_counted_whatever_their_place_in_memory(told):
+    told("executing")
+    told("executing", agent="eve", number=1)
+    told("achieved")
+    told("executing")
+    told("executing", goal="!charge")
+    assert told()[-3:] == ["1 bob achieved !patrol", "3 bob pursued !patrol", "4 bob pursued !charge"]
+
+
+def test_what_is_no_goal_of_interest_is_passed_over(told):
+    assert told("executing", goal="+bump") == []
+    assert told("waiting") == []
