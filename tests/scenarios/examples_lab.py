@@ -27,6 +27,7 @@ PROJECTS = (
     "04_patrol/patrol.jcm",
     "05_house_cleaning/house_cleaning.jcm",
     "07_shared_robot/shared_robot.jcm",
+    "08_parcels/parcels.jcm",
 )
 
 LONGEST = 3000.0
