@@ -3,7 +3,7 @@
 from jacaros.env.artifact import Artifact, Out, operation
 from jacaros.env.default.console import write_line
 from jacaros.env.ids import ArtifactId
-from jacaros.env.manual import Manual, describe
+from jacaros.env.manual import Manual, describe, manual_term
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.workspace import Workspace
 
@@ -35,6 +35,11 @@ class ManualRepository(Artifact):
         """Print the manual of a type."""
         for line in self._content(type_name).splitlines():
             write_line(self, line)
+
+    @operation(name="getManual")
+    def give(self, what: ArtifactId | str, manual: Out) -> None:
+        """Give the manual of a type, or of one artifact with what it has defined for itself, as a term."""
+        manual.set(manual_term(self._manual(what)))
 
     def _content(self, type_name: str) -> str:
         stored = self._stored.get(type_name)
