@@ -161,6 +161,23 @@ def test_behaviours_of_others_get_what_they_need(on_rails):
     assert on_rails(scene) == "a node of ROS"
 
 
+def test_behaviours_of_a_project_use_the_session_and_wake_the_tree(on_rails):
+    class Reaches(ArtifactBehaviour):
+        def initialise(self):
+            self.seen = []
+            self.session.on_change(lambda change: (self.seen.append(change.now), self.wake()))
+
+        def update(self):
+            return Status.SUCCESS if (2,) in self.seen else Status.RUNNING
+
+    async def scene(rails):
+        runner = rails.runner(Reaches("at 2"), period=None)
+        await asyncio.gather(runner.run(), rails.at(1, "drive", 4))
+        return rails.ticks
+
+    assert on_rails(scene)[-1] == 3.0
+
+
 def test_it_can_be_stopped_from_outside(on_rails):
     async def scene(rails):
         runner = rails.runner(Act("drive", 9), period=None)
