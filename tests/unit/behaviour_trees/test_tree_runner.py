@@ -12,6 +12,7 @@ from py_trees.composites import Sequence
 
 from jacaros.behaviour_trees import (
     Act,
+    ArtifactBehaviour,
     HasProperty,
     PropertyCheck,
     Timeout,
