@@ -69,8 +69,7 @@ def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
 
 
 def _check_folder(folder: Path, findings: Findings) -> None:
-    for path in files_below(folder, PROJECTS):
-        _check_project(path, findings)
+    _check_projects(folder, findings)
     alone: dict[Path, Findings] = {}
     included: set[Path] = set()
     for path in files_below(folder, (".asl",)):
@@ -85,14 +84,29 @@ def _check_folder(folder: Path, findings: Findings) -> None:
         findings.files |= own.files
 
 
-def _check_project(path: Path, findings: Findings) -> None:
+def _check_projects(folder: Path, findings: Findings) -> None:
+    """Check the projects in a folder; those that another one uses, only as a part of that one."""
+    used: set[Path] = set()
+    alone: dict[Path, Findings] = {}
+    for path in files_below(folder, PROJECTS):
+        own = alone[path.resolve()] = Findings()
+        used |= _check_project(path, own)
+    for file, own in alone.items():
+        if file not in used:
+            findings.diagnostics += own.diagnostics
+        findings.files |= own.files
+
+
+def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
+    """Check a project with all that belongs to it; the project files that it uses."""
     findings.files.add(path.resolve())
     try:
         reading = read_project(path)
     except ProjectError as error:
         findings.diagnostics += [_of_project(each) for each in error.diagnostics]
-        return
+        return frozenset()
     deployment = reading.deployment
+    findings.files |= reading.used
     findings.diagnostics += [_of_project(each) for each in reading.diagnostics]
     folders = (deployment.base_path, *deployment.source_paths)
     findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, folders)]
@@ -109,6 +123,7 @@ def _check_project(path: Path, findings: Findings) -> None:
         # What agents in Python make, and what programs with errors would make, is not known.
         known = programs if len(programs) == len(different) else []
         findings.diagnostics += _of_artifacts(deployment, known, folders)
+    return reading.used
 
 
 def _of_artifacts(
@@ -188,7 +203,7 @@ def _check_program(
         own += Suppressions(source).unknown
     if agent is not None and agent.agent_class is not None:
         own = [each for each in own if each.code != NEVER_SELECTED]
-    findings.diagnostics += [each for each in own if _concerns_author(each, path)]
+    findings.diagnostics += [_located(each, agent) for each in own if _concerns_author(each, path)]
     return None if errors else whole
 
 
@@ -204,10 +219,23 @@ def _concerns_author(diagnostic: Diagnostic, path: Path) -> bool:
     return not file.startswith("$") and (diagnostic.code != NEVER_SELECTED or file == str(path))
 
 
+def _declaration(agent: AgentSpec) -> str:
+    """What the text that a project adds to a program is called."""
+    return f"the declaration of {agent.declared_name}"
+
+
+def _located(diagnostic: Diagnostic, agent: AgentSpec | None) -> Diagnostic:
+    """The diagnostic at the agent's place in the project file if it is about what the project adds."""
+    span = diagnostic.span
+    if agent is None or span is None or span.file.name != _declaration(agent):
+        return diagnostic
+    return replace(diagnostic, span=agent.span, opened=None)
+
+
 def _with_additions(program: nodes.Program, agent: AgentSpec | None) -> nodes.Program:
     if agent is None:
         return program
-    where = f"the declaration of {agent.declared_name}"
+    where = _declaration(agent)
     try:
         beliefs = parse_literals(agent.beliefs, where) if agent.beliefs.strip() else ()
         goals = parse_literals(agent.goals, where) if agent.goals.strip() else ()

@@ -8,6 +8,7 @@ from contextlib import suppress
 from typing import Final
 
 from jacaros.asl.spelling import close_matches
+from jacaros.mas.jcm_agents import KEYS as AGENT_KEYS
 from jacaros.mas.jcm_agents import JcmAgents
 from jacaros.mas.jcm_organisations import JcmOrganisations
 from jacaros.mas.jcm_values import NAME, SECTIONS, JcmValues
@@ -32,7 +33,7 @@ def read_jcm(cursor: ProjectCursor) -> ProjectPart:
 class _JcmReader(JcmValues):
     def __init__(self, cursor: ProjectCursor, part: ProjectPart) -> None:
         super().__init__(cursor, part)
-        self.agents = JcmAgents(cursor, part)
+        self.agents = JcmAgents(cursor, part, keys=AGENT_KEYS)
         self.workspaces = JcmWorkspaces(cursor, part, ENTRIES)
         self.organisations = JcmOrganisations(cursor, part)
 
@@ -45,7 +46,7 @@ class _JcmReader(JcmValues):
             while cursor.token.kind in NAME:
                 self.part.uses.append(self.file_name("a project file"))
                 cursor.accept(",")
-        opener = cursor.expect("{")
+        opener = cursor.expect("{", "the head of a .jcm file is: mas name {")
         while not cursor.accept("}"):
             if cursor.token.kind == "end":
                 cursor.fail("'{' is not closed", cursor.span_of(opener), "the file ends with }")

@@ -9,7 +9,7 @@ from jacaros.mas.project_cursor import Token, text_of
 from jacaros.mas.project_parts import AgentPart, FocusPart, JoinPart
 from jacaros.mas.unsupported import INSPECTORS, NODES, ROLES
 
-_KEYS: Final = (
+KEYS: Final = (
     *("beliefs", "goals", "join", "focus", "instances", "roles"),
     *("ag-class", "ag-arch", "ag-bb-class", "verbose", "debug", "host", "node"),
 )
@@ -37,7 +37,7 @@ class JcmAgents(JcmValues):
 
     def _entry(self, agent: AgentPart) -> None:
         cursor = self.cursor
-        key = self.key(_KEYS, "an agent")
+        key = self.key(KEYS, "an agent")
         match key.text:
             case "beliefs":
                 agent.beliefs += self.pieces()
@@ -71,7 +71,7 @@ class JcmAgents(JcmValues):
         span = cursor.span_of(key)
         if key.text in agent.options:
             cursor.warn(f"'{key.text}' is given twice; the last one counts", span)
-        close = [] if key.text in _KEYS else close_matches(key.text, _KEYS, 0.8)
+        close = [] if key.text in KEYS else close_matches(key.text, KEYS, 0.8)
         if close:
             message = f"'{key.text}' is kept as a parameter of your own"
             cursor.warn(message, span, f"did you mean '{close[0]}'?")

@@ -87,7 +87,7 @@ class JcmOrganisations(JcmValues):
             agent = cursor.advance()
             if agent.kind == "word":
                 part.agents.append((agent.text, cursor.span_of(agent)))
-            if cursor.token.kind != "word" or self.at_end():
+            if cursor.token.kind != "word" or cursor.token.first or self.at_end():
                 cursor.fail(
                     f"the role of '{agent.text}' is expected, not {cursor.token}",
                     hint="players are written: agent role, agent role",

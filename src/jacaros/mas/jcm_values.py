@@ -21,12 +21,20 @@ class JcmValues:
         cursor: the file and the place in it.
         part: what is read from the file.
         entries: words that begin an entry of the block that is read, besides its keys.
+        keys: the keys of that block.
     """
 
-    def __init__(self, cursor: ProjectCursor, part: ProjectPart, entries: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self,
+        cursor: ProjectCursor,
+        part: ProjectPart,
+        entries: tuple[str, ...] = (),
+        keys: tuple[str, ...] = (),
+    ) -> None:
         self.cursor = cursor
         self.part = part
         self.entries = entries
+        self.keys = keys
         self._inside = False
 
     def unsupported(self, topic: Topic, what: str, span: Span, detail: bool = False) -> None:
@@ -48,11 +56,16 @@ class JcmValues:
         cursor = self.cursor
         if cursor.at_key():
             return True
-        if cursor.token.text not in self.entries or cursor.token.kind != "word":
+        if cursor.token.kind != "word":
             return False
         following = cursor.peek()
+        if cursor.token.text in self.keys:
+            # The ':' was forgotten.
+            return cursor.token.first and following.kind in NAME and not following.first
+        if cursor.token.text not in self.entries:
+            return False
         if cursor.token.text == "debug":
-            return following.first or following.kind not in NAME
+            return following.first or following.kind not in NAME or cursor.peek(2).kind == ":"
         return following.kind == "word"
 
     def at_end(self) -> bool:
@@ -114,7 +127,8 @@ class JcmValues:
             known = list(known)
             close = close_matches(token.text, known)
             hint = f"did you mean '{close[0]}'?" if close and close[0] != token.text else None
-            hint = hint or f"{what} has {_listed([*self.entries, *(f'{each}:' for each in known)])}"
+            keys = [f"{each}:" for each in known if each not in self.entries]
+            hint = hint or f"{what} has {', '.join([*self.entries, *keys])}"
             cursor.fail(f"a ':' is missing behind '{token.text}'", hint=hint)
         if token.kind != "word":
             cursor.fail(f"'key:' is expected, not '{token.text}'")
@@ -126,7 +140,7 @@ class JcmValues:
         """Blame a key that has no meaning, and read its value."""
         known = list(known)
         close = close_matches(key.text, known)
-        hint = f"did you mean '{close[0]}'?" if close else f"{what} has {_listed(known)}"
+        hint = f"did you mean '{close[0]}'?" if close else f"{what} has {', '.join(known)}"
         self.cursor.report(f"'{key.text}' is no key of {what}", self.cursor.span_of(key), hint)
         self.pieces()
 
@@ -253,7 +267,3 @@ class JcmValues:
                 arguments = self.arguments()
             return Structure(name, arguments) if arguments else Atom(name)
         return Atom(name)
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(names)

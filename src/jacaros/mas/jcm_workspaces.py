@@ -60,6 +60,9 @@ class JcmWorkspaces(JcmValues):
         cursor = self.cursor
         cursor.advance()
         name = cursor.lower_name("the name of an artifact")
+        # Known from here on, also when the rest is wrong: who names it is not to be blamed.
+        part = ArtifactPart(ArtifactSpec(name.text, "", span=cursor.span_of(name)))
+        workspace.artifacts.append(part)
         cursor.expect(":", "artifact name : Class(arguments)")
         if cursor.token.kind not in NAME:
             cursor.fail(
@@ -77,8 +80,8 @@ class JcmWorkspaces(JcmValues):
                 self.entries = entries
         agents = tuple(agent for agent, _, _ in focused_by)
         spans = cursor.span_of(name), cursor.span_of(type_token)
-        spec = ArtifactSpec(name.text, text_of(type_token), arguments, agents, *spans)
-        workspace.artifacts.append(ArtifactPart(spec, focused_by))
+        part.spec = ArtifactSpec(name.text, text_of(type_token), arguments, agents, *spans)
+        part.focused_by = focused_by
 
     def _artifact_entry(self, focused_by: list[AgentName]) -> None:
         key = self.key(("focused-by",), "an artifact")

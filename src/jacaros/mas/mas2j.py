@@ -42,7 +42,7 @@ class _Mas2jReader:
         cursor = self.cursor
         cursor.expect("MAS", "a .mas2j file begins with MAS name {")
         self.part.name = cursor.name("the name of the system").text
-        opener = cursor.expect("{")
+        opener = cursor.expect("{", "the head of a .mas2j file is: MAS name {")
         while not cursor.accept("}"):
             if cursor.token.kind == "end":
                 cursor.fail("'{' is not closed", cursor.span_of(opener), "the file ends with }")
@@ -130,7 +130,7 @@ class _Mas2jReader:
         at = self.cursor.token
         if self.cursor.accept("at"):
             host = self.value("the name of a host")
-            self.unsupported(NODES, f"'at {host.text}'", self.cursor.span_of(at))
+            self.unsupported(NODES, f"'at {text_of(host)}'", self.cursor.span_of(at))
         self.cursor.accept(";")
         return text
 
@@ -171,6 +171,7 @@ class _Mas2jReader:
         name = cursor.lower_name("the name of an agent")
         agent = AgentPart(name.text, cursor.span_of(name))
         if cursor.token.kind in ("word", "string") and cursor.token.text not in _AGENT_KEYS:
+            self.refuse_misspelt_key()
             self.source(agent)
         if cursor.token.kind == "[":
             self.options(agent)
@@ -178,6 +179,16 @@ class _Mas2jReader:
             self.agent_part(agent)
         cursor.advance()
         self.part.agents.append(agent)
+
+    def refuse_misspelt_key(self) -> None:
+        """Blame a word before a class that is nearly a key: it would be taken for the file of the agent."""
+        cursor = self.cursor
+        meant = [key for key in _AGENT_KEYS if key.lower() == cursor.token.text.lower()]
+        meant = meant or (
+            close_matches(cursor.token.text, _AGENT_KEYS[:3], 0.8) if cursor.peek().kind == "word" else []
+        )
+        if meant and cursor.token.kind == "word":
+            cursor.fail(f"{cursor.token} does not belong here", hint=f"did you mean '{meant[0]}'?")
 
     def source(self, agent: AgentPart) -> None:
         token = self.cursor.advance()

@@ -29,10 +29,12 @@ class Reading:
     Attributes:
         deployment: what can be made of it; ``ignored`` holds what a run tells of its warnings.
         diagnostics: all that is wrong or without effect, in the order of the text.
+        used: the files that it uses.
     """
 
     deployment: Deployment
     diagnostics: list[Diagnostic]
+    used: frozenset[Path]
 
 
 def read_project(path: Path) -> Reading:
@@ -49,6 +51,7 @@ def read_project(path: Path) -> Reading:
     return Reading(
         replace(deployment, ignored=tuple(told)),
         sorted([*remarks.diagnostics, *each(part.unsupported)], key=_place),
+        files.seen - {path.resolve()},
     )
 
 
@@ -58,6 +61,11 @@ class _Files:
     def __init__(self) -> None:
         self.diagnostics: list[Diagnostic] = []
         self._read: set[Path] = set()
+
+    @property
+    def seen(self) -> frozenset[Path]:
+        """All files that were read."""
+        return frozenset(self._read)
 
     def read(self, path: Path, using: tuple[Path, ...] = ()) -> ProjectPart:
         """The declarations of one file and, before its own, of the files it uses.

@@ -40,8 +40,8 @@ class ProjectAgents:
             source_path=self._source(agent),
             declared_name=agent.name,
             options=dict(agent.options),
-            beliefs=self._literals(agent.beliefs),
-            goals=self._literals(agent.goals),
+            beliefs=self._literals(agent.beliefs, "belief"),
+            goals=self._literals(agent.goals, "goal"),
             agent_class=agent.agent_class,
             architecture_classes=tuple(agent.architecture_classes),
             belief_base_class=agent.belief_base_class,
@@ -69,17 +69,18 @@ class ProjectAgents:
         self._remarks.error(f"the program of agent '{agent.name}' is not found: {files[0]}", span, hint)
         return (agent.folders or (Path(),))[0] / files[0]
 
-    def _literals(self, written: list[Written]) -> str:
+    def _literals(self, written: list[Written], what: str) -> str:
         """The pieces joined; each must be literals."""
         for text, span in written:
             try:
                 parse_literals(_literal(text))
             except AslError as error:
-                first = error.diagnostics[0]
-                hint = first.hint
-                if text.startswith("!"):
-                    hint = f"write it without '!': {text.lstrip('!')}"
-                self._remarks.error(f"'{text}' is no list of literals: {first.message}", span, hint)
+                message = error.diagnostics[0].message
+                hint = "rules stand in the program of the agent" if ":-" in text else None
+                self._remarks.error(f"'{_first_line(text)}' is no {what}: {message}", span, hint)
+            else:
+                if text.startswith("!") and what == "belief":
+                    self._remarks.error(f"'{text}' is a goal", span, f"goals: {text[1:]}")
         return ", ".join(_literal(text) for text, _ in written)
 
     # places
@@ -104,6 +105,11 @@ class ProjectAgents:
             join=tuple(dict.fromkeys(name for name in join if name is not None)),
             focus=tuple(dict.fromkeys(wanted for wanted in focus if wanted is not None)),
         )
+
+
+def _first_line(text: str) -> str:
+    first, _, rest = text.partition("\n")
+    return f"{first.rstrip()} ..." if rest else first
 
 
 def _literal(text: str) -> str:

@@ -79,9 +79,9 @@ class ProjectCursor:
         """The current token."""
         return self.tokens[self.index]
 
-    def peek(self) -> Token:
-        """The token behind the current one."""
-        return self.tokens[min(self.index + 1, len(self.tokens) - 1)]
+    def peek(self, further: int = 1) -> Token:
+        """The token behind the current one, or further on."""
+        return self.tokens[min(self.index + further, len(self.tokens) - 1)]
 
     def before(self) -> Token:
         """The token that was taken last."""

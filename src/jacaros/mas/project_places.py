@@ -95,7 +95,7 @@ class ProjectPlaces:
         parent = self._shortest(above) if above not in ("", _MAIN) else None
         if part is None:
             return WorkspaceSpec(name, parent=parent)
-        artifacts = tuple(artifact.spec for artifact in part.artifacts)
+        artifacts = tuple(artifact.spec for artifact in part.artifacts if artifact.spec.type_name)
         return WorkspaceSpec(name, artifacts, tuple(agent for agent, _ in part.agents), parent, part.span)
 
     def _check(self, workspace: WorkspacePart, known: set[str]) -> None:

@@ -75,7 +75,7 @@ def test_a_folder_is_checked_with_its_projects(folder: Path, capsys: pytest.Capt
     (folder / ".hidden").mkdir()
     (folder / ".hidden" / "x.asl").write_text("(", encoding="utf-8")
     assert {code for file, _, code in found(capsys, ".") if file == "part.asl"} == set()
-    assert ("the declaration of bob", 1, "unknown-goal") in found(capsys, ".")
+    assert ("p.mas2j", 1, "unknown-goal") in found(capsys, ".")
     assert found(capsys, "part.asl") == [("part.asl", 1, "unknown-goal")]
 
 

@@ -433,7 +433,7 @@ def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
         """
     assert located(report(folder, "p.jcm", text)) == [
         ("2:9", "the program of agent 'dora' is not found: dora.asl"),
-        ("3:24", "'p(' is no list of literals: the file ends where a term is expected"),
+        ("3:24", "'p(' is no belief: the file ends where a term is expected"),
         ("4:17", "a ':' is missing behind 'goals'"),
         ("7:5", "',' is expected, not 'artifact'"),
         ("8:3", "':' is expected, not '}'"),
@@ -447,9 +447,7 @@ def test_wrong_beliefs_are_reported_at_their_line(folder: Path):
     found = report(folder, "p.jcm", "mas m {\n agent bob {\n beliefs: p(1), q(2]\n }\n}")
     assert "p.jcm:3:" in found
     found = report(folder, "p.mas2j", 'MAS m {\n agents:\n bob [goals="go(else)"];\n}')
-    assert found.startswith(
-        "p.mas2j:3:13: error: 'go(else)' is no list of literals: 'else' is a reserved word"
-    )
+    assert found.startswith("p.mas2j:3:13: error: 'go(else)' is no goal: 'else' is a reserved word")
 
 
 @pytest.mark.parametrize("name", ["p.jcm", "p.mas2j"])
