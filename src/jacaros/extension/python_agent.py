@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Mapping, Sequence
 from inspect import iscoroutinefunction
 from random import Random
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
@@ -305,6 +305,15 @@ class PythonAgent(InEnvironment):
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r})"
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name == "_host":
+                raise JacarosError(
+                    f"{type(self).__name__} does not live yet: it can do this in run, not in __init__"
+                )
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
 
 
 def overridden(agent: PythonAgent, name: str) -> Callable[..., Any] | None:

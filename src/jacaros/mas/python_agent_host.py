@@ -18,7 +18,7 @@ from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.attendance import Attendance
 from jacaros.mas.coroutines import without_exit
 from jacaros.mas.correspondence import Correspondence
-from jacaros.mas.python_faults import fault_lines
+from jacaros.mas.python_faults import fault_lines, place_of_fault, said
 from jacaros.mas.python_handlers import Handlers
 from jacaros.terms.values import Term
 
@@ -111,8 +111,8 @@ class PythonAgentHost(AgentHost):
         # A signal from the keyboard ends the run, wherever it strikes.
         if error is not None and not self._closed and not isinstance(error, KeyboardInterrupt):
             self._failed(error)
-        if self._leaving and not self._tasks and self._session is not None:
-            self._session.close()
+        if self._leaving and not self._tasks:
+            self._shut()
         self._settled()
 
     def _failed(self, error: BaseException) -> None:
@@ -143,7 +143,14 @@ class PythonAgentHost(AgentHost):
     def end(self) -> None:
         """Leave the environment; when it has tasks, as soon as they are over."""
         super().end()
-        if self._session is not None and not self._tasks:
+        if self._tasks:
+            self._run.clock.call_later(_PATIENCE, self._shut)
+        else:
+            self._shut()
+
+    def _shut(self) -> None:
+        self._closed = True
+        if self._session is not None:
             self._session.close()
 
     async def close(self) -> None:
@@ -156,9 +163,7 @@ class PythonAgentHost(AgentHost):
                     f"[{self.name}] warning: the agent did not end within {_PATIENCE:g} s of its cancellation"
                 )
                 self._run.console.log(told, "warning")
-        self._closed = True
-        if self._session is not None:
-            self._session.close()
+        self._shut()
 
     def _check(self) -> None:
         """Let an agent that would go on for ever after its end do so no more.
@@ -248,8 +253,7 @@ class _Task:
         try:
             return bool(self._host.agent.accept_kill(killer))
         except Exception as error:
-            for line in fault_lines(error):
-                self._host.log("error", line)
+            self._host.log("error", f"accept_kill: {said(error)}{place_of_fault(error)}")
             return True
 
     def perceive(self, percepts: list[Percept]) -> None:

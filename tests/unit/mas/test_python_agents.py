@@ -731,3 +731,53 @@ async def run(self):
     result = alone(tmp_path, body, seconds=3, idle=False)
     assert result.lines == ["[a] no"]
     assert result.errors[0] == "[a] warning: the agent did not end within 5 s of its cancellation"
+
+
+def test_what_it_may_not_do_in_its_constructor_is_told(tmp_path: Path) -> None:
+    result = alone(tmp_path, "def __init__(self):\n    self.print(1)")
+    assert (
+        "A cannot be made: JacarosError: A does not live yet: it can do this in run, not in __init__"
+        in result.errors[0]
+    )
+    assert f"({tmp_path}/a.py:4, in __init__)" in result.errors[0]
+    result = alone(tmp_path, "async def run(self):\n    self.prin(12345)")
+    assert "AttributeError: A has no attribute 'prin'" in result.errors[0]
+
+
+def test_who_is_killed_has_five_seconds(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    try:
+        await self.receive()
+    finally:
+        await self.sleep(1)
+        self.print("one")
+        await self.sleep(10)
+        self.print("eleven")
+        await self.sleep(1)
+        self.print("twelve")
+""",
+        "!go. +!go <- .kill_agent(a).",
+    )
+    assert result.lines == ["[a] one"]
+    assert result.errors == []
+
+
+def test_an_error_when_it_is_asked_whether_it_may_be_killed_is_told(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    await self.receive()
+
+def accept_kill(self, killer):
+    return self.friends
+""",
+        "!go. +!go <- .kill_agent(a); .all_names(L); .print(L).",
+    )
+    assert result.lines == ["[bob] [bob]"]
+    assert result.errors == [
+        f"[a] error: accept_kill: AttributeError: A has no attribute 'friends' ({tmp_path}/a.py:7, in accept_kill)"
+    ]
