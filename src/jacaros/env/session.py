@@ -297,6 +297,11 @@ class Session(Perceiving):
     def _target(
         self, operation: str, arity: int, artifact: ArtifactId | str | None, workspace: str | None
     ) -> ArtifactId:
+        if artifact is None and workspace is None:
+            # Nearly always it is the only one of the current workspace.
+            candidates = self._workspaces.current.providers(operation, arity)
+            if len(candidates) == 1:
+                return candidates[0]
         places = self._workspaces.in_order() if workspace is None else (self._workspaces.named(workspace),)
         if isinstance(artifact, ArtifactId):
             self._workspaces.of(artifact)

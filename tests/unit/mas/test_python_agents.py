@@ -1,5 +1,6 @@
 """Agents written in Python, in projects with others: what they do, and how they begin and end."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -45,6 +46,12 @@ BOTH = """mas m {{
     agent bob {{ focus: w.{0} }}
     workspace w {{ artifact {0}: {1} }}
 }}"""
+
+
+@pytest.fixture(autouse=True)
+def no_compiled_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files that a test writes twice within a second are read twice."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
 
 
 def run(folder: Path, *, idle: bool = True, seconds: float | None = 60, **files: str) -> RunResult:
