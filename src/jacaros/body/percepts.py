@@ -118,15 +118,13 @@ class PerceptWriter:
         known = self._annotations.get(artifact)
         if known is None:
             workspace = self._references.of(self._workspace(artifact.workspace))
-            shared = (
-                (_ARTIFACT_ID, self._references.of(artifact)),
-                (_ARTIFACT_NAME, atom_of(artifact.name)),
-                SOURCE_PERCEPT,
-                (_WORKSPACE, String(artifact.workspace), workspace),
-            )
+            identity = (_ARTIFACT_ID, self._references.of(artifact))
+            name = (_ARTIFACT_NAME, atom_of(artifact.name))
+            place = (_WORKSPACE, String(artifact.workspace), workspace)
+            # Written in the order in which annotations are kept: every agent of a run comes by here.
             known = self._annotations[artifact] = (
-                annotation_set((*shared, _OBSERVABLE_PROPERTY)),
-                annotation_set((*shared, _OBSERVABLE_EVENT)),
+                (identity, name, _OBSERVABLE_PROPERTY, SOURCE_PERCEPT, place),
+                (identity, name, _OBSERVABLE_EVENT, SOURCE_PERCEPT, place),
             )
         return known
 

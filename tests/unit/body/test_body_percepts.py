@@ -84,6 +84,12 @@ def test_a_percept_carries_the_cause_of_its_observation() -> None:
     assert writer().percepts(Observation(LAMP, added=(observable("on"),), cause=why))[0].cause is why
 
 
+def test_the_annotations_are_in_the_order_in_which_they_are_kept() -> None:
+    signal_of = Observation(LAMP, (Signal("click", ()),), added=(observable("on"),))
+    for percept in writer().percepts(signal_of):
+        assert percept.annotations == annotation_set(percept.annotations)
+
+
 def test_percepts_about_the_agent_are_like_properties_of_an_artifact() -> None:
     session = ArtifactId("session_bob", "AgentSessionArtifact", "/main", 9, None)
     percept = writer().own("add", session, "joinedWsp", Reference(MAIN), atom("main"))
