@@ -20,6 +20,7 @@ from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import Environment, UnderWay, Workspace
+from jacaros.env.values import Structure
 from jacaros.terms.text import display
 from jacaros.terms.values import String
 
@@ -224,8 +225,11 @@ class AgentBody:
         act = call.act
         outputs: Outputs = []
         arguments = []
-        for argument in call.arguments:
-            arguments.append(to_value(argument, outputs))
+        try:
+            for argument in call.arguments:
+                arguments.append(to_value(argument, outputs))
+        except RecursionError:
+            raise _too_deep(artifact, call.key) from None
         done = partial(self._done, act.id, outputs)
         timeout = call.direction.timeout
         request = OperationRequest(
@@ -279,6 +283,12 @@ class AgentBody:
         workspace.take_back(personal)
         self._references.forget(personal)
         self._writer.forget(personal)
+
+
+def _too_deep(artifact: ArtifactId, key: str) -> OperationFailed:
+    """The failure of an action with an argument that Python cannot hold."""
+    message = f"an argument of {key} is nested too deeply to become a Python value"
+    return OperationFailed(message, Structure("wrong_op_arguments", (artifact, key)))
 
 
 def _prints(call: Call) -> bool:

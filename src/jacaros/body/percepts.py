@@ -7,8 +7,8 @@ from jacaros.body.values import References, atom_of, number_to_term, symbol_of, 
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.property import ObservableProperty
+from jacaros.env.values import Atom, Out, Structure
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import free_variables, resolve
 from jacaros.terms.values import SOURCE_PERCEPT, String, Term, atom, functor
 
 ADD, REMOVE, SIGNAL = "add", "remove", "signal"
@@ -19,7 +19,7 @@ _PERCEPT_TYPE = functor("percept_type", 1)
 _WORKSPACE = functor("workspace", 2)
 _OBSERVABLE_PROPERTY = (_PERCEPT_TYPE, atom("obs_prop"))
 _OBSERVABLE_EVENT = (_PERCEPT_TYPE, atom("obs_ev"))
-_NULL = atom("null")
+_NULL = Atom("null")
 
 Annotations = tuple[Term, ...]
 
@@ -141,15 +141,21 @@ class PerceptWriter:
             elif kind is int:
                 written.append(number_to_term(value))
             else:
-                written.append(_ground(to_term(value, self._references)))
+                written.append(to_term(_complete(value), self._references))
         return tuple(written)
 
 
-def _ground(term: Term) -> Term:
+def _complete(value: object) -> object:
     """Percepts are ground: None and outputs that nobody set become the atom ``null``."""
-    if term.__class__ is float or term.__class__ is String:
-        return term
-    unbound = free_variables(term)
-    for variable in unbound:
-        variable.ref, variable.at = _NULL, 0
-    return resolve(term) if unbound else term
+    kind = type(value)
+    if kind is list:
+        return [each if type(each) is float else _complete(each) for each in value]  # type: ignore[attr-defined]
+    if kind is dict:
+        return {_complete(key): _complete(each) for key, each in value.items()}  # type: ignore[attr-defined]
+    if isinstance(value, (tuple, frozenset)):
+        return kind(map(_complete, value))  # type: ignore[call-arg]
+    if isinstance(value, Structure):
+        return Structure(value.functor, tuple(map(_complete, value.arguments)))
+    if isinstance(value, Out):
+        return _complete(value.value) if value.is_set else _NULL
+    return _NULL if value is None else value

@@ -8,8 +8,8 @@ string                     `str`
 ``true``, ``false``        `bool`
 atom                       `Atom`, without the quotes of a quoted one
 structure                  `Structure`; ``~`` and a namespace are written in front of the functor
-list, set, queue           `list`
-map                        `dict`
+list, set, queue           `list`, that of a set in the standard order
+map                        `dict`; lists in its keys are tuples
 annotated term             its term, without the annotations
 opaque reference           the object
 unbound variable           `Out`, one for each occurrence; from the environment None comes as a fresh variable
@@ -117,8 +117,14 @@ def _object_to_value(term: Term, outputs: Outputs | None) -> object:
 
 
 def _key(value: object) -> object:
-    """What may be the key of a dictionary: lists become tuples."""
-    return tuple(map(_key, value)) if isinstance(value, list) else value
+    """What may be the key of a dictionary: lists become tuples, maps tuples of pairs."""
+    if isinstance(value, list):
+        return tuple(map(_key, value))
+    if isinstance(value, dict):
+        return tuple((key, _key(item)) for key, item in value.items())
+    if value.__class__ is Structure:
+        return Structure(value.functor, tuple(map(_key, value.arguments)))
+    return value
 
 
 def symbol_name(symbol: Functor) -> str:
@@ -220,6 +226,10 @@ def _dict_to_term(value: dict[object, object], references: References) -> Term:
     return MapValue({to_term(key, references): to_term(item, references) for key, item in value.items()})
 
 
+def _set_to_term(value: frozenset[object], references: References) -> Term:
+    return SetValue({to_term(item, references): None for item in value})
+
+
 def _other_to_term(value: Any, references: References) -> Term:
     simple = plain(value)
     if simple.__class__ in _BY_CLASS:
@@ -243,6 +253,7 @@ _BY_CLASS: dict[type, Callable[[Any, References], Term]] = {
     list: _list_to_term,
     tuple: _list_to_term,
     dict: _dict_to_term,
+    frozenset: _set_to_term,
     type(None): lambda value, _: Var(),
     ArtifactId: lambda value, references: references.of(value),
 }

@@ -6,7 +6,9 @@ of the language: the body joins the two.
 """
 
 import dataclasses
-import enum
+from collections import deque
+from enum import Enum
+from types import MappingProxyType
 from typing import Any
 
 
@@ -87,48 +89,99 @@ SCALARS: frozenset[type] = frozenset({int, float, bool, str, Atom, type(None)})
 """Classes of values that are plain as they are."""
 
 
+_DEPTH = 200
+"""How deeply a value may be nested."""
+_NUMBERS = ("decimal", "fractions")
+"""Modules of further numbers of Python, which need not be loaded to know them."""
+
+
 def plain(value: Any) -> object:
     """Turn *value* into a plain value that shares no mutable part with it.
 
-    Lists, tuples and dictionaries are copied; a dataclass or named tuple becomes a `Structure` with the
-    class name, first letter in lower case; numpy scalars and arrays (known by their ``tolist``) become
-    numbers and lists; members of ``StrEnum`` and ``IntEnum`` become texts and numbers, those of other
-    enumerations atoms: their names in lower case.  What is none of these stays as it is: an opaque reference.
+    Lists, tuples, ranges and deques become new lists, dictionaries are copied, sets become frozen sets; a
+    dataclass or named tuple becomes a `Structure` with the class name, first letter in lower case; numpy
+    scalars and arrays (known by their ``tolist``) become numbers and lists; decimals and fractions become
+    numbers; members of an ``Enum`` become atoms (their names in lower case), those of ``StrEnum`` and
+    ``IntEnum`` texts and numbers.  What is none of these stays as it is: an opaque reference.
+
+    Raises:
+        ValueError: it contains itself, or is nested deeper than 200 levels.
     """
+    if type(value) in SCALARS:
+        return value
+    try:
+        return _plain(value, _DEPTH)
+    except _TooDeep:
+        raise ValueError(f"a value contains itself, or is nested deeper than {_DEPTH} levels") from None
+
+
+class _TooDeep(Exception):
+    """There is no room for another level."""
+
+
+def _plain(value: Any, room: int) -> object:
     kind = type(value)
     if kind in SCALARS:
         return value
+    if room == 0:
+        raise _TooDeep
+    room -= 1
+    if kind is list:
+        return [_plain(item, room) for item in value]
     if kind is Structure:
-        return _plain_structure(value)
+        return _plain_structure(value, room)
     if isinstance(value, str):
-        return str.__str__(value)
+        return _plain_text(value)
     if isinstance(value, (int, float)):
         return int(value) if isinstance(value, int) else float(value)
     if isinstance(value, tuple) and hasattr(value, "_fields"):
-        return _structure(kind, value)
-    if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
-    if isinstance(value, dict):
-        return {plain_key(key): plain(item) for key, item in value.items()}
+        return _structure(kind, value, room)
+    if isinstance(value, (list, tuple, range, deque)):
+        return [_plain(item, room) for item in value]
+    if isinstance(value, (dict, MappingProxyType)):
+        return {_plain_key(key, room): _plain(item, room) for key, item in value.items()}
+    if isinstance(value, (set, frozenset)):
+        return frozenset(_plain_key(item, room) for item in value)
+    if isinstance(value, Enum):
+        return Atom(str(value.name).lower())
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return _structure(kind, (getattr(value, field.name) for field in dataclasses.fields(value)))
-    if isinstance(value, enum.Enum):
-        return Atom(value.name.lower())
-    if hasattr(value, "tolist") and hasattr(value, "dtype"):
-        return plain(value.tolist())
+        return _structure(kind, (getattr(value, field.name) for field in dataclasses.fields(value)), room)
+    return _plain_number_or_array(value, room)
+
+
+def _plain_text(value: str) -> str:
+    text = str.__str__(value)
+    return Atom(text) if isinstance(value, Atom) else text
+
+
+def _plain_number_or_array(value: Any, room: int) -> object:
+    kind = type(value)
+    if kind.__module__ in _NUMBERS and kind.__name__ in ("Decimal", "Fraction"):
+        whole = value == value and kind.__name__ == "Fraction" and value.denominator == 1
+        return int(value) if whole else float(value)
+    if hasattr(kind, "tolist") and hasattr(kind, "dtype"):
+        return _plain(value.tolist(), room)
     return value
 
 
-def _plain_structure(value: Structure) -> Structure:
+def _plain_structure(value: Structure, room: int) -> Structure:
     if not isinstance(value.functor, str) or not value.functor:
         raise TypeError(f"the functor of a structure is a text, not {value.functor!r}")
-    return Structure(value.functor, tuple(map(plain, value.arguments)))
+    return Structure(value.functor, tuple(_plain(argument, room) for argument in value.arguments))
 
 
 def plain_key(key: Any) -> Any:
     """Turn the key of a dictionary into a plain value; one that cannot be a key any more stays."""
-    converted = plain(key)
-    return key if isinstance(converted, (list, dict)) else converted
+    return _plain_key(key, _DEPTH)
+
+
+def _plain_key(key: Any, room: int) -> Any:
+    converted = _plain(key, room)
+    try:
+        hash(converted)
+    except TypeError:
+        return key
+    return converted
 
 
 def functor_of(kind: type) -> str:
@@ -136,9 +189,9 @@ def functor_of(kind: type) -> str:
     return kind.__name__[:1].lower() + kind.__name__[1:]
 
 
-def _structure(kind: type, values: Any) -> object:
+def _structure(kind: type, values: Any, room: int) -> object:
     functor = functor_of(kind)
-    arguments = tuple(plain(value) for value in values)
+    arguments = tuple(_plain(value, room) for value in values)
     return Structure(functor, arguments) if arguments else Atom(functor)
 
 
