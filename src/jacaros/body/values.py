@@ -199,12 +199,13 @@ def symbol_of(name: str, arity: int) -> Functor:
         namespace = ""
     negated = name[:1] == "~" and len(name) > 1
     name = name[1:] if negated else name
-    return functor(name if _is_word(name) else f"'{name}'", arity, negated, namespace or None)
+    # The name of a functor is a plain text, whoever was the first to name it.
+    return functor(str(name) if _is_word(name) else f"'{name}'", arity, negated, namespace or None)
 
 
 def atom_of(name: str) -> Functor:
     """The atom for the name of an artifact or workspace: always an atom, quoted if need be."""
-    return atom(name if _is_word(name) else f"'{name}'")
+    return atom(str(name) if _is_word(name) else f"'{name}'")
 
 
 def _is_word(name: str) -> bool:

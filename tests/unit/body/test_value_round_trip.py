@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jacaros.body.values import References, to_term, to_value
+from jacaros.body.values import References, atom_of, to_term, to_value
 from jacaros.env.values import Atom, Structure, plain
 from jacaros.terms.collections import MapValue, SetValue
 from jacaros.terms.text import text
@@ -166,3 +166,9 @@ def test_what_contains_itself_is_refused() -> None:
     plain(nested)
     with pytest.raises(ValueError, match="contains itself"):
         plain([nested])
+
+
+def test_the_name_of_a_functor_is_a_plain_text() -> None:
+    assert type(term(Atom("neverNamedBefore")).name) is str
+    assert type(term(Structure(Atom("norThis"), (1,)))[0].name) is str
+    assert type(atom_of(Atom("andThis")).name) is str
