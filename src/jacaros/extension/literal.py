@@ -35,6 +35,8 @@ class Literal:
         namespace: its namespace; None for the default one.
     """
 
+    __record__ = False
+
     functor: str
     arguments: tuple[object, ...] = ()
     annotations: tuple[object, ...] = ()

@@ -24,7 +24,12 @@ class Field(NamedTuple):
 
 
 def fields_of(kind: type) -> list[Field] | None:
-    """The fields that the constructor of a dataclass or named tuple takes; None for other classes."""
+    """The fields that the constructor of a dataclass or named tuple takes; None for other classes.
+
+    A class with ``__record__ = False`` says that it is more than its fields: no structure stands for it.
+    """
+    if getattr(kind, "__record__", True) is False:
+        return None
     if dataclasses.is_dataclass(kind):
         hints = _hints(kind)
         missing = dataclasses.MISSING
