@@ -148,22 +148,22 @@ class PythonAgentHost(AgentHost):
         else:
             self._shut()
 
-    def _shut(self) -> None:
-        self._closed = True
-        if self._session is not None:
-            self._session.close()
-
     async def close(self) -> None:
         """Wait until its tasks have put their things in order."""
         await super().close()
         if self._tasks:
-            _, left = await asyncio.wait(tuple(self._tasks), timeout=_PATIENCE)
-            if left:
-                told = (
-                    f"[{self.name}] warning: the agent did not end within {_PATIENCE:g} s of its cancellation"
-                )
-                self._run.console.log(told, "warning")
+            await asyncio.wait(tuple(self._tasks), timeout=_PATIENCE)
         self._shut()
+
+    def _shut(self) -> None:
+        if self._closed:
+            return
+        self._closed = True
+        if self._tasks:
+            what = f"the agent did not end within {_PATIENCE:g} s of its cancellation"
+            self._run.console.log(f"[{self.name}] warning: {what}", "warning")
+        if self._session is not None:
+            self._session.close()
 
     def _check(self) -> None:
         """Let an agent that would go on for ever after its end do so no more.
