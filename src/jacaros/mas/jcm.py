@@ -114,6 +114,8 @@ class _JcmReader(JcmValues):
         cursor = self.cursor
         if key.text == "asl-path":
             self.part.source_paths += [text for text, _ in self._some(key)]
+        elif key.text == "java-path":
+            self.part.code_paths += [text for text, _ in self._some(key)]
         elif key.text == "world":
             if cursor.token.kind not in NAME:
                 cursor.fail("the name of a world file is expected")

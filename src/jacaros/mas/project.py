@@ -19,6 +19,9 @@ _JCM: Final = ".jcm"
 _JCM_PATHS: Final = (".", "src/agt", "src/agt/inc")
 """Where programs of a `.jcm` file are looked for, unless it has an ``asl-path``."""
 
+_JCM_CODE_PATHS: Final = ("src", "src/env", "src/agt")
+"""Where its Python modules are looked for besides, unless it has a ``java-path``."""
+
 _USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
 
 
@@ -118,13 +121,14 @@ def _complete(path: Path, part: ProjectPart) -> None:
     if path.suffix == _JCM:
         # As in JaCaMo: the first asl-path takes the place of the usual ones, but for the project's own folder.
         usual = [base / folder for folder in (_JCM_PATHS[:1] if part.source_paths else _JCM_PATHS)]
+        code = [base / folder for folder in part.code_paths or _JCM_CODE_PATHS]
     else:
         usual = [base / folder for folder in _USUAL_PATHS]
-    part.folders = tuple(
-        dict.fromkeys([*declared, *(folder for folder in usual if folder == base or folder.is_dir())])
-    )
+        code = []
+    programs = [*declared, *(folder for folder in usual if folder == base or folder.is_dir())]
+    part.folders = tuple(dict.fromkeys([*programs, *(folder for folder in code if folder.is_dir())]))
     for agent in part.agents:
-        agent.folders = part.folders
+        agent.folders = tuple(dict.fromkeys(programs))
     if part.world is not None and (base / part.world).exists():
         part.world = str(base / part.world)
 

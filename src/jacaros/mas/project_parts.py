@@ -111,5 +111,6 @@ class ProjectPart:
     infrastructure: list[str] = field(default_factory=list)
     world: str | None = None
     source_paths: list[str] = field(default_factory=list)
+    code_paths: list[str] = field(default_factory=list)
     folders: tuple[Path, ...] = ()
     unsupported: list[Unsupported] = field(default_factory=list)

@@ -37,7 +37,7 @@ PACKAGES: Final = Topic(
 PATHS: Final = Topic(
     "paths",
     "no Java classes and no organisations are read",
-    "artifacts in Python stand beside the project file",
+    "artifacts in Python stand beside the project file, or in src/env",
 )
 PLATFORMS: Final = Topic("platforms", "a run is one process, and agents reach each other in it")
 INSPECTORS: Final = Topic("inspectors", "there are no windows", "see a run with --view or --record")

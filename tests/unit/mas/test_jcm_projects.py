@@ -276,7 +276,7 @@ def test_a_run_tells_each_kind_once_and_the_checker_everything(folder: Path) -> 
             agents: bob, alice
             situated: i
           }
-          class-path: bin/classes, ../lib/x.jar   java-path: src/env
+          class-path: bin/classes, ../lib/x.jar   org-path: src/org
           platform: jade("-gui -port 1") local(pool,4)
                     jacamo.platform.EnvironmentWebInspector("false")
           uses package: lib "org.x:lib:1.0"
@@ -293,7 +293,7 @@ def test_a_run_tells_each_kind_once_and_the_checker_everything(folder: Path) -> 
         for what in ("group 'all'", "group 'inner'", "scheme 's1'", "scheme 's2'")
     ]
     told = [each.message for each in load_deployment(path).ignored]
-    assert len(told) == 8
+    assert len(told) == 8, told
     assert told[0] == "5 roles have no effect: roles in organisations are not supported (lines 2, 6, 13, 14)"
     nodes = "5 nodes and hosts have no effect: a run is one process (lines 2, 4, 7, 26, 27)"
     assert nodes in told
