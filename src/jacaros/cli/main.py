@@ -51,7 +51,7 @@ class Commands(click.Group):
         self, context: click.Context, arguments: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """A file in the place of the command is run: ``jacaros hello.asl``."""
-        if arguments and arguments[0].endswith((".asl", ".mas2j", ".jcm")):
+        if arguments and arguments[0].endswith((".asl", ".py", ".mas2j", ".jcm")):
             arguments = ["run", *arguments]
         return super().resolve_command(context, arguments)
 

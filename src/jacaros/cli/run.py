@@ -108,7 +108,9 @@ def check_file(file: Path) -> None:
         return
     if file.is_dir():
         raise UsageError(f"{file} is a folder; give a .asl, .py, .mas2j or .jcm file in it")
-    beside = [each.name for each in file.parent.glob("*.*") if each.suffix in (".asl", ".mas2j", ".jcm")]
+    beside = [
+        each.name for each in file.parent.glob("*.*") if each.suffix in (".asl", ".py", ".mas2j", ".jcm")
+    ]
     import difflib  # here: only for a file that is not there
 
     near = difflib.get_close_matches(file.name, beside, n=2)

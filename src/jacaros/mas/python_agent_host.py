@@ -81,7 +81,7 @@ class PythonAgentHost(AgentHost):
 
     async def _main(self, stays: bool) -> None:
         await self._agent.run()
-        if not stays:
+        if not stays and not self._leaving:
             self.start(self._when_all_is_over())
 
     async def _when_all_is_over(self) -> None:

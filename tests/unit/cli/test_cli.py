@@ -104,6 +104,25 @@ def test_a_run_can_be_recorded_and_replayed(folder: Path, capsys: pytest.Capture
     assert "<html" in (folder / "r.html").read_text()
 
 
+def test_an_agent_in_python_is_run_recorded_checked_and_described(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = "from jacaros import PythonAgent\nclass A(PythonAgent):\n    async def run(self):\n"
+    (folder / "a.py").write_text(
+        f"{program}        self.print('hi')\n        self.stop_system(3)\n", encoding="utf-8"
+    )
+    assert outcome(capsys, "a.py", "--clock", "fast") == (3, "[a] hi\n", "")
+    arguments = ["run", "a.py", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]
+    assert outcome(capsys, *arguments)[:2] == (3, "[a] hi\n")
+    assert '"agent": "a", "text": "hi"' in (folder / "r.jsonl").read_text()
+    (folder / "m.jcm").write_text("mas m { agent a: a.py }", encoding="utf-8")
+    assert outcome(capsys, "check", "a.py", "m.jcm") == (0, "", "nothing wrong in 2 files\n")
+    assert "agent a: a.py" in outcome(capsys, "describe", "m.jcm")[1]
+    (folder / "b.py").write_text("x = 1", encoding="utf-8")
+    code, output, _ = outcome(capsys, "check", "b.py")
+    assert (code, "b.py has no class derived from jacaros.PythonAgent" in output) == (1, True)
+
+
 def test_a_world_runs_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = [
         "sim",
