@@ -1,5 +1,6 @@
 """How artifact classes declare their interface, and which mistakes are found when the class is made."""
 
+from functools import partial
 from typing import Any
 
 import pytest
@@ -230,5 +231,39 @@ def test_operations_of_one_artifact_can_be_added_and_removed(play):
         assert stage.call(first, "more", 1, 2, 3).ok
         assert "its guard takes" in stage.call(first, "spoil").outcome.message
         assert Dynamic.interface.operations.find("add", 1) is None
+
+    play(scene)
+
+
+def test_a_part_of_a_function_and_an_object_that_can_be_called_are_operations_too(play):
+    class Greeting:
+        """Greets."""
+
+        def __call__(self, whom: str):
+            raise ValueError(whom)
+
+    class Dynamic(Artifact):
+        def init(self):
+            self.define_operation("soup", partial(self.order, "soup"))
+            self.define_operation("greet", Greeting())
+            with pytest.raises(InvalidArtifact, match="are both operation soup with 1 arguments"):
+                self.define_operation("soup", partial(self.order, "fish"))
+
+        def order(self, dish: str, price: Out):
+            """Order a dish."""
+            price.set(len(dish))
+
+    async def scene(stage):
+        it = await stage.make(Dynamic)
+        price = Out()
+        assert stage.call(it, "soup", price).ok
+        assert price.value == 4
+        assert "wants a text" in stage.call(it, "greet", 3).outcome.message
+        assert "ValueError in operation greet/1 of it: bob" in stage.call(it, "greet", "bob").outcome.message
+        manual = stage.main.manual(it)
+        assert [(each.usage, each.text) for each in manual.operations] == [
+            ("soup(-price)", "Order a dish."),
+            ("greet(whom: a text)", "Greets."),
+        ]
 
     play(scene)

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from jacaros.env.errors import InvalidArtifact, spelling_hint
@@ -85,7 +86,10 @@ def declare_function(
     suited = None
     if guard is not None:
         suited = _suited(check, signature_of(guard, skip_first=False), signature, function)
-    return _declare(mark, name, call, function, signature, suited, FOR_ONE_ARTIFACT)
+    source = function
+    while isinstance(source, partial):  # its own docstring says nothing
+        source = source.func
+    return _declare(mark, name, call, source, signature, suited, FOR_ONE_ARTIFACT)
 
 
 def _declare(
@@ -99,7 +103,7 @@ def _declare(
 ) -> DeclaredOperation:
     coroutine = inspect.iscoroutinefunction(source)
     if mark.threaded and coroutine:
-        raise InvalidArtifact(f"{_name(source)} runs in a thread: make it a plain def, without async")
+        raise InvalidArtifact(f"{name_of(source)} runs in a thread: make it a plain def, without async")
     return DeclaredOperation(
         name,
         mark.kind,
@@ -120,16 +124,17 @@ def _suited(
 ) -> Callable[..., object]:
     """A guard without parameters is for any arguments; else it must take those of the operation."""
     if inspect.iscoroutinefunction(guard):
-        raise InvalidArtifact(f"{_name(function)}: its guard must be a plain def")
+        raise InvalidArtifact(f"{name_of(function)}: its guard must be a plain def")
     if not takes.parameters and takes.rest is None:
         return lambda artifact, *_: guard(artifact)
     if not all(map(takes.takes, wanted.arities)) or (wanted.rest is not None and takes.rest is None):
         raise InvalidArtifact(
-            f"{_name(function)}: its guard takes ({takes}); it must take the same as the operation, "
+            f"{name_of(function)}: its guard takes ({takes}); it must take the same as the operation, "
             f"({wanted}), or nothing"
         )
     return guard
 
 
-def _name(function: Callable[..., Any]) -> str:
+def name_of(function: Callable[..., Any]) -> str:
+    """What a function is called in messages."""
     return str(getattr(function, "__qualname__", function))

@@ -6,7 +6,7 @@ from itertools import chain
 from typing import Any
 
 from jacaros.env.errors import InvalidArtifact, spelling_hint
-from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
+from jacaros.env.kernel.declaration import DeclaredOperation, declare_method, name_of
 from jacaros.env.operation import INIT, LINK, OPERATION, Mark, marks_of
 
 
@@ -76,7 +76,7 @@ class OperationTable:
 def _check_overlap(present: DeclaredOperation | None, new: DeclaredOperation, arity: str) -> None:
     if present is not None and present.depth == new.depth and present.function is not new.function:
         raise InvalidArtifact(
-            f"{present.source.__qualname__} and {new.source.__qualname__} are both "
+            f"{name_of(present.source)} and {name_of(new.source)} are both "
             f"{new.kind} {new.name} with {arity} arguments; it would be unclear which one runs"
         )
 

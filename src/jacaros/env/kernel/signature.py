@@ -3,6 +3,7 @@
 import inspect
 import typing
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -123,6 +124,10 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
 
 def _annotations(function: Callable[..., object]) -> dict[str, Any]:
     """The annotations, with those written as text resolved; what cannot be resolved accepts anything."""
+    while isinstance(function, partial):
+        function = function.func
+    if not inspect.isroutine(function):
+        function = type(function).__call__
     try:
         return {name: _known(kind) for name, kind in typing.get_type_hints(function).items()}
     except Exception:
