@@ -56,6 +56,7 @@ KINDS: Final[dict[str, Kind]] = {
     "not-a-belief": Kind("error", "a clause that is neither belief, rule, goal nor plan"),
     "not-a-number": Kind("error", "arithmetic with something that is no number"),
     "not-a-step": Kind("error", "a term where a step is expected"),
+    "organisation-library": Kind("warning", "a library for organisations, which are not supported"),
     "plan-never-selected": Kind("warning", "a plan behind one that is always taken before it"),
     "prefixed-action": Kind("error", "an internal action with '~' or a namespace"),
     "reserved-word": Kind("error", "a reserved word as a name"),

@@ -97,13 +97,26 @@ def test_an_included_file_is_read_with_the_name_of_the_including_one():
     assert asked == [("one.asl", "main.asl"), ("two.asl", "lib/one.asl")]
 
 
-def test_libraries_of_the_platform_give_nothing():
+def test_the_library_of_workspaces_has_a_counterpart():
+    read, warnings = load_program("main.asl", '{ include("$jacamo/templates/common-cartago.asl") } p.')
+    assert [getattr(each, "head", each).functor for each in read.beliefs] == ["joined", "focused", "p"]
+    assert warnings == []
+
+
+def test_libraries_for_organisations_give_nothing_and_one_warning():
     read, warnings = load_program(
         "main.asl",
-        """{ include("$jacamo/templates/common-cartago.asl") }
-           { include("$jacamoJar/templates/common-moise.asl") } p.""",
+        """{ include("$jacamoJar/templates/common-moise.asl") }
+           { include("$jacamo/templates/org-obedient.asl") } p.""",
     )
     assert len(read.beliefs) == 1
+    (warning,) = warnings
+    assert warning.render().startswith("main.asl:1:1: warning: organisations are not supported")
+    assert "common-moise.asl" in warning.message
+
+
+def test_what_is_built_in_needs_no_library():
+    _, warnings = load_program("main.asl", '{ include("$jason/asl/kqmlPlans.asl") }')
     assert warnings == []
 
 

@@ -1,22 +1,20 @@
-"""The libraries of other systems that programs include and that need not be included here.
+"""The libraries of other systems that programs include.
 
-What they give there (joining, focusing, plans for organisations) is built in here or not supported.
+What they give there is built in here (joining and focusing, answers to messages), has a counterpart in our own library
+(questions about workspaces), or is not supported (organisations).
 """
 
+from pathlib import Path
 from typing import Final
+
+from jacaros.asl.source import SourceFile
 
 _ROOTS: Final = frozenset(
     {"$jacamo", "$jacamoJar", "$jason", "$jasonJar", "$moise", "$moiseJar", "$cartago", "$cartagoJar"}
 )
 _KNOWN: Final = frozenset(
     {
-        "common-cartago.asl",
-        "common-moise.asl",
         "common.asl",
-        "org-obedient.asl",
-        "org-rules.asl",
-        "wsp-rules.asl",
-        "sai-rules.asl",
         "dynamic-focus.asl",
         "kqmlPlans.asl",
         "tester_agent.asl",
@@ -24,6 +22,24 @@ _KNOWN: Final = frozenset(
         "test_manager.asl",
     }
 )
+
+
+_ORGANISATIONS: Final = frozenset({"common-moise.asl", "org-obedient.asl", "org-rules.asl", "sai-rules.asl"})
+_OURS: Final = {"common-cartago.asl": "common_cartago.asl", "wsp-rules.asl": "common_cartago.asl"}
+
+
+def counterpart(path: str) -> SourceFile | None:
+    """The file of our own library that stands for a library file; None when there is none."""
+    name = _OURS.get(path.rpartition("/")[2]) if is_library(path) else None
+    if name is None:
+        return None
+    file = Path(__file__).parent.parent / "library" / name
+    return SourceFile(f"$jacaros/{name}", file.read_text(encoding="utf-8"))
+
+
+def is_of_organisations(path: str) -> bool:
+    """Whether *path* is a library file for agents in organisations."""
+    return is_library(path) and path.rpartition("/")[2] in _ORGANISATIONS
 
 
 def is_library(path: str) -> bool:

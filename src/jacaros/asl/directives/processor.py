@@ -9,7 +9,7 @@ from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.directives.commitment import blind, open_minded, relativised, single_minded
 from jacaros.asl.directives.goal_patterns import backtracking, declarative, exclusive, maintenance
-from jacaros.asl.directives.libraries import is_known_library, is_library
+from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
 from jacaros.asl.directives.pattern import PatternCall, PatternError
 from jacaros.asl.directives.sequenced import sequenced
 from jacaros.asl.namespaces import Namespaces
@@ -47,6 +47,7 @@ class DirectiveProcessor:
         self._diagnostics = diagnostics
         self._open_files: list[str] = []
         self._pattern_numbers = count(1)
+        self._told_of_organisations = False
 
     def read_file(
         self, file: SourceFile, namespaces: Namespaces | None = None, last_dot_optional: bool = False
@@ -136,14 +137,18 @@ class DirectiveProcessor:
         return self.read_file(found, namespaces)
 
     def _find(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> SourceFile | None:
-        """The included file; a library that is part of the system gives nothing."""
+        """The included file; most libraries of other systems give nothing here."""
         try:
             if self._read is None:
                 raise FileNotFoundError(path)
             name, text = self._read(path, parser.file.name)
             return SourceFile(name, text)
         except FileNotFoundError:
-            if is_known_library(path):
+            ours = counterpart(path)
+            if ours is not None or is_known_library(path):
+                return ours
+            if is_of_organisations(path):
+                self._tell_of_organisations(parser, path, directive)
                 return None
             if is_library(path):
                 parser.warn(
@@ -163,6 +168,16 @@ class DirectiveProcessor:
                 "include-not-found", f"the included file '{path}' cannot be read: {error}", directive.span
             )
         return None
+
+    def _tell_of_organisations(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> None:
+        """Once for a program: they are included together."""
+        if not self._told_of_organisations:
+            self._told_of_organisations = True
+            parser.warn(
+                "organisation-library",
+                f"organisations are not supported; nothing of '{path}' is included",
+                _place(directive),
+            )
 
     def _include_namespace(self, parser: ProgramParser, term: nodes.Term) -> str | None:
         if isinstance(term, nodes.Literal) and not term.arguments:
