@@ -52,7 +52,7 @@ class ProjectPlaces:
 
     def _path_of_parent(self, workspace: WorkspacePart, below: tuple[str, ...]) -> str:
         wanted = workspace.parent or ""
-        if wanted.startswith("/") or wanted == "main":
+        if wanted in ("main", _MAIN) or wanted.startswith(f"{_MAIN}/"):
             return resolve_path("/", wanted)
         for other in self._part.workspaces:
             if other.name == wanted or other.name.endswith(f"/{wanted}"):

@@ -167,7 +167,8 @@ class System:
     def _is_furnished(self) -> bool:
         """Whether the environment is made at the start, also to tell mistakes in the project's own artifacts."""
         declared = self.deployment.environment or self.deployment.workspaces
-        return bool(declared) or has_own_artifacts(self.deployment.base_path)
+        situated = any(agent.join or agent.focus for agent in self.deployment.agents)
+        return bool(declared) or situated or has_own_artifacts(self.deployment.base_path)
 
     def surroundings(self) -> "Surroundings":
         """The environment, opened when it is first asked for."""

@@ -198,6 +198,7 @@ def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
         ("workspace w { artifact console : A }", "every workspace has an artifact 'console' already"),
         ("workspace w { artifact a : A artifact a : B }", "two artifacts have the name 'a'"),
         ("workspace w { parent: v }", "the workspace 'v' is not declared in the project"),
+        ("workspace w { parent: /v }", "the workspace '/v' is not declared in the project"),
         ("workspace w { parent: v } workspace v { parent: w }", "workspaces are each other's parents"),
         ("workspace w workspace w", "two workspaces have the name 'w'"),
         ("workspace a/w workspace b/w agent bob { join: w }", "2 workspaces are called 'w'"),

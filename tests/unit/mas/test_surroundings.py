@@ -349,3 +349,14 @@ def test_workspaces_of_one_name_are_told_apart_by_their_paths(folder: Path) -> N
     result = run_project(file)
     assert result.errors == ["[lamp] made lamp", "[lamp] made lamp"]
     assert result.of("ann") == ["21", '["/main/hotel/kitchen","/main/house/kitchen","/main"]']
+
+
+def test_what_every_workspace_has_can_be_focused_from_the_start(folder: Path) -> None:
+    (folder / "artifacts.py").unlink()
+    file = write(
+        folder,
+        p_jcm="mas p {\n agent ann: a.asl { join: main  focus: main.workspace }\n}",
+        a_asl="!go. +!go : focusing(_, Name, _, _, W, _) <- .print(Name, W); .stopMAS.",
+    )
+    result = run_project(file)
+    assert (result.lines, result.errors) == (["[ann] workspacemain"], [])
