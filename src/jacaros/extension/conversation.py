@@ -5,11 +5,12 @@ from typing import Any
 
 from jacaros.asl.loader import parse_term
 from jacaros.bdi.speech_act import SpeechAct
+from jacaros.body.values import to_value
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.extension.literal import term_of
 from jacaros.extension.views import Message, value_of
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import String, Term, is_list, list_items, make_list
+from jacaros.terms.values import PLAIN, String, Term, functor_of, is_list, list_items, make_list
 
 _ABOUT_PLANS = frozenset({"tellHow", "untellHow", "askHow", "tell-how", "untell-how", "ask-how"})
 """Performatives whose content may be the text of a plan, a string as in AgentSpeak."""
@@ -33,9 +34,12 @@ def content_of(value: object, performative: str = "tell") -> Term:
 
 
 def heard(content: Term) -> Any:
-    """The content of a message as a Python value: a `Literal`, another value, or a list of them."""
+    """The content of a message as a Python value: a `Literal`, another value such as the text of a plan, or a list."""
     content = resolve(content)
-    return [heard(item) for item in list_items(content)] if is_list(content) else value_of(content)
+    if is_list(content):
+        return [heard(item) for item in list_items(content)]
+    symbol = functor_of(content)
+    return value_of(content) if symbol is not None and symbol.kind == PLAIN else to_value(content)
 
 
 class ReceivedMessage(Message):

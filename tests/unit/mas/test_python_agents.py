@@ -788,3 +788,31 @@ def accept_kill(self, killer):
     assert result.errors == [
         f"[a] error: accept_kill: AttributeError: A has no attribute 'friends' ({tmp_path}/a.py:7, in accept_kill)"
     ]
+
+
+def test_all_kinds_of_contents_are_heard(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    async for message in self.messages():
+        self.print(message.performative, " ", repr(message.content))
+        if message.performative == "askHow":
+            message.reply(["+!g(X) <- .print(X)."])
+""",
+        """!go. +!go <- .send(a, tellHow, {+!g(X) : p(X) <- .print(x)}); .send(a, untellHow, "l1");
+            .send(a, askHow, {+!g(_)}, P); .print(P); .send(a, signal, s(1)); .send(a, unachieve, g(2));
+            .send(a, tell, [1, "text", b]); .send(a, tell, "text"); .send(a, tell, 7); .send(a, unknown, ~n::f(3)).""",
+    )
+    assert result.of("bob") == ['["+!g(X) <- .print(X)."]']
+    assert result.of("a") == [
+        "tellHow '{ +!g(X) : p(X) <- .print(x) }'",
+        "untellHow 'l1'",
+        "askHow '{ +!g(_1) }'",
+        "signal Literal(functor='s', arguments=(1,), annotations=(), negated=False, namespace=None)",
+        "unachieve Literal(functor='g', arguments=(2,), annotations=(), negated=False, namespace=None)",
+        "tell [1, 'text', Literal(functor='b', arguments=(), annotations=(), negated=False, namespace=None)]",
+        "tell 'text'",
+        "tell 7",
+        "unknown Literal(functor='f', arguments=(3,), annotations=(), negated=True, namespace='n')",
+    ]
