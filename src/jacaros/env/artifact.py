@@ -67,8 +67,8 @@ class Host(Protocol):
     def execute_linked(self, request: OperationRequest) -> OperationExecution:
         """Run a linked operation."""
 
-    def operations_changed(self) -> None:
-        """Be told that an artifact has other operations now."""
+    def operations_changed(self, artifact_id: ArtifactId) -> None:
+        """Be told that an artifact has other operations from now on."""
 
 
 class Artifact:
@@ -442,7 +442,7 @@ class Artifact:
     def _own_interface(self) -> Interface:
         if self._steps.interface is type(self).interface:
             self._steps.interface = self._steps.interface.copy()
-        self.workspace.operations_changed()
+        self.workspace.operations_changed(self.id)
         return self._steps.interface
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from jacaros.env.errors import UnknownArtifact
 from jacaros.env.ids import ArtifactId
+from jacaros.env.offering import Offering, Providers
 from jacaros.env.ports import Workspace
 
 
@@ -57,9 +58,15 @@ def _preferred(
     own: str,
     focused: Sequence[ArtifactId],
 ) -> ArtifactId:
-    exact = f"{operation}/{arity}"
-    candidates = [c for c in candidates if exact in workspace.offers(c)] or candidates
-    for candidate in candidates:
-        if candidate.creator == own:
-            return candidate
-    return next((artifact for artifact in focused if artifact in candidates), candidates[0])
+    if isinstance(candidates, Providers):
+        offering = candidates.offering
+    else:
+        # The workspace is served from elsewhere.
+        offering = Offering()
+        exact = f"{operation}/{arity}"
+        for candidate in candidates:
+            offering.add(candidate, exact in workspace.offers(candidate))
+    of_own = offering.oldest_of(own)
+    if of_own is not None:
+        return of_own
+    return next((artifact for artifact in focused if offering.is_preferred(artifact)), offering.oldest())

@@ -17,6 +17,7 @@ from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
 from jacaros.env.manual import Manual, describe
 from jacaros.env.observation import Observer
+from jacaros.env.offering import Offering
 from jacaros.env.operation import (
     LINK,
     OPERATION,
@@ -51,10 +52,10 @@ class Workspace(ports.Workspace):
         self._artifacts: dict[str, ArtifactId] = {}
         self._personal: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
-        self._providers: dict[tuple[str, int], tuple[ArtifactId, ...]] = {}
+        self._offerings: dict[tuple[str, int], Offering] = {}
         self._offers: dict[ArtifactId, dict[str, None]] = {}
-        self._watchers: list[Watcher] = []
-        self._watchers_of_all: list[Watcher] = []
+        self._watchers: dict[object, Watcher] = {}
+        self._watchers_of_all: dict[object, Watcher] = {}
 
     # ---- artifacts come and go
 
@@ -236,20 +237,24 @@ class Workspace(ports.Workspace):
             personal: also with those of `personal_artifacts`.
         """
         watchers = self._watchers_of_all if personal else self._watchers
-        watchers.append(watcher)
-        return lambda: watchers.remove(watcher) if watcher in watchers else None
+        watch = object()
+        watchers[watch] = watcher
+        return lambda: watchers.pop(watch, None) and None
 
     def providers(self, operation: str, arity: int) -> tuple[ArtifactId, ...]:
         """The artifacts that offer *operation* with *arity* arguments to agents, the oldest first."""
-        found = self._providers.get((operation, arity))
-        if found is None:
-            found = tuple(
-                artifact_id
-                for artifact_id in self._artifacts.values()
-                if self.interface(artifact_id).operations.find(operation, arity) is not None
-            )
-            self._providers[operation, arity] = found
-        return found
+        offering = self._offerings.get((operation, arity))
+        if offering is None:
+            offering = self._offerings[operation, arity] = Offering()
+            for artifact_id in self._artifacts.values():
+                self._offer_of(artifact_id, operation, arity, offering)
+        return offering.providers()
+
+    def _offer_of(self, artifact_id: ArtifactId, operation: str, arity: int, offering: Offering) -> None:
+        """Take an artifact into the offering of an operation, if it offers it."""
+        declared = self.interface(artifact_id).operations.find(operation, arity)
+        if declared is not None:
+            offering.add(artifact_id, not declared.common and declared.signature.rest is None)
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
         """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``.
@@ -279,10 +284,11 @@ class Workspace(ports.Workspace):
         steps = self._steps_of(artifact_id)
         return describe(steps.artifact_type, steps.interface, steps.publication.committed())
 
-    def operations_changed(self) -> None:
-        """Be told that an artifact has other operations now."""
-        self._providers.clear()
-        self._offers.clear()
+    def operations_changed(self, artifact_id: ArtifactId) -> None:
+        """Be told that an artifact has other operations from now on."""
+        self._offers.pop(artifact_id, None)
+        if self._artifacts.get(artifact_id.name) is artifact_id:
+            self._offerings.clear()
 
     def interface(self, artifact_id: ArtifactId) -> Interface:
         """The operations of an artifact.
@@ -394,13 +400,17 @@ class Workspace(ports.Workspace):
         return steps
 
     def _changed(self, artifact_id: ArtifactId, present: bool) -> None:
-        self._providers.clear()
-        self._offers.clear()
+        for (operation, arity), offering in self._offerings.items():
+            if present:
+                self._offer_of(artifact_id, operation, arity, offering)
+            else:
+                offering.remove(artifact_id)
+        self._offers.pop(artifact_id, None)
         self._tell(self._watchers, artifact_id, present)
         self._tell(self._watchers_of_all, artifact_id, present)
 
-    def _tell(self, watchers: list[Watcher], artifact_id: ArtifactId, present: bool) -> None:
-        for watcher in tuple(watchers):
+    def _tell(self, watchers: dict[object, Watcher], artifact_id: ArtifactId, present: bool) -> None:
+        for watcher in tuple(watchers.values()):
             try:
                 watcher(artifact_id, present)
             except Exception as error:

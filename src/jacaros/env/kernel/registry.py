@@ -8,6 +8,8 @@ from jacaros.env.kernel.steps import Steps
 
 Promise = tuple[Interface, Callable[[], Steps]]
 """What an artifact that has not been made yet will offer, and what makes it."""
+OutPort = tuple[ArtifactId, str]
+"""An artifact and the name of one of its out ports."""
 
 
 class Registry:
@@ -21,7 +23,8 @@ class Registry:
         self._promises: dict[ArtifactId, Promise] = {}
         self._forget: dict[ArtifactId, Callable[[ArtifactId], None]] = {}
         self._ending: list[Steps] = []
-        self._links: dict[tuple[ArtifactId, str], list[ArtifactId]] = {}
+        self._links: dict[OutPort, dict[ArtifactId, None]] = {}
+        self._linked: dict[ArtifactId, dict[OutPort, None]] = {}
         self._last_number = 0
 
     def next_number(self) -> int:
@@ -71,19 +74,33 @@ class Registry:
 
     def _remove(self, artifact_id: ArtifactId) -> None:
         del self._steps[artifact_id]
-        for key, targets in tuple(self._links.items()):
-            kept = [target for target in targets if target is not artifact_id]
-            if kept and key[0] is not artifact_id:
-                self._links[key] = kept
-            else:
-                del self._links[key]
+        for port in tuple(self._linked.get(artifact_id, ())):
+            targets = (artifact_id,) if port[0] is not artifact_id else tuple(self._links[port])
+            for target in targets:
+                self._unlink(port, target)
         self._forget.pop(artifact_id)(artifact_id)
+
+    def _unlink(self, port: OutPort, target: ArtifactId) -> None:
+        behind = self._links[port]
+        del behind[target]
+        if not behind:
+            del self._links[port]
+            self._let_go(port[0], port)
+        if target is not port[0]:
+            self._let_go(target, port)
+
+    def _let_go(self, artifact_id: ArtifactId, port: OutPort) -> None:
+        ports = self._linked[artifact_id]
+        del ports[port]
+        if not ports:
+            del self._linked[artifact_id]
 
     def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
         """Put *to_id* behind *port* of *from_id*, after those that are there; once is enough."""
-        targets = self._links.setdefault((from_id, port), [])
-        if to_id not in targets:
-            targets.append(to_id)
+        out = (from_id, port)
+        self._links.setdefault(out, {})[to_id] = None
+        for end in (from_id, to_id):
+            self._linked.setdefault(end, {})[out] = None
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """The artifacts behind *port* of *from_id*, in the order of linking."""
