@@ -8,6 +8,7 @@ from jacaros.env.artifact import Artifact
 from jacaros.env.creation import FindType
 from jacaros.env.default.furnishing import furnish
 from jacaros.env.errors import OperationFailed, UnknownArtifactType
+from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
 from jacaros.env.operation import OPERATION, OperationRequest
@@ -71,6 +72,10 @@ class Environment:
     @tracer.setter
     def tracer(self, tracer: Tracer | None) -> None:
         self._setting.tracer = tracer
+
+    def when_disposed(self, callback: Callable[[ArtifactId], None]) -> None:
+        """Call *callback* with the id of every artifact that is gone, when all who observed it have been told."""
+        self._registry.when_disposed.append(callback)
 
     def workspaces(self) -> tuple[ports.Workspace, ...]:
         """All workspaces, the oldest first."""

@@ -216,12 +216,15 @@ class PropertyStore:
         added: list[ObservableProperty] = []
         removed: list[ObservableProperty] = []
         for key, (name, before) in self.changing.items():
-            now = self._by_name[name].get(key)
-            if before is None:
-                if now is not None:
-                    added.append(now)
-            elif now is None:
-                removed.append(before)
+            properties = self._by_name.get(name, _NONE)
+            now = properties.get(key)
+            if now is None:
+                if before is not None:
+                    removed.append(before)
+                if not properties:
+                    self._by_name.pop(name, None)
+            elif before is None:
+                added.append(now)
             else:
                 changed.append((before, now))
         self.changing.clear()

@@ -118,6 +118,9 @@ class Surroundings:
         self._activity = activity
         self._references = References()
         self._writer = PerceptWriter(self._references, self.environment.workspace)
+        # Artifacts may come and go by the million.
+        self.environment.when_disposed(self._references.forget)
+        self.environment.when_disposed(self._writer.forget)
 
     def make_body(self, host: AgentHost) -> AgentBody:
         """A body for an agent, in ``/main``."""

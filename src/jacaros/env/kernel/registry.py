@@ -16,6 +16,9 @@ class Registry:
     """Finds the artifact behind an id, and the artifacts behind an out port.
 
     An artifact may be promised: it has its id, and is made when somebody first wants more than its operations.
+
+    Attributes:
+        when_disposed: called with the id of an artifact that is gone, when all who observed it have been told.
     """
 
     def __init__(self) -> None:
@@ -26,6 +29,7 @@ class Registry:
         self._links: dict[OutPort, dict[ArtifactId, None]] = {}
         self._linked: dict[ArtifactId, dict[OutPort, None]] = {}
         self._last_number = 0
+        self.when_disposed: list[Callable[[ArtifactId], None]] = []
 
     def next_number(self) -> int:
         """A number for a new artifact."""
@@ -66,6 +70,8 @@ class Registry:
             self._remove(steps.id)
         steps.dispose()
         self._ending = [each for each in (*self._ending, steps) if not each.over]
+        for callback in self.when_disposed:
+            callback(steps.id)
 
     async def ended(self) -> None:
         """Wait until all disposed artifacts have given back everything."""

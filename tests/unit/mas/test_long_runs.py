@@ -1,0 +1,110 @@
+"""Artifacts come and go, properties change, agents focus and stop: the run keeps as many objects as before."""
+
+import gc
+from pathlib import Path
+from typing import Any
+
+from jacaros.bdi.act import Percept
+from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.steps import Steps
+from jacaros.env.property import ObservableProperty
+from jacaros.terms.values import Reference
+from jacaros.testing import run_project
+
+ARTIFACTS = """
+from jacaros.env import Artifact, operation
+
+class Lamp(Artifact):
+    def init(self, number: int = 0) -> None:
+        self.define_property("lit", number)
+
+    @operation
+    def switch(self, number: int) -> None:
+        self.update_property("lit", number)
+"""
+COMES_AND_GOES = """
+!go(COUNT).
++!go(0) <- .wait(1000).
++!go(N) <-
+    makeArtifact("lamp", "Lamp", [N], Id);
+    focus(Id);
+    switch(N + 1)[artifact_id(Id)];
+    TEST
+    disposeArtifact(Id);
+    !go(N - 1).
+"""
+CHANGES = """
+!begin.
++!begin <- makeArtifact("lamp", "Lamp", [], Id); focus(Id); !go(COUNT).
++!go(0) <- .wait(1000).
++!go(N) <- switch(N); !go(N - 1).
++lit(N) : N mod 2 = 0 <- -+seen(N).
+"""
+KINDS = (ArtifactId, Steps, ObservableProperty, Percept, Reference)
+
+
+def kept(folder: Path, program: str, count: int) -> tuple[dict[str, int], dict[str, int]]:
+    """How many objects there are, and entries in what lives as long as the run, when the program waits at its end."""
+    files = {
+        "artifacts.py": ARTIFACTS,
+        "agent.asl": program.replace("COUNT", str(count)),
+        "run.mas2j": "MAS run { environment: jacaros.Environment agents: agent agent.asl; }",
+    }
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    gc.collect()
+    before = objects()
+    found: list[tuple[dict[str, int], dict[str, int]]] = []
+
+    def look(system: Any) -> None:
+        gc.collect()
+        there = objects()
+        host = system.directory.find("agent")
+        surroundings = system.surroundings()
+        entries = {
+            "references": len(surroundings._references._kept),
+            "annotations": len(surroundings._writer._annotations),
+            "held percepts": len(host.mind.held_percepts),
+            "beliefs": sum(map(len, host.mind.beliefs.values())),
+            "pending": len(host.body.pending),
+            "intentions": len(host.mind.alive),
+        }
+        found.append(({kind: there[kind] - before[kind] for kind in there}, entries))
+
+    def started(system: Any) -> None:
+        system.clock.call_later(0.9, lambda: look(system))
+
+    result = run_project(folder / "run.mas2j", when_started=started, seconds=1.0)
+    assert result.errors == []
+    return found[0]
+
+
+def objects() -> dict[str, int]:
+    counts = dict.fromkeys((kind.__name__ for kind in KINDS), 0)
+    for each in gc.get_objects():
+        if type(each) in KINDS:
+            counts[type(each).__name__] += 1
+    return counts
+
+
+def check_flat(folder: Path, program: str, few: int, many: int) -> None:
+    """A long run keeps as much as a short one; what earlier tests have left may go meanwhile."""
+    objects_of_few, entries_of_few = kept(folder, program, few)
+    objects_of_many, entries_of_many = kept(folder, program, many)
+    assert entries_of_many == entries_of_few
+    for kind, number in objects_of_many.items():
+        assert number - max(objects_of_few[kind], 0) < (many - few) / 10, kind
+
+
+def test_artifacts_that_come_and_go_leave_nothing_behind(tmp_path: Path) -> None:
+    program = COMES_AND_GOES.replace("TEST", "?lit(_);")
+    check_flat(tmp_path, program, 20, 520)
+
+
+def test_updates_leave_nothing_behind(tmp_path: Path) -> None:
+    check_flat(tmp_path, CHANGES, 20, 2020)
+
+
+def test_who_focuses_and_stops_leaves_nothing_behind(tmp_path: Path) -> None:
+    program = COMES_AND_GOES.replace("TEST", "stopFocus(Id); focus(Id); stopFocus(Id);")
+    check_flat(tmp_path, program, 20, 520)
