@@ -3,9 +3,7 @@
 import sysconfig
 from pathlib import Path
 
-import jacaros
-
-_OURS = str(Path(jacaros.__file__).parent)
+_OURS = str(Path(__file__).parents[1])
 _STANDARD = sysconfig.get_path("stdlib")
 
 
