@@ -1,14 +1,11 @@
 """Recording, replay page, ground truth and terminal view of a run."""
 
-from functools import partial
 from pathlib import Path
 from types import TracebackType
 
-from jacaros.bdi.agent import Agent
-from jacaros.bdi.meta_events import observe_goals
-from jacaros.cli.goal_news import GoalNews
 from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
+from jacaros.inspector.goal_news import GoalNews
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.replay import write_replay
 from jacaros.inspector.terminal_view import TerminalView
@@ -57,8 +54,7 @@ class Watching:
         self._watch.start()
         news = GoalNews(partial(self._watch.event, "goal"))
         for host in mas.directory:
-            if isinstance(host.mind, Agent):
-                observe_goals(host.mind, partial(news, host.mind.name))
+            news.listen(host)
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""

@@ -1,6 +1,7 @@
 """Watching a run: recorder, replay page, still picture, and a live view in the terminal.  It reads only."""
 
 from jacaros.inspector.picture import write_picture
+from jacaros.inspector.record import record
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Frame, Recording
 from jacaros.inspector.replay import write_replay
@@ -16,6 +17,7 @@ __all__ = [
     "TerminalView",
     "Watch",
     "Watcher",
+    "record",
     "views_of",
     "write_picture",
     "write_replay",

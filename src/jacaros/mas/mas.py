@@ -1,7 +1,7 @@
 """Agents, artifacts and robots inside a Python program."""
 
 import asyncio
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from jacaros.extension.python_agent import PythonAgent
     from jacaros.mas.mailbox import Mailbox, PythonMailboxes
     from jacaros.mas.surroundings import Surroundings
+    from jacaros.ros.backend import Backend
+    from jacaros.sim import World
 
 _PYTHON = "python"
 """Who messages come from whose sender is not given."""
@@ -355,8 +357,38 @@ class Mas:
         """
         _, waits = self._running
         stream: Stream[PrintedLine] = Stream(waits, f"{agent or 'no agent'} printed nothing")
-        self._console.add(stream, agent)
+
+        def put(printing: str, text: str) -> None:
+            if agent in (None, printing):
+                stream.put(PrintedLine(printing, text))
+
+        self._console.listen(put)
         return stream
+
+    def on_print(self, told: OnPrint) -> Callable[[], None]:
+        """Call *told* with agent and text of everything that is printed from now on; gives what ends that.
+
+        It is called in the middle of the agent's step: it may note the line, and give beliefs, percepts and messages.
+        """
+        return self._console.listen(told)
+
+    # ---- robots
+
+    @property
+    def ros(self) -> "Backend":
+        """The system's node in the ROS graph, for publishers, subscriptions and services of Python code."""
+        return self._open.ros.backend()
+
+    @property
+    def world(self) -> "World | None":
+        """The embedded robot world, which knows what truly happens (`jacaros.sim.World`); None on a real graph.
+
+        It is made when the first artifact asks for a robot, or this is first asked for.
+        """
+        system = self._running[0]
+        if system.ros.world is None and self._options.ros == "memory" and system.exit_code is None:
+            system.ros.backend()
+        return system.ros.world
 
     # ---- the environment
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from jacaros.mas.console import StandardConsole
-from jacaros.mas.stream import Stream
 
 
 class PrintedLine(NamedTuple):
@@ -42,18 +41,18 @@ class PrintedConsole:
         standard = StandardConsole(output=_Standard("stdout"), errors=_Standard("stderr"))  # type: ignore[arg-type]
         self._on_print = on_print or standard.print
         self._on_log = on_log or standard.log
-        self._streams: list[tuple[str | None, Stream[PrintedLine]]] = []
+        self._listeners: list[OnPrint] = []
 
-    def add(self, stream: Stream[PrintedLine], agent: str | None) -> None:
-        """Put lines into a stream from now on: those of one agent, or of all."""
-        self._streams.append((agent, stream))
+    def listen(self, told: OnPrint) -> Callable[[], None]:
+        """Tell *told* what is printed from now on, too; gives what ends that."""
+        self._listeners.append(told)
+        return lambda: self._listeners.remove(told) if told in self._listeners else None
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output."""
         self._on_print(agent, text)
-        for wanted, stream in self._streams:
-            if wanted in (None, agent):
-                stream.put(PrintedLine(agent, text))
+        for told in tuple(self._listeners):
+            told(agent, text)
 
     def log(self, text: str, level: str = "info") -> None:
         """Tell people about what happens."""

@@ -2,7 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import count
+
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.meta_events import observe_goals
+from jacaros.mas.agent_host import AgentHost
 
 Tell = Callable[[dict[str, object]], None]
 
@@ -33,6 +38,11 @@ class GoalNews:
         self._tell = tell
         self._numbers = count(1)
         self._goals: dict[tuple[str, int], _Goal] = {}
+
+    def listen(self, host: AgentHost) -> None:
+        """Hear of the goals of an agent from now on; agents written in Python have none."""
+        if isinstance(host.mind, Agent):
+            observe_goals(host.mind, partial(self, host.name))
 
     def __call__(self, agent: str, state: str, goal: str, number: int) -> None:
         """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jacaros.cli.goal_news import GoalNews
+from jacaros.inspector.goal_news import GoalNews
 
 
 @pytest.fixture

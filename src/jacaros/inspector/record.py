@@ -1,0 +1,66 @@
+"""Recording a system that runs inside a Python program."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+from jacaros.inspector.goal_news import GoalNews
+from jacaros.inspector.recorder import Recorder
+from jacaros.inspector.recording import Recording
+from jacaros.inspector.replay import write_replay
+from jacaros.inspector.watch import Watch
+from jacaros.mas.mas import Mas
+
+
+@contextmanager
+def record(
+    mas: Mas, path: str | Path | None = None, replay: str | Path | None = None
+) -> Iterator[Recording | None]:
+    """Record what happens inside a ``with``: the world and its robots, what agents print and pursue.
+
+    ::
+
+        async with Mas("patrol.jcm", seed=1) as mas:
+            with record(mas, "patrol.jsonl", replay="patrol.html"):
+                await mas.ended()
+
+    Args:
+        mas: the running system.
+        path: file for the recording, as ``jacaros run --record`` writes it; None for none.
+        replay: file for a page that shows it in a browser; None for none.
+
+    Returns:
+        The recording, which grows; None when only a file is written.
+
+    Raises:
+        OSError: a file cannot be written.
+        RunEnded: the system does not run.
+    """
+    world = mas.world
+    drawing = world.description.drawing() if world is not None else {}
+    keep = replay is not None or path is None
+    recorder = Recorder(path, keep=keep)
+    recorder.world(drawing)
+    watch = Watch(mas.clock, [recorder], world)
+    watch.start()
+    directory = mas.system.directory
+    news = GoalNews(partial(watch.event, "goal"))
+    for host in directory:
+        news.listen(host)
+
+    def came(name: str, present: bool) -> None:
+        host = directory.find(name)
+        if present and host is not None:
+            news.listen(host)
+
+    ends = mas.on_print(watch.text), directory.watch(came)
+    try:
+        yield recorder.recording if keep else None
+    finally:
+        for end in ends:
+            end()
+        watch.stop()
+        recorder.close()
+    if replay is not None:
+        write_replay(recorder.recording, replay)
