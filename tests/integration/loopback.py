@@ -283,7 +283,9 @@ class RemoteWorkspace(ports.Workspace):
         reason = Structure("artifact_not_available", (name,))
         raise UnknownArtifact(f"workspace {self.path} has no artifact {name}", reason)
 
-    def watch(self, watcher: Callable[[ArtifactId, bool], None]) -> Callable[[], None]:
+    def watch(
+        self, watcher: Callable[[ArtifactId, bool], None], personal: bool = False
+    ) -> Callable[[], None]:
         self._watchers.append(watcher)
         return lambda: self._watchers.remove(watcher)
 

@@ -85,7 +85,7 @@ def test_agents_of_two_systems_talk() -> None:
         )
         bob = there.add_agent("bob", "weather(fine). +done[source(S)] <- .print(S).")
         await settled(here, there)
-        await ann.achieve("go")
+        await ann.achieve("go").wait(timeout=9)
         await bob.until("done[source(ann)]", timeout=1)
         assert bob.believes('color(box, "dark red", [1, p(_)])[source(ann)]')
         await settled(here, there)
@@ -102,11 +102,11 @@ def test_a_message_that_does_not_arrive_comes_back() -> None:
         """
         ann = here.add_agent("ann", program)
         first.agents.know("bob", True)  # what was told of him was true once
-        await ann.achieve("ask")
+        await ann.achieve("ask").wait(timeout=9)
         await ann.achieve("say")
         await settled(here, there)
         first.agents.know("bob", False)
-        await ann.achieve("ask")
+        await ann.achieve("ask").wait(timeout=9)
 
     assert run(test) == [
         "[ann] receiver_not_found",
@@ -136,7 +136,7 @@ def test_services_of_both_are_found() -> None:
         await settled(here, there)
         bob = there.add_agent("bob", "+!go <- .df_register(taxi); .df_search(cleaning, L); .print(L).")
         await settled(here, there)
-        await bob.achieve("go")
+        await bob.achieve("go").wait(timeout=9)
         assert await ann.until('provider(A, "taxi")', timeout=1) == {"A": Atom("bob")}
         assert list(here.system.services.providers("taxi")) == ["bob"]
         await settled(here, there)
@@ -170,7 +170,7 @@ def test_an_agent_uses_an_artifact_of_the_other_system() -> None:
             +tick(B)[artifact_name(A), workspace(W, _)] <- .print(B, A, W).
             """,
         )
-        await bob.achieve("go")
+        await bob.achieve("go").wait(timeout=9)
         assert await bob.until("count(X)") == {"X": 12}
         assert here.system.environment is not None
         there_seen = bob.ask("focusing(_, N, T, _, W, P)")
@@ -191,7 +191,7 @@ def test_both_sides_see_the_same_artifact() -> None:
         await shared(here, there, *sides)
         ann = here.add_agent("ann", "", focus=["lab/counter"])
         bob = there.add_agent("bob", "+!go <- inc(4).", join=["/main/far"])
-        await bob.achieve("go")
+        await bob.achieve("go").wait(timeout=9)
         assert await ann.until("count(X) & X > 1", timeout=1) == {"X": 5}
 
     run(test)
@@ -212,11 +212,11 @@ def test_making_linking_and_disposing_reach_the_other_system() -> None:
             -count(N) <- .print(gone, N).
             """,
         )
-        await bob.achieve("make")
+        await bob.achieve("make").wait(timeout=9)
         second = remote.lookup("second")
         assert (second.creator, second.workspace) == ("bob", "/main/far")
-        await bob.achieve("wrong")
-        await bob.achieve("drop")
+        await bob.achieve("wrong").wait(timeout=9)
+        await bob.achieve("drop").wait(timeout=9)
         await bob.until("not count(_)", timeout=1)
         assert not bob.believes("focusing(_, second, _, _, _, _)")
         with pytest.raises(OperationFailed):
@@ -261,12 +261,12 @@ def test_stopping_to_focus_and_killing_reach_the_other_system() -> None:
             '+!go <- joinWorkspace("/main/far"); lookupArtifact("counter", Id); focus(Id). '
             '+!stop <- lookupArtifact("counter", Id); stopFocus(Id).',
         )
-        await bob.achieve("go")
+        await bob.achieve("go").wait(timeout=9)
         assert [observer.agent for observer in lab.observers(counter)] == ["bob"]  # type: ignore[attr-defined]
-        await bob.achieve("stop")
+        await bob.achieve("stop").wait(timeout=9)
         await bob.until("not count(_)", timeout=1)
         assert lab.observers(counter) == ()  # type: ignore[attr-defined]
-        await bob.achieve("go")
+        await bob.achieve("go").wait(timeout=9)
         bob.kill()
         await settled(here, there)
         assert lab.observers(counter) == ()  # type: ignore[attr-defined]
