@@ -1,5 +1,6 @@
 """Recording, replay page, ground truth and terminal view of a run."""
 
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 
