@@ -8,7 +8,7 @@ from typing import Any
 from jacaros.env.artifact import Artifact
 from jacaros.env.choice import artifact_named, chosen_artifact
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed
+from jacaros.env.errors import OperationFailed, WorkspaceError
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import Workspace
@@ -16,7 +16,7 @@ from jacaros.env.session_account import Account
 from jacaros.env.session_operation import SessionOperation
 from jacaros.env.session_perception import Perceiving
 from jacaros.env.session_workspaces import SessionWorkspaces
-from jacaros.env.values import Structure, plain
+from jacaros.env.values import Out, Structure, plain
 
 
 class Session(Perceiving):
@@ -271,6 +271,10 @@ class Session(Perceiving):
             Its handle.  An operation that cannot begin, such as one that nobody offers, has failed already.
         """
         self._check()
+        if any(each is Out for each in arguments):
+            raise WorkspaceError(
+                f"an argument of {operation} is the class Out: write Out() where a result is wanted"
+            )
         given = tuple(map(plain, arguments))
         handle = SessionOperation(operation, given, self._complain)
         self._under_way[handle] = None

@@ -250,11 +250,19 @@ class PythonAgent(InEnvironment):
         Raises:
             TimeoutError: none came within *timeout* seconds.
         """
-        return await self._host.mail.next_message(timeout)
+        return await self._unread.next_message(timeout)
 
     def messages(self) -> AsyncIterator[ReceivedMessage]:
         """All messages, for ``async for``: those that have come already, and those to come."""
-        return _Messages(self._host.mail)
+        return _Messages(self._unread)
+
+    @property
+    def _unread(self) -> Mail:
+        if overridden(self, "on_message") is not None:
+            raise JacarosError(
+                f"{type(self).__name__} has on_message, which is called with every message: none is left to be waited for"
+            )
+        return self._host.mail
 
     # --- other agents --------------------------------------------------------------------------------------
 

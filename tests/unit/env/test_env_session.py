@@ -126,6 +126,8 @@ def test_values_of_out_arguments_are_given(play):
         assert await session.act("getCurrentPose", Out(), Out()) == (0.0, 0.0)
         assert await session.act("x", Out()) == 0.0
         assert await session.act("nothing", Out()) is None
+        with pytest.raises(WorkspaceError, match=r"an argument of x is the class Out: write Out\(\)"):
+            await session.act("x", Out)
 
     play(scene)
 
