@@ -1,0 +1,1 @@
++!make <- makeArtifact("second","Named",["second"]); makeArtifact("third","Named",["third"]).
