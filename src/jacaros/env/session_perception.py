@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
-from weakref import WeakSet
+from weakref import ref
 
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
@@ -33,7 +33,8 @@ class Perceiving:
         self.name = name
         self._account: Account = account if account is not None else NoAccount()
         self._observed = Observed(name, self._tell)
-        self._streams: WeakSet[SignalStream] = WeakSet()
+        # In the order of their making, so that a run is repeatable; who reads one keeps it alive.
+        self._streams: list[ref[SignalStream]] = []
         self._conditions = Conditions()
         self._on_change: list[Callable[[PropertyChange], object]] = []
         self._on_signal: list[Callable[[ReceivedSignal], object]] = []
@@ -121,7 +122,7 @@ class Perceiving:
         """
         self._check()
         stream = SignalStream(name, self._narrowed(artifact), self._account.waiting)
-        self._streams.add(stream)
+        self._streams.append(ref(stream, self._streams.remove))
         return stream
 
     def on_change(self, callback: Callable[[PropertyChange], object]) -> Callable[[], None]:
@@ -169,7 +170,7 @@ class Perceiving:
     def _tell(self, observation: Observation) -> None:
         for name, arguments in observation.signals:
             signal = ReceivedSignal(name, tuple(map(plain, arguments)), observation.artifact)
-            for stream in tuple(self._streams):
+            for stream in self._read_streams():
                 stream.put(signal)
             for on_signal in tuple(self._on_signal):
                 self._call(on_signal, signal, "a callback for signals failed:")
@@ -178,6 +179,9 @@ class Perceiving:
                 for on_change in tuple(self._on_change):
                     self._call(on_change, change, "a callback for changes failed:")
         self._conditions.evaluate()
+
+    def _read_streams(self) -> list[SignalStream]:
+        return [stream for each in self._streams if (stream := each()) is not None]
 
     def _call(self, callback: Callable[[T], object], told: T, what: str) -> None:
         try:
@@ -192,7 +196,7 @@ class Perceiving:
     def _end_perceiving(self) -> None:
         self._on_change.clear()
         self._on_signal.clear()
-        for stream in tuple(self._streams):
+        for stream in self._read_streams():
             stream.close()
         self._conditions.close(self._is_closed())
         for artifact in self.focused:

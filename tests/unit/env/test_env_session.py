@@ -642,3 +642,28 @@ def test_account_is_kept_of_what_is_waited_for(play):
         assert (books.pending, books.passive) == (0, 0)
 
     play(scene)
+
+
+def test_streams_get_a_signal_in_the_order_of_their_making_and_go_when_nobody_reads_them(play):
+    async def scene(stage):
+        session = session_in(stage)
+        session.focus(await session.make_artifact("counter", Counter))
+        woken = []
+
+        async def read(number):
+            async for _ in session.signals("tick"):
+                woken.append(number)
+                break
+
+        reading = [asyncio.ensure_future(read(number)) for number in range(50)]
+        await asyncio.sleep(0)
+        await session.act("inc")
+        await asyncio.gather(*reading)
+        assert woken == list(range(50))
+        del reading
+        kept = session.signals("tick")
+        await session.act("inc")
+        assert session._streams[-1]() is kept
+        assert len(session._streams) == 1
+
+    play(scene)
