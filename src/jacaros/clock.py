@@ -191,6 +191,7 @@ class _VirtualSelector(selectors.DefaultSelector):
         super().__init__()
         self.clock = clock
         self.foreign_work = 0
+        self.when_stuck: list[Callable[[], bool]] = []
         self._passed = 0
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
@@ -203,8 +204,11 @@ class _VirtualSelector(selectors.DefaultSelector):
         events = super().select(0)
         if events:
             return events
-        if not self.foreign_work and self.clock.advance(timeout):
-            return []
+        if not self.foreign_work:
+            if self.clock.advance(timeout):
+                return []
+            if timeout is None and [told for told in self.when_stuck if told()]:
+                return []
         return super().select(timeout)
 
 
@@ -215,6 +219,15 @@ class VirtualEventLoop(asyncio.SelectorEventLoop):
         self._virtual_clock = clock
         self.virtual_selector = _VirtualSelector(clock)
         super().__init__(self.virtual_selector)
+
+    def when_stuck(self, told: Callable[[], bool]) -> Callable[[], None]:
+        """Call *told* when everybody waits and no timer is left: only something from outside could go on then.
+
+        It gives True when it has given somebody something to do.  Gives what ends that.
+        """
+        watchers = self.virtual_selector.when_stuck
+        watchers.append(told)
+        return lambda: watchers.remove(told) if told in watchers else None
 
     def time(self) -> float:
         """Seconds of virtual time since the beginning."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from jacaros.clock import Clock, clock_of
+from jacaros.clock import Clock, VirtualEventLoop, clock_of
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.errors import RunEnded, UnknownAgent
@@ -92,6 +92,7 @@ class Mas:
         self._agents: dict[str, RunningAgent] = {}
         self._sessions: list[Session] = []
         self._mailboxes: PythonMailboxes | None = None
+        self._stop_watching: Callable[[], None] = lambda: None
 
     # ---- beginning and end
 
@@ -103,7 +104,8 @@ class Mas:
         """
         if self._begun is not None:
             raise UsageError("this system has run already; make another Mas")
-        clock = clock_of(asyncio.get_running_loop())
+        loop = asyncio.get_running_loop()
+        clock = clock_of(loop)
         options = replace(self._options, fast=clock.virtual)
         options.check()
         system = System(self._deployment, clock, self._console, options)
@@ -117,12 +119,15 @@ class Mas:
             waits.run_ended("the run could not be started")
             raise
         system.when_ended(lambda code: waits.run_ended(f"the run ended with exit code {code}"))
+        if isinstance(loop, VirtualEventLoop):
+            self._stop_watching = loop.when_stuck(waits.stuck)
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         system, waits = self._running
+        self._stop_watching()
         waits.run_ended("the run has ended")
         for session in self._sessions:
             session.close()

@@ -71,6 +71,12 @@ class Waits:
             if agent == name:
                 _fail(future, AgentEnded(f"{missing()}: agent {name} has ended"))
 
+    def stuck(self) -> bool:
+        """Nothing more will happen: who waits for something waits in vain.  Whether anybody did."""
+        for future, (_, missing) in tuple(self._open.items()):
+            _fail(future, TimeoutError(f"{missing()}, and nothing more will happen: everybody waits"))
+        return bool(self._open)
+
     def run_ended(self, how: str) -> None:
         """The run has ended: so have all waits."""
         self._over = how

@@ -290,6 +290,19 @@ def test_a_failed_goal_raises_with_its_reasons() -> None:
     run(test)
 
 
+def test_waiting_for_ever_on_the_virtual_clock_raises() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", '+!long <- .wait("+never"). +!later(N) <- .wait(N); +later.')
+        bob.achieve("later(5000)")
+        assert await bob.until("later") == {}
+        for waiting in (bob.achieve("long").wait(), bob.until("p"), mas.mailbox("me").get()):
+            with pytest.raises(TimeoutError, match="and nothing more will happen: everybody waits"):
+                await waiting
+        assert await asyncio.to_thread(lambda: 7) == 7
+
+    run(test)
+
+
 def test_goals_can_be_dropped_and_late() -> None:
     async def test(mas: Mas) -> None:
         bob = mas.add_agent("bob", "+!long <- .wait(10000). +!forget <- .drop_intention(long).")
