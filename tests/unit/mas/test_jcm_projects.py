@@ -82,7 +82,7 @@ def test_an_asl_path_takes_the_place_of_the_usual_ones(folder: Path) -> None:
 
 
 def test_programs_are_not_read_over_the_network(folder: Path) -> None:
-    (found,) = diagnostics(folder, 'mas m {\n agent bob : "http://there/bob.asl"\n}')
+    (found,) = diagnostics(folder, 'mas m {\n agent bob : "http://far.example/bob.asl"\n}')
     assert found.hint == "programs are read from files, not over the network"
 
 
