@@ -165,9 +165,9 @@ def test_an_unknown_artifact_class_in_a_jcm_file(project: Project) -> None:
     assert project.run_file("house.jcm") == told(
         1,
         """\
-        house.jcm:4:18: error: no artifact type is called Countr; did you mean Counter?
+        house.jcm:4:29: error: no artifact type is called Countr; did you mean Counter?
           4 |         artifact visitors : Countr(1)
-            |                  ^^^^^^^^
+            |                             ^^^^^^
         """,
     )
 
