@@ -113,7 +113,7 @@ class Artifact:
         self.name, self.id, self.workspace = steps.id.name, steps.id, host
         self.clock, self.resources = steps.setting.clock, steps.setting.resources
         self._steps = steps
-        steps.hook = self.dispose
+        steps.ending.hook = self.dispose
 
     def dispose(self) -> None:
         """Give back what the artifact holds; called when all its operations have ended.
@@ -123,7 +123,7 @@ class Artifact:
 
     def on_dispose(self, callback: Callable[[], object]) -> None:
         """Call *callback* when the artifact ends, also when its ``init`` fails; the last one first."""
-        self._steps.cleanups.append(callback)
+        self._steps.ending.cleanups.append(callback)
 
     # ---- observable properties
 

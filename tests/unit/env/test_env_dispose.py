@@ -1,6 +1,7 @@
 """The end of an artifact: observers, pending operations, hooks, and closing the environment."""
 
 import asyncio
+from contextlib import suppress
 
 import pytest
 
@@ -397,5 +398,54 @@ def test_an_artifact_can_be_disposed_through_any_workspace(play):
         stage.main.dispose_artifact(thing)
         with pytest.raises(UnknownArtifact):
             lab.lookup("it")
+
+    play(scene)
+
+
+def test_an_operation_that_does_not_let_itself_be_stopped_is_left_behind(play):
+    class Stubborn(Artifact):
+        @operation
+        async def go_on(self):
+            while self.clock.now() < self.clock.start + 1000:
+                with suppress(asyncio.CancelledError):
+                    await self.sleep(1.0)
+
+        def dispose(self):
+            self.log("given back")
+
+    async def scene(stage):
+        call = stage.call(await stage.make(Stubborn), "go_on")
+        await stage.clock.sleep(1.0)
+        await stage.environment.close()
+        assert stage.elapsed == 21.0
+        assert call.reason == Structure("artifact_disposed", ("it",))
+        assert stage.lines == [
+            "[it] operation go_on/0 has not ended 20 s after its artifact was disposed; it is left behind",
+            "[it] given back",
+        ]
+        await stage.environment.close()
+        await stage.clock.sleep(2000)
+
+    play(scene)
+
+
+def test_an_operation_that_rests_in_a_pause_fails_too(play):
+    class Resting(Artifact):
+        @operation(pausable=True)
+        async def rest(self):
+            while True:
+                await self.sleep(1.0)
+                await self.pause_point()
+
+    async def scene(stage):
+        it = await stage.make(Resting)
+        call = stage.call(it, "rest")
+        call.execution.pause()
+        await stage.clock.sleep(5.0)
+        call.execution.pause()
+        await stage.clock.sleep(5.0)
+        stage.main.dispose_artifact(it)
+        await call.wait()
+        assert (stage.elapsed, call.reason) == (10.0, Structure("artifact_disposed", ("it",)))
 
     play(scene)

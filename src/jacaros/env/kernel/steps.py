@@ -6,25 +6,22 @@ Nothing here knows what an artifact looks like to its author (`Artifact`) or whe
 
 import asyncio
 import inspect
-import threading
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from functools import partial
-from typing import TypeVar
 
-from jacaros.clock import Clock
 from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel import outcomes
 from jacaros.env.kernel.declaration import DeclaredOperation
+from jacaros.env.kernel.ending import Ending
 from jacaros.env.kernel.faults import is_interruption
 from jacaros.env.kernel.interface import Interface
-from jacaros.env.kernel.publication import Publication
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.signature import WrongArguments
+from jacaros.env.kernel.step import StepInProgress
 from jacaros.env.kernel.threads import in_thread
-from jacaros.env.kernel.turns import Guard, TurnQueue
-from jacaros.env.observation import Signal
+from jacaros.env.kernel.turns import Guard
 from jacaros.env.operation import (
     EXTERNAL,
     LINK,
@@ -33,30 +30,21 @@ from jacaros.env.operation import (
     OperationRequest,
     ignore_outcome,
 )
-from jacaros.env.property import check_name
-from jacaros.env.values import plain
 from jacaros.errors import InternalError
 
-T = TypeVar("T")
+PATIENCE = 20.0
+"""Seconds that the operations of a disposed artifact have to come to their end, as in CArtAgO."""
 
 
-class Steps:
+class Steps(StepInProgress):
     """Runs the operations of one artifact.
 
     Attributes:
-        id: the artifact.
-        clock: where its operations take time from.
-        setting: its surroundings.
         interface: what it offers; its own copy once it has defined operations of its own.
-        publication: its observable side.
-        turns: whose turn it is.
         ports: names of its out ports.
-        disposed: True when it takes no more operations.
-        over: True when the last of them has ended and everything has been given back.
         initialised: True once ``init`` has succeeded.
         abandon: called when the making of the artifact was dropped.
-        hook: called first when an initialised artifact ends.
-        cleanups: called after that, the last one first.
+        ending: what is called when the last of its operations has ended.
     """
 
     def __init__(
@@ -67,21 +55,18 @@ class Steps:
         ports: tuple[str, ...],
         setting: Setting,
     ) -> None:
-        self.id, self._artifact, self.setting = artifact_id, artifact, setting
+        super().__init__(artifact_id, setting)
+        self._artifact = artifact
         self.interface, self.ports = interface, ports
-        self.clock: Clock = setting.clock
-        self.publication = Publication(artifact_id, setting)
-        self.turns = TurnQueue(self._begin)
-        self.disposed = False
         self.initialised = False
-        self.hook: Callable[[], object] | None = None
-        self.cleanups: list[Callable[[], object]] = []
-        self._closed: asyncio.Future[None] | None = None
-        self.over = False
-        self._running: dict[OperationExecution, None] = {}
+        self.ending = Ending()
         self.abandon: Callable[[], object] = self.dispose
-        self._started: list[OperationExecution] = []
-        self._delayed: list[tuple[Signal, str | None]] = []
+        self._running: dict[OperationExecution, None] = {}
+
+    @property
+    def over(self) -> bool:
+        """True when the last operation has ended and everything has been given back."""
+        return self.ending.over
 
     @property
     def artifact_type(self) -> type:
@@ -262,7 +247,7 @@ class Steps:
         if execution.verdict is not None:
             outcome = execution.verdict
         if execution.task is not None:
-            del self._running[execution]
+            self._running.pop(execution, None)
         try:
             self.turns.end(self._tell, execution, outcome)
         finally:
@@ -297,129 +282,6 @@ class Steps:
             self.setting.log_error(self.id.name, f"error in operation {key}, its step is undone:", error)
         elif execution.request.on_done is ignore_outcome or execution.stopped:
             self.setting.log(f"[{self.id.name}] operation {key} failed: {error.message}")
-
-    # ---- steps
-
-    def inside(self) -> bool:
-        """True when called by the operation that has the turn, or by its guard."""
-        holder = self.turns.holder
-        if holder is None or holder.task is None or self.turns.asking:
-            return holder is not None
-        if holder.thread is not None:
-            return holder.thread == threading.get_ident()
-        try:
-            return asyncio.current_task() is holder.task
-        except RuntimeError:
-            return False
-
-    def current(self, wanted: str, name: str = "", changes: bool = True) -> OperationExecution:
-        """The operation that makes a step now.
-
-        Args:
-            wanted: what the caller is about to do, for the message.
-            name: and to what.
-            changes: whether that changes something, which a guard must not.
-
-        Raises:
-            InvalidArtifact: the caller is not within a step, such as in a callback, or is a guard.
-        """
-        if changes and self.turns.asking:
-            raise InvalidArtifact(
-                f"artifact {self.id.name}: {wanted} {name} is not possible within a guard; a guard only looks"
-            )
-        holder = self.turns.holder
-        if holder is not None and self.inside():
-            return holder
-        raise InvalidArtifact(
-            f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; from a callback, "
-            "another task or thread use self.start(...) to run an internal operation, or self.external_session()"
-        )
-
-    def commit(self) -> None:
-        """Publish what the step has changed so far; operations that it started may begin."""
-        if self._delayed:
-            self._publish_delayed()
-        if self.publication.properties.changing:
-            holder = self.turns.holder
-            self.publication.publish(holder.cause if holder is not None else None)
-        if self._started:
-            started, self._started = self._started, []
-            if not self.disposed:
-                self.turns.line_up(started, self._guard)
-
-    def _publish_delayed(self) -> None:
-        delayed, self._delayed = self._delayed, []
-        holder = self.turns.holder
-        cause = holder.cause if holder is not None else None
-        self.publication.publish(cause, tuple(signal for signal, addressee in delayed if addressee is None))
-        for signal, addressee in delayed:
-            if addressee is not None:
-                self.publication.publish(cause, (signal,), addressee)
-
-    def _roll_back(self) -> None:
-        """Undo what the step has changed, signalled (in a thread) and started since the last commit."""
-        self.publication.properties.roll_back()
-        self._started.clear()
-        self._delayed.clear()
-
-    def signal(self, name: str, arguments: tuple[object, ...], addressee: str | None) -> None:
-        """Publish a signal, together with what the step has changed so far."""
-        holder = self.current("the signal", name)
-        check_name(name)
-        signal = Signal(name, tuple(map(plain, arguments)))
-        if holder.declared is not None and holder.declared.threaded:
-            self._delayed.append((signal, addressee))
-            return
-        self.publication.publish(holder.cause, (signal,), addressee)
-        self.commit()
-
-    def boundary(self, wanted: str) -> OperationExecution:
-        """End the step of the coroutine that calls this; it still has the turn."""
-        execution = self.current(wanted)
-        if execution.task is None:
-            raise InvalidArtifact(
-                f"artifact {self.id.name}: {wanted} needs an operation that is an async def"
-            )
-        self.commit()
-        return execution
-
-    async def leave(self, awaitable: Awaitable[T], wanted: str) -> T:
-        """Await something while others have their turn: the end of one step and the beginning of another."""
-        try:
-            execution = self.boundary(wanted)
-        except InvalidArtifact:
-            if inspect.iscoroutine(awaitable):
-                awaitable.close()
-            raise
-        self.turns.release()
-        try:
-            result = await awaitable
-        except GeneratorExit:
-            raise
-        except BaseException:
-            await self.turns.retake(execution)
-            raise
-        await self.turns.retake(execution)
-        return result
-
-    async def until(self, guard: Guard) -> None:
-        """Go on as soon as *guard* is true; it is evaluated now and whenever a step has ended."""
-        execution = self.boundary("waiting for a condition")
-        if not callable(guard):
-            raise InvalidArtifact(
-                f"artifact {self.id.name}: until wants a function, such as a method or lambda: ..., not {guard!r}"
-            )
-        if not self.turns.ask(guard):
-            await self.turns.release_until(execution, guard)
-
-    async def pause_point(self, on_pause: Callable[[], None] | None) -> float:
-        """Wait while the operation is paused; gives the seconds that it has been paused since last asked."""
-        execution = self.current("a pause point")
-        while execution.paused:
-            if on_pause is not None:
-                on_pause()
-            await self.leave(execution.resumed(), "a pause")
-        return execution.take_paused_time()
 
     # ---- operations go
 
@@ -491,26 +353,27 @@ class Steps:
             self._interrupt(execution)
 
     async def closed(self) -> None:
-        """Wait until the disposed artifact has given back everything."""
-        if not self.over:
-            if self._closed is None:
-                self._closed = asyncio.get_running_loop().create_future()
-            await asyncio.shield(self._closed)  # who stops waiting must not end the waiting of others
+        """Wait until the disposed artifact has given back everything; what does not end is left behind in the end."""
+        if self.over:
+            return
+        limit = self.clock.call_later(PATIENCE, self._leave_behind)
+        try:
+            await self.ending.over_with()
+        finally:
+            limit.cancel()
+
+    def _leave_behind(self) -> None:
+        for execution in self._running:
+            key = outcomes.key(execution.request)
+            told = f"operation {key} has not ended {PATIENCE:g} s after its artifact was disposed; it is left behind"
+            self.setting.log(f"[{self.id.name}] {told}")
+            self._tell(execution, outcomes.disposed(execution.request))
+        self._running.clear()
+        self.ending.run(self.initialised, self.complain)
 
     def _close_if_over(self) -> None:
-        if not self.disposed or self.over or self._running or self.turns.holder is not None:
-            return
-        self.over = True
-        hooks = (self.hook,) if self.hook is not None and self.initialised else ()
-        for callback in (*hooks, *reversed(self.cleanups)):
-            try:
-                callback()
-            except BaseException as error:
-                if is_interruption(error):
-                    raise
-                self.complain("could not be disposed properly:", error)
-        if self._closed is not None and not self._closed.done():
-            self._closed.set_result(None)
+        if self.disposed and not self._running and self.turns.holder is None:
+            self.ending.run(self.initialised, self.complain)
 
 
 def _thrown_away(execution: OperationExecution) -> bool:

@@ -1,0 +1,45 @@
+"""How an artifact gives back what it holds, when the last of its operations has ended."""
+
+import asyncio
+from collections.abc import Callable
+
+from jacaros.env.kernel.faults import is_interruption
+
+
+class Ending:
+    """What is called at the end of one artifact, once.
+
+    Attributes:
+        hook: called first, when the artifact was initialised.
+        cleanups: called after that, the last one first.
+        over: True when everything has been called.
+    """
+
+    def __init__(self) -> None:
+        self.hook: Callable[[], object] | None = None
+        self.cleanups: list[Callable[[], object]] = []
+        self.over = False
+        self._over: asyncio.Future[None] | None = None
+
+    def run(self, initialised: bool, complain: Callable[[str, BaseException], None]) -> None:
+        """Call everything; *complain* is told what one of them raises."""
+        if self.over:
+            return
+        self.over = True
+        hooks = (self.hook,) if self.hook is not None and initialised else ()
+        for callback in (*hooks, *reversed(self.cleanups)):
+            try:
+                callback()
+            except BaseException as error:
+                if is_interruption(error):
+                    raise
+                complain("could not be disposed properly:", error)
+        if self._over is not None and not self._over.done():
+            self._over.set_result(None)
+
+    async def over_with(self) -> None:
+        """Wait for the end."""
+        if not self.over:
+            if self._over is None:
+                self._over = asyncio.get_running_loop().create_future()
+            await asyncio.shield(self._over)  # who stops waiting must not end the waiting of others

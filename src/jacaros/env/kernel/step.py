@@ -1,0 +1,172 @@
+"""The step in progress of one artifact: what it may do, and how it is published or undone."""
+
+import asyncio
+import inspect
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Awaitable, Callable
+from typing import TypeVar
+
+from jacaros.clock import Clock
+from jacaros.env.errors import InvalidArtifact
+from jacaros.env.execution import OperationExecution
+from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.publication import Publication
+from jacaros.env.kernel.setting import Setting
+from jacaros.env.kernel.turns import Guard, TurnQueue
+from jacaros.env.observation import Signal
+from jacaros.env.property import check_name
+from jacaros.env.values import plain
+
+T = TypeVar("T")
+
+
+class StepInProgress(ABC):
+    """The step that one artifact makes now, if any.
+
+    Attributes:
+        id: the artifact.
+        setting: its surroundings.
+        clock: where its operations take time from.
+        publication: its observable side.
+        turns: whose turn it is.
+        disposed: True when it takes no more operations.
+    """
+
+    def __init__(self, artifact_id: ArtifactId, setting: Setting) -> None:
+        self.id, self.setting = artifact_id, setting
+        self.clock: Clock = setting.clock
+        self.publication = Publication(artifact_id, setting)
+        self.turns = TurnQueue(self._begin)
+        self.disposed = False
+        self._started: list[OperationExecution] = []
+        self._delayed: list[tuple[Signal, str | None]] = []
+
+    @abstractmethod
+    def _begin(self, execution: OperationExecution, error: BaseException | None) -> None:
+        """Let an operation begin, or fail with the *error* of its guard: it has the turn."""
+
+    @abstractmethod
+    def _guard(self, execution: OperationExecution) -> Guard | None:
+        """What must be true before an operation begins."""
+
+    def inside(self) -> bool:
+        """True when called by the operation that has the turn, or by its guard."""
+        holder = self.turns.holder
+        if holder is None or holder.task is None or self.turns.asking:
+            return holder is not None
+        if holder.thread is not None:
+            return holder.thread == threading.get_ident()
+        try:
+            return asyncio.current_task() is holder.task
+        except RuntimeError:
+            return False
+
+    def current(self, wanted: str, name: str = "", changes: bool = True) -> OperationExecution:
+        """The operation that makes a step now.
+
+        Args:
+            wanted: what the caller is about to do, for the message.
+            name: and to what.
+            changes: whether that changes something, which a guard must not.
+
+        Raises:
+            InvalidArtifact: the caller is not within a step, such as in a callback, or is a guard.
+        """
+        if changes and self.turns.asking:
+            raise InvalidArtifact(
+                f"artifact {self.id.name}: {wanted} {name} is not possible within a guard; a guard only looks"
+            )
+        holder = self.turns.holder
+        if holder is not None and self.inside():
+            return holder
+        raise InvalidArtifact(
+            f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; from a callback, "
+            "another task or thread use self.start(...) to run an internal operation, or self.external_session()"
+        )
+
+    def commit(self) -> None:
+        """Publish what the step has changed so far; operations that it started may begin."""
+        if self._delayed:
+            self._publish_delayed()
+        if self.publication.properties.changing:
+            holder = self.turns.holder
+            self.publication.publish(holder.cause if holder is not None else None)
+        if self._started:
+            started, self._started = self._started, []
+            if not self.disposed:
+                self.turns.line_up(started, self._guard)
+
+    def _publish_delayed(self) -> None:
+        delayed, self._delayed = self._delayed, []
+        holder = self.turns.holder
+        cause = holder.cause if holder is not None else None
+        self.publication.publish(cause, tuple(signal for signal, addressee in delayed if addressee is None))
+        for signal, addressee in delayed:
+            if addressee is not None:
+                self.publication.publish(cause, (signal,), addressee)
+
+    def _roll_back(self) -> None:
+        """Undo what the step has changed, signalled (in a thread) and started since the last commit."""
+        self.publication.properties.roll_back()
+        self._started.clear()
+        self._delayed.clear()
+
+    def signal(self, name: str, arguments: tuple[object, ...], addressee: str | None) -> None:
+        """Publish a signal, together with what the step has changed so far."""
+        holder = self.current("the signal", name)
+        check_name(name)
+        signal = Signal(name, tuple(map(plain, arguments)))
+        if holder.declared is not None and holder.declared.threaded:
+            self._delayed.append((signal, addressee))
+            return
+        self.publication.publish(holder.cause, (signal,), addressee)
+        self.commit()
+
+    def boundary(self, wanted: str) -> OperationExecution:
+        """End the step of the coroutine that calls this; it still has the turn."""
+        execution = self.current(wanted)
+        if execution.task is None:
+            raise InvalidArtifact(
+                f"artifact {self.id.name}: {wanted} needs an operation that is an async def"
+            )
+        self.commit()
+        return execution
+
+    async def leave(self, awaitable: Awaitable[T], wanted: str) -> T:
+        """Await something while others have their turn: the end of one step and the beginning of another."""
+        try:
+            execution = self.boundary(wanted)
+        except InvalidArtifact:
+            if inspect.iscoroutine(awaitable):
+                awaitable.close()
+            raise
+        self.turns.release()
+        try:
+            result = await awaitable
+        except GeneratorExit:
+            raise
+        except BaseException:
+            await self.turns.retake(execution)
+            raise
+        await self.turns.retake(execution)
+        return result
+
+    async def until(self, guard: Guard) -> None:
+        """Go on as soon as *guard* is true; it is evaluated now and whenever a step has ended."""
+        execution = self.boundary("waiting for a condition")
+        if not callable(guard):
+            raise InvalidArtifact(
+                f"artifact {self.id.name}: until wants a function, such as a method or lambda: ..., not {guard!r}"
+            )
+        if not self.turns.ask(guard):
+            await self.turns.release_until(execution, guard)
+
+    async def pause_point(self, on_pause: Callable[[], None] | None) -> float:
+        """Wait while the operation is paused; gives the seconds that it has been paused since last asked."""
+        execution = self.current("a pause point")
+        while execution.paused:
+            if on_pause is not None:
+                on_pause()
+            await self.leave(execution.resumed(), "a pause")
+        return execution.take_paused_time()
