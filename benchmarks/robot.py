@@ -19,7 +19,10 @@ the cost of an empty Python call with three arguments in the same run):
   ``call``.
 * ``operations``: ``round_trip`` from agent to artifact and back, ``goal`` (20), ``call``.
 * ``observers``: ``observers`` (10), ``update`` (what one update costs with all of them), ``rate`` (updates a second),
-  ``goal`` (10000, a second), ``call``.
+  ``calls`` (an update in empty calls), all three where no plan is applicable to the event; ``reaction``,
+  ``reaction_rate`` and ``reaction_calls`` where one is carried out; ``goal`` (10000, a second), ``call``.
+
+Half a minute: ``robot.py operations observers``.
 """
 
 import argparse
@@ -94,8 +97,13 @@ def _operations(figures: dict[str, Any]) -> list[str]:
 
 
 def _observers(figures: dict[str, Any]) -> list[str]:
-    updates = f"{figures['rate']:.0f} updates a second to {figures['observers']} observers"
-    return [f"{updates}, {figures['update']:.1f} us each (goal: {figures['goal']})"]
+    updates = f"updates a second to {figures['observers']} observers"
+    update = f"{figures['update']:.1f} us = {figures['calls']:.0f} calls each"
+    reaction = f"{figures['reaction']:.1f} us = {figures['reaction_calls']:.0f} calls each"
+    return [
+        f"{figures['rate']:.0f} {updates}, {update} (goal: {figures['goal']})",
+        f"{figures['reaction_rate']:.0f} {updates} that react, {reaction}",
+    ]
 
 
 LINES = {
