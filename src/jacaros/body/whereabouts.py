@@ -93,7 +93,11 @@ class Whereabouts:
         for workspace in self.in_order(intention):
             if workspace.path == full or workspace.name == name:
                 return workspace
-        raise not_joined(name)
+        try:
+            # A link may lead there.
+            return self.at(self._environment.workspace(full).path)
+        except OperationFailed:
+            raise not_joined(name) from None
 
     def join(self, workspace: Workspace, intention: int | None = None) -> bool:
         """Make a workspace the current one; True when it was not joined before."""

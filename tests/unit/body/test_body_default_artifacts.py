@@ -174,6 +174,10 @@ async def test_workspaces_are_found_through_links(one: Robot, two: Robot, clock:
     assert one.ask("lookupArtifact", "/main/a/c") is made
     assert one.do("createWorkspace", "/main/b/near/new").success
     assert one.do("joinWorkspace", "/main/a/new").success
+    one.do("joinWorkspace", "/main/a")
+    assert one.do("makeArtifact", "d", "Counter", wsp="/main/b/near").success
+    assert one.ask("lookupArtifact", "d", wsp="../b/near").value.workspace == "/main/a"
+    assert detail_of(one.do("println", wsp="/main/b")) == 'workspace_not_joined("/main/b")'
     assert reason_of(one.do("linkWorkspace", "/main/a", "/main/b/near")) == (
         'workspace_already_present("/main/b/near")'
     )
