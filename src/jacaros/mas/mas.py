@@ -1,24 +1,20 @@
 """Agents, artifacts and robots inside a Python program."""
 
-import asyncio
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING
 
-from jacaros.clock import Clock, VirtualEventLoop, clock_of
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
-from jacaros.mas.errors import RunEnded, UnknownAgent
+from jacaros.mas.embedded_run import EmbeddedRun
+from jacaros.mas.errors import UnknownAgent
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.population import begin
-from jacaros.mas.printed import OnLog, OnPrint, PrintedConsole, PrintedLine
+from jacaros.mas.printed import OnLog, OnPrint, PrintedLine
 from jacaros.mas.running_agent import RunningAgent
 from jacaros.mas.stream import Stream
-from jacaros.mas.system import System
-from jacaros.mas.waits import Waits
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -36,7 +32,7 @@ _PYTHON = "python"
 """Who messages come from whose sender is not given."""
 
 
-class Mas:
+class Mas(EmbeddedRun):
     """A multi-agent system in a Python program.
 
     It runs inside ``async with``, on the event loop that the program runs on: whenever the program awaits something, the
@@ -84,138 +80,11 @@ class Mas:
         on_print: OnPrint | None = None,
         on_log: OnLog | None = None,
     ) -> None:
-        self._deployment = _deployment(project, name, Path(folder) if folder is not None else Path.cwd())
-        self._options = RunOptions(seed=seed, ros=ros, world=world, namespace=namespace)
-        self._options.check()
-        self._console = PrintedConsole(on_print, on_log)
-        self._begun: tuple[System, Waits] | None = None
+        base = Path(folder) if folder is not None else Path.cwd()
+        options = RunOptions(seed=seed, ros=ros, world=world, namespace=namespace)
+        super().__init__(_deployment(project, name, base), options, on_print, on_log)
         self._agents: dict[str, RunningAgent] = {}
-        self._sessions: list[Session] = []
         self._mailboxes: PythonMailboxes | None = None
-        self._stop_watching: Callable[[], None] = lambda: None
-
-    # ---- beginning and end
-
-    async def __aenter__(self) -> "Mas":
-        """Make what the project declares, and let its agents begin.
-
-        Raises:
-            JacarosError: it cannot be started; the text tells what is wrong.
-        """
-        if self._begun is not None:
-            raise UsageError("this system has run already; make another Mas")
-        loop = asyncio.get_running_loop()
-        clock = clock_of(loop)
-        options = replace(self._options, fast=clock.virtual)
-        options.check()
-        system = System(self._deployment, clock, self._console, options)
-        waits = Waits(clock)
-        self._begun = system, waits
-        system.population.when_ended = waits.agent_ended
-        try:
-            await system.start()
-        except BaseException:
-            await system.close()
-            waits.run_ended("the run could not be started")
-            raise
-        system.when_ended(lambda code: waits.run_ended(f"the run ended with exit code {code}"))
-        if isinstance(loop, VirtualEventLoop):
-            self._stop_watching = loop.when_stuck(waits.stuck)
-        return self
-
-    async def __aexit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        system, waits = self._running
-        self._stop_watching()
-        waits.run_ended("the run has ended")
-        for session in self._sessions:
-            session.close()
-        system.end(0)
-        await system.close()
-        if system.error is not None and (error is None or isinstance(error, RunEnded)):
-            raise system.error
-
-    @property
-    def _running(self) -> tuple[System, Waits]:
-        if self._begun is None:
-            raise RunEnded("the system has not begun to run: use it inside `async with Mas(...) as mas:`")
-        return self._begun
-
-    @property
-    def system(self) -> System:
-        """The run itself, for what this class does not offer; it may change with every version.
-
-        Raises:
-            RunEnded: it has not begun.
-        """
-        return self._running[0]
-
-    @property
-    def _open(self) -> System:
-        """The running system.
-
-        Raises:
-            RunEnded: it does not run (any more).
-        """
-        system, _ = self._running
-        if system.exit_code is not None:
-            raise RunEnded("the run has ended")
-        return system
-
-    def stop(self, exit_code: int = 0) -> None:
-        """End the run, as ``.stopMAS`` does; the block goes on, and no agent has another turn."""
-        self._running[0].end(exit_code)
-
-    async def ended(self) -> int:
-        """Wait until the run ends by itself (``.stopMAS``) or by `stop`; its exit code.
-
-        Raises:
-            InternalError: a defect of JaCaROS ended it.
-        """
-        system, _ = self._running
-        code = await system.ended()
-        if system.error is not None:
-            raise system.error
-        return code
-
-    @property
-    def exit_code(self) -> int | None:
-        """The exit code of the run; None while it goes on."""
-        return self._begun[0].exit_code if self._begun is not None else None
-
-    async def until_idle(self, timeout: float | None = None) -> None:
-        """Wait until no agent has anything to do or to wait for, and no operation is under way.
-
-        Worlds, batteries and processes of artifacts do not count: they never end.
-
-        Args:
-            timeout: seconds of the run's clock; None to wait as long as it takes.
-
-        Raises:
-            TimeoutError: they were still busy then.
-            RunEnded: the run ended before.
-        """
-        system, waits = self._running
-        idle: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        stop = system.idleness.watch(lambda: None if idle.done() else idle.set_result(None))
-        if system.scheduler.idle:
-            system.idleness.look()
-        try:
-            await waits.wait(idle, lambda: "the agents did not get idle", timeout)
-        finally:
-            stop()
-
-    # ---- time
-
-    @property
-    def clock(self) -> Clock:
-        """The run's clock: that of the event loop."""
-        return self._running[0].clock
-
-    async def sleep(self, seconds: float) -> None:
-        """Wait for so many seconds of the run's clock."""
-        await self.clock.sleep(seconds)
 
     # ---- agents
 
@@ -460,15 +329,8 @@ class Mas:
 
         environment = self.environment
         session = Session(environment, name, _workspace(environment, workspace).path)
-        self._sessions.append(session)
+        self._at_end.append(session.close)
         return session
-
-    def __repr__(self) -> str:
-        if self._begun is None:
-            return f"<Mas {self._deployment.name}, not begun>"
-        code = self.exit_code
-        how = "running" if code is None else f"ended with exit code {code}"
-        return f"<Mas {self._deployment.name}, {how}>"
 
 
 def _deployment(project: str | Path | Deployment | None, name: str, folder: Path) -> Deployment:
