@@ -326,9 +326,12 @@ class Mas(EmbeddedRun):
             OperationFailed: there is no such workspace.
         """
         from jacaros.env.session import Session
+        from jacaros.mas.session_account import SessionAccount
 
         environment = self.environment
-        session = Session(environment, name, _workspace(environment, workspace).path)
+        system = self._open
+        account = SessionAccount(system.activity, system.idleness)
+        session = Session(environment, name, _workspace(environment, workspace).path, account)
         self._at_end.append(session.close)
         return session
 

@@ -501,6 +501,21 @@ def test_being_idle_is_waited_for() -> None:
     run(test)
 
 
+def test_an_operation_of_a_session_is_under_way() -> None:
+    async def test(mas: Mas) -> None:
+        await mas.make_artifact("counter", Counter)
+        painter = mas.session("painter")
+        driving = painter.begin("drive")
+        with pytest.raises(TimeoutError, match="did not get idle within 2 s"):
+            await mas.until_idle(timeout=2)
+        await mas.until_idle(timeout=2000)
+        assert driving.done
+        assert mas.clock.now() - began == pytest.approx(1000.0)
+
+    began = VirtualClock().now()
+    run(test)
+
+
 def test_mistakes_are_told_where_they_are_made(tmp_path: Path) -> None:
     async def test(mas: Mas) -> None:
         with pytest.raises(AslError, match=r"<bob>:1:16: error: a term is expected"):
