@@ -1,9 +1,11 @@
 """The observable properties of one artifact, changed in steps that are committed or rolled back."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from jacaros.env.errors import InvalidArtifact, UnknownProperty, spelling_hint
+from jacaros.env.ids import ArtifactId
 from jacaros.env.values import SCALARS, Structure, equal, plain, text
 
 
@@ -97,6 +99,12 @@ class PropertyChanges(NamedTuple):
 
 
 _NONE: dict[int, ObservableProperty] = {}
+_FEW = 8
+"""So many properties of one name are gone through; more are found by their first value."""
+_INDEXED = SCALARS | {ArtifactId}
+"""Types of values that only values of these types are equal to."""
+_OTHERS = object()
+"""The key of all properties that have another first value, or none."""
 NO_CHANGES = PropertyChanges((), (), ())
 
 
@@ -109,10 +117,11 @@ class PropertyStore:
         changing: how the properties were that the step in progress has touched, by key; empty when there are none.
     """
 
-    __slots__ = ("_by_name", "_last_key", "changing")
+    __slots__ = ("_by_first", "_by_name", "_last_key", "changing")
 
     def __init__(self) -> None:
         self._by_name: dict[str, dict[int, ObservableProperty]] = {}
+        self._by_first: dict[str, dict[object, dict[int, None]]] = {}
         self.changing: dict[int, tuple[str, ObservableProperty | None]] = {}
         self._last_key = 0
 
@@ -129,6 +138,8 @@ class PropertyStore:
         self._last_key = key
         self.changing[key] = (name, None)
         self._by_name.setdefault(name, {})[key] = new
+        if name in self._by_first:
+            self._by_first[name].setdefault(_first(new), {})[key] = None
 
     def update(
         self,
@@ -156,7 +167,10 @@ class PropertyStore:
         key = old.key
         if key not in self.changing:
             self.changing[key] = (name, old)
-        properties[key] = ObservableProperty(name, values, kept, key)
+        properties[key] = new = ObservableProperty(name, values, kept, key)
+        if name in self._by_first:
+            self._leave_index(old)
+            self._by_first[name].setdefault(_first(new), {})[key] = None
 
     def remove(self, name: str, template: tuple[object, ...]) -> None:
         """Remove the first property called *name* whose values fit *template* (see `first`).
@@ -167,6 +181,30 @@ class PropertyStore:
         old = self.first(name, template)
         self.changing.setdefault(old.key, (name, old))
         del self._by_name[name][old.key]
+        if name in self._by_first:
+            self._leave_index(old)
+
+    def _leave_index(self, old: ObservableProperty) -> None:
+        index, first = self._by_first[old.name], _first(old)
+        del index[first][old.key]
+        if not index[first]:
+            del index[first]
+
+    def _like(self, name: str, template: tuple[object, ...]) -> Iterable[ObservableProperty]:
+        """The properties called *name* that may fit *template*, the oldest first."""
+        properties = self._by_name.get(name, _NONE)
+        if not template or len(properties) < _FEW:
+            return properties.values()
+        first = plain(template[0])
+        if first is None or type(first) not in _INDEXED:
+            return properties.values()
+        index = self._by_first.get(name)
+        if index is None:
+            index = self._by_first[name] = {}
+            for each in properties.values():
+                index.setdefault(_first(each), {})[each.key] = None
+        keys = {**index.get(first, {}), **index.get(_OTHERS, {})}
+        return [properties[key] for key in sorted(keys)]
 
     def first(self, name: str, template: tuple[object, ...] = ()) -> ObservableProperty:
         """The oldest property called *name* whose values fit *template*.
@@ -177,16 +215,14 @@ class PropertyStore:
         Raises:
             UnknownProperty: there is none.
         """
-        for found in self._by_name.get(name, _NONE).values():
+        for found in self._like(name, template):
             if not template or _fits(template, found.values):
                 return found
         raise self._unknown(name, template)
 
     def all(self, name: str, template: tuple[object, ...] = ()) -> tuple[ObservableProperty, ...]:
         """The properties called *name* whose values fit *template* (see `first`), the oldest first."""
-        return tuple(
-            p for p in self._by_name.get(name, _NONE).values() if not template or _fits(template, p.values)
-        )
+        return tuple(p for p in self._like(name, template) if not template or _fits(template, p.values))
 
     def _unknown(self, name: str, template: tuple[object, ...] = ()) -> UnknownProperty:
         names = [each for each, properties in self._by_name.items() if properties]
@@ -196,7 +232,7 @@ class PropertyStore:
 
     def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
         """True when there is a property called *name* whose values fit *template*."""
-        return any(not template or _fits(template, p.values) for p in self._by_name.get(name, _NONE).values())
+        return any(not template or _fits(template, p.values) for p in self._like(name, template))
 
     def committed(self) -> tuple[ObservableProperty, ...]:
         """The properties as observers know them, in the order of their definition."""
@@ -223,6 +259,7 @@ class PropertyStore:
                     removed.append(before)
                 if not properties:
                     self._by_name.pop(name, None)
+                    self._by_first.pop(name, None)
             elif before is None:
                 added.append(now)
             else:
@@ -232,6 +269,8 @@ class PropertyStore:
 
     def roll_back(self) -> None:
         """Undo the step: additions, updates and removals alike."""
+        for name, _ in self.changing.values():
+            self._by_first.pop(name, None)
         for key, (name, before) in self.changing.items():
             properties = self._by_name[name]
             if before is None:
@@ -270,6 +309,11 @@ def _all_equal(new: tuple[object, ...], old: tuple[object, ...]) -> bool:
 def plain_annotations(annotations: tuple[object, ...]) -> tuple[object, ...]:
     """Make annotations plain values."""
     return tuple(map(plain, annotations))
+
+
+def _first(each: ObservableProperty) -> object:
+    """What a property is indexed by."""
+    return each.values[0] if each.values and type(each.values[0]) in _INDEXED else _OTHERS
 
 
 def _fits(template: tuple[object, ...], values: tuple[object, ...]) -> bool:

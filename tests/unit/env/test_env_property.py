@@ -1,8 +1,11 @@
 """The store of observable properties: names, templates, commits, roll-backs."""
 
+from random import Random
+
 import pytest
 
 from jacaros.env import Artifact, Atom, InvalidArtifact, Out, Structure, UnknownProperty, operation
+from jacaros.env import property as properties
 from jacaros.env.property import NO_CHANGES, PropertyStore
 
 
@@ -290,3 +293,55 @@ def test_every_artifact_lets_its_properties_be_looked_at_without_focus(play):
         assert "observeProperty" not in stage.call(rooms, "fly").outcome.message, "lists show what is its own"
 
     play(scene)
+
+
+FIRST_VALUES = (*range(30), 2.0, 2.5, True, False, "a", Atom("a"), [1], Structure("p", (1,)), float("nan"))
+
+
+def test_many_properties_are_found_as_few_are():
+    random, store = Random(7), PropertyStore()
+
+    def anything():
+        return random.choice(FIRST_VALUES)
+
+    def step():
+        for _ in range(random.randrange(4)):
+            here = store.all("cell")
+            what = random.randrange(5)
+            if what < 2 or not here:
+                store.define("cell", (anything(), anything())[: random.randrange(3)], None)
+            elif what == 2:
+                store.remove("cell", random.choice(here).values)
+            elif what == 3:
+                store.update("cell", (anything(), 1), None, where=random.choice(here).values)
+            else:
+                store.update("cell", (anything(), 2), None)
+
+    for _ in range(150):
+        try:
+            step()
+        except UnknownProperty:
+            store.roll_back()  # values that equal nothing, such as those with a number that is none
+        else:
+            (store.commit if random.randrange(4) else store.roll_back)()
+        for first in FIRST_VALUES:
+            for template in ((first,), (first, 1), (None, first)):
+                held = store._by_name.get("cell", {}).values()
+                wanted = [each for each in held if properties._fits(template, each.values)]
+                assert list(map(id, store.all("cell", template))) == list(map(id, wanted))
+                assert store.has("cell", template) == bool(wanted)
+    assert len(store.all("cell")) > 20
+
+
+def test_one_of_many_properties_is_found_without_a_look_at_all(monkeypatch):
+    store = store_of(*(("cell", number, 0) for number in range(1000)))
+    looks = []
+    fits = properties._fits
+    monkeypatch.setattr(
+        properties, "_fits", lambda template, values: looks.append(values) or fits(template, values)
+    )
+    for number in range(1000):
+        store.update("cell", (number, 1), None, where=(number, 0))
+        assert store.first("cell", (number, None)).values == (number, 1)
+        store.remove("cell", (number, None))
+    assert len(looks) < 5000
