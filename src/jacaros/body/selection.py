@@ -15,6 +15,7 @@ from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.undelivered import nobody_offers, unreachable
 from jacaros.body.whereabouts import Whereabouts, not_joined
 from jacaros.env.choice import artifact_named, chosen_artifact
+from jacaros.env.default.furnishing import DEFAULT_TYPES
 from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.ports import Workspace
@@ -140,7 +141,7 @@ class Selection:
                 return f"; the internal action is written with a dot: .{call.name}"
             near = difflib.get_close_matches(call.key, offers, n=3, cutoff=0.7)
         if not near:
-            nothing = not any(a.creator is not None for w in places for a in w.artifacts())
+            nothing = all(a.type_name in DEFAULT_TYPES for w in places for a in w.artifacts())
             return "; no artifact has been made there yet (makeArtifact)" if nothing else ""
         return f"; did you mean {' or '.join(key + offers[key] for key in near[:3])}?"
 

@@ -269,7 +269,9 @@ def test_an_agent_may_be_given_things_while_it_prints() -> None:
 def test_a_failed_goal_raises_with_its_reasons() -> None:
     async def test(mas: Mas) -> None:
         await mas.make_artifact("counter", Counter)
-        bob = mas.add_agent("bob", '+!go <- .fail(blocked(wall), error_msg("no way")). +!add <- inc(far).')
+        bob = mas.add_agent(
+            "bob", '+!go <- .fail(blocked(wall), error_msg("no way")). +!add <- inc(far). +!fly <- soar.'
+        )
         with pytest.raises(GoalFailed) as failed:
             await bob.achieve("go")
         assert (
@@ -286,6 +288,9 @@ def test_a_failed_goal_raises_with_its_reasons() -> None:
         with pytest.raises(GoalFailed) as failed:
             await bob.achieve("add")
         assert failed.value.reason("env_failure_reason").functor == "wrong_op_arguments"  # type: ignore[attr-defined]
+        with pytest.raises(GoalFailed) as failed:
+            await bob.achieve("fly")
+        assert failed.value.message == "no artifact of workspace /main has an operation soar/0"
 
     run(test)
 

@@ -8,6 +8,11 @@ from jacaros.env.default.workspace import WorkspaceArtifact
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.workspace import Workspace
 
+DEFAULT_TYPES = frozenset(
+    each.__name__ for each in (Blackboard, Console, ManualRepository, SystemArtifact, WorkspaceArtifact)
+)
+"""Names of the types of the artifacts that every workspace has."""
+
 
 def furnish(workspace: Workspace, tree: WorkspaceTree) -> None:
     """Give a workspace the artifacts that each one has; none of them is made before somebody needs it."""
