@@ -34,13 +34,17 @@ class PerceptWriter:
     Args:
         references: shared by all agents of a run.
         workspace: from a full path to the object that stands for the workspace.
+        cartago_2: whether percepts have the annotations of CArtAgO 2.0 as well.
 
     Attributes:
         newest, namespace, written: the observation written last, for which namespace, and the percepts: the next who
             observes is mostly another observer of the same.
     """
 
-    def __init__(self, references: References, workspace: Callable[[str], object]) -> None:
+    def __init__(
+        self, references: References, workspace: Callable[[str], object], cartago_2: bool = False
+    ) -> None:
+        self._cartago_2 = cartago_2
         self._references = references
         self._workspace = workspace
         self.newest: Observation | None = None
@@ -121,12 +125,31 @@ class PerceptWriter:
             identity = (_ARTIFACT_ID, self._references.of(artifact))
             name = (_ARTIFACT_NAME, atom_of(artifact.name))
             place = (_WORKSPACE, String(artifact.workspace), workspace)
+            if self._cartago_2:
+                self._annotations[artifact] = self._with_older(
+                    artifact, (identity, name, SOURCE_PERCEPT, place)
+                )
+                return self._annotations[artifact]
             # Written in the order in which annotations are kept: every agent of a run comes by here.
             known = self._annotations[artifact] = (
                 (identity, name, _OBSERVABLE_PROPERTY, SOURCE_PERCEPT, place),
                 (identity, name, _OBSERVABLE_EVENT, SOURCE_PERCEPT, place),
             )
         return known
+
+    def _with_older(self, artifact: ArtifactId, shared: Annotations) -> tuple[Annotations, Annotations]:
+        """The annotations, and those that CArtAgO 2.0 gave in their place."""
+        identity, workspace = self._references.of(artifact), self._workspace(artifact.workspace)
+        older = (
+            (functor("artifact_name", 2), identity, String(artifact.name)),
+            (functor("artifact_type", 2), identity, String(artifact.type_name)),
+            (_WORKSPACE, self._references.of(workspace), String(artifact.workspace.rpartition("/")[2])),
+        )
+        made = [
+            annotation_set((*shared, *older, kind, (_PERCEPT_TYPE, String(kind[1].name))))
+            for kind in (_OBSERVABLE_PROPERTY, _OBSERVABLE_EVENT)
+        ]
+        return made[0], made[1]
 
     def _literal(self, name: str, values: tuple[object, ...], namespace: str | None) -> Term:
         symbol = symbol_of(f"{namespace}::{name}" if namespace else name, len(values))

@@ -14,6 +14,9 @@ CARTAGO_ENVIRONMENTS = frozenset(
 )
 """Class names of `.mas2j` files that mean: agents with an artifact environment."""
 
+CARTAGO_2 = "c4jason.CartagoEnvironment"
+"""The one of CArtAgO 2: percepts have its annotations, too."""
+
 
 def has_own_artifacts(folder: Path) -> bool:
     """Whether a project in *folder* has artifacts of its own: a file ``artifacts.py`` or a folder ``artifacts``."""

@@ -15,6 +15,7 @@ from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import (
+    CARTAGO_2,
     AgentSpec,
     Deployment,
     FocusSpec,
@@ -117,7 +118,8 @@ class Surroundings:
         self._console = console
         self._activity = activity
         self._references = References()
-        self._writer = PerceptWriter(self._references, self.environment.workspace)
+        older = deployment.environment == CARTAGO_2
+        self._writer = PerceptWriter(self._references, self.environment.workspace, older)
         # Artifacts may come and go by the million.
         self.environment.when_disposed(self._references.forget)
         self.environment.when_disposed(self._writer.forget)
