@@ -126,9 +126,7 @@ class PerceptWriter:
             name = (_ARTIFACT_NAME, atom_of(artifact.name))
             place = (_WORKSPACE, String(artifact.workspace), workspace)
             if self._cartago_2:
-                self._annotations[artifact] = self._with_older(
-                    artifact, (identity, name, SOURCE_PERCEPT, place)
-                )
+                self._annotations[artifact] = self._with_older(artifact, (identity, name, SOURCE_PERCEPT))
                 return self._annotations[artifact]
             # Written in the order in which annotations are kept: every agent of a run comes by here.
             known = self._annotations[artifact] = (
@@ -138,7 +136,7 @@ class PerceptWriter:
         return known
 
     def _with_older(self, artifact: ArtifactId, shared: Annotations) -> tuple[Annotations, Annotations]:
-        """The annotations, and those that CArtAgO 2.0 gave in their place."""
+        """The annotations, and those that CArtAgO 2.0 gave in their place; of ``workspace/2`` only the older."""
         identity, workspace = self._references.of(artifact), self._workspace(artifact.workspace)
         older = (
             (functor("artifact_name", 2), identity, String(artifact.name)),

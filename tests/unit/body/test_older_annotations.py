@@ -24,7 +24,7 @@ PROGRAM = """
         inc[artifact_id(A)]; inc[artifact_id(B)]; .wait(10); .stopMAS.
 +tick[artifact_name(Id,"c0")] <- .print("the first ticks").
 +tick[artifact_name(c1)] <- .print("the second ticks").
-+count(1)[artifact_name(_,N),artifact_type(_,T),workspace(Id,W),percept_type("obs_prop")] : not .string(Id)
++count(1)[artifact_name(_,N),artifact_type(_,T),workspace(_,W),percept_type("obs_prop")]
   <- .print(N, " ", T, " ", W).
 """
 
