@@ -189,10 +189,10 @@ async def test_workspaces_are_found_through_links(one: Robot, two: Robot, clock:
 @among_artifacts
 async def test_what_needs_other_processes_says_so(one: Robot, two: Robot, clock: VirtualClock) -> None:
     for name, *arguments in (
-        ("createWorkspace", "w", "http://host"),
+        ("createWorkspace", "w", "http://lab.example"),
         ("createWorkspaceWithTopology", "w", "grid"),
         ("linkRemoteWorkspace", "/main/w", "web", "w"),
-        ("mountWorkspace", "http://host", "/main/w", "w"),
+        ("mountWorkspace", "http://lab.example", "/main/w", "w"),
         ("spawnNode", "host"),
         ("crash",),
         ("shutdownNode",),
