@@ -450,9 +450,11 @@ def _taken(percept: Percept) -> Taken:
         if symbol is None:
             raise InternalError(f"a percept is no literal: {literal!r}")
     change = (DELETED if percept.kind == "remove" else ADDED)[symbol]
-    is_flat: bool | None = ATOMIC.issuperset(map(type, row))
-    if not is_flat and unkeyed_percepts.is_unkeyed(row):
-        is_flat = None
+    is_flat: bool | None = True
+    for argument in row:
+        if argument.__class__ not in ATOMIC:
+            is_flat = None if unkeyed_percepts.is_unkeyed(row) else False
+            break
     taken: Taken = (symbol, row, is_flat, change)
     percept.taken = taken
     return taken
