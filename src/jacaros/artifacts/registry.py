@@ -85,7 +85,7 @@ def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], 
         return find_type
     own = project
     modules = own.load(ARTIFACTS)
-    return lambda name: _of_project(name, own) or find_type(name, modules)
+    return lambda name: _of_project(name, own) or find_type(name, (*_beside(name, own), *modules))
 
 
 def find_type(
@@ -125,6 +125,12 @@ def _of_project(name: str, project: ProjectModules) -> type[Artifact] | None:
     except ModuleUnreadable as error:
         raise InvalidArtifact(str(error)) from error
     return _of_modules(last, modules)
+
+
+def _beside(name: str, project: ProjectModules) -> Sequence[ModuleType]:
+    """The project's modules that a name leads to: what may have been meant by a misspelt one is there."""
+    path = name.rpartition(".")[0]
+    return project.load(path) if path and project.place(path) is not None else ()
 
 
 def _by_path(name: str) -> type[Artifact] | None:

@@ -32,7 +32,7 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 def command(what: str, project: Path, as_json: bool) -> None:
     """Tell what WHAT offers: an artifact type, a Python file of them, or a project file."""
     if what.endswith(PROJECT_FILES):
-        described = _Project(load_deployment(what), Path(what).parent)
+        described = _Project(load_deployment(what))
         click.echo(_json(described.data()) if as_json else "\n".join(described.lines()))
         return
     manuals = [
@@ -84,11 +84,11 @@ def _own_types(modules: ProjectModules, name: str) -> list[type[Artifact]]:
 class _Project:
     """What a project consists of, and the types of its artifacts."""
 
-    def __init__(self, deployment: Deployment, folder: Path) -> None:
+    def __init__(self, deployment: Deployment) -> None:
         from jacaros.artifacts.registry import ARTIFACTS, type_finder
 
         self._deployment = deployment
-        modules = ProjectModules(folder)
+        modules = ProjectModules(deployment.base_path, *deployment.source_paths)
         find = type_finder(modules)
         self._unknown: dict[str, str] = {}
         types: dict[type[Artifact], None] = {}

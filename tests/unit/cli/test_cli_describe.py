@@ -110,6 +110,21 @@ def test_a_lone_program_is_described_with_the_types_beside_it(
     assert LAMP in output
 
 
+def test_the_folders_of_a_project_are_searched(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tools = folder / "src" / "env" / "tools"
+    tools.mkdir(parents=True)
+    (tools / "lights.py").write_text(ARTIFACTS, encoding="utf-8")
+    (folder / "hall.jcm").write_text(
+        "mas hall {\n  agent bob\n  workspace w {\n    artifact lamp: tools.Lamp(60)\n    artifact odd: tools.Lomp\n"
+        "  }\n}\n",
+        encoding="utf-8",
+    )
+    output = described(capsys, "hall.jcm")
+    assert "    artifact lamp: tools.Lamp\n" in output
+    assert "tools.Lomp; did you mean tools.Lamp" in output
+    assert LAMP in output
+
+
 def test_programs_get_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     lamp = json.loads(described(capsys, "Lamp", "--json"))
     assert lamp["type_name"] == "Lamp"
