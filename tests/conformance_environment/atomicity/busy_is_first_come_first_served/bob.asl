@@ -1,0 +1,1 @@
++!ask(Who) <- serve(Who,1,N); .print(Who," was number ",N).

@@ -1,0 +1,1 @@
++!want(N) : .my_name(Me) <- take(Me,N); .print("took ",N).

@@ -1,0 +1,2 @@
+price(30).
+{ include("bidder.asl") }

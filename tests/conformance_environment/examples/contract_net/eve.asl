@@ -1,0 +1,2 @@
+price(25).
+{ include("bidder.asl") }
