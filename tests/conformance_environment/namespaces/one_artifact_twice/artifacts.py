@@ -1,0 +1,15 @@
+"""The artifacts of this case, written from its spec.md."""
+
+from jacaros.env import Artifact, operation
+
+
+class Counter(Artifact):
+    """Counts."""
+
+    def init(self, start: int) -> None:
+        self.define_property("count", start)
+
+    @operation
+    def inc(self) -> None:
+        self.update_property("count", self.value("count") + 1)
+        self.signal("tick", self.value("count"))

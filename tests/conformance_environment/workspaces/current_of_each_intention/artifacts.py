@@ -1,0 +1,14 @@
+"""The artifacts of this case, written from its spec.md."""
+
+from jacaros.env import Artifact, Out, operation
+
+
+class Named(Artifact):
+    """Has a text."""
+
+    def init(self, text: str) -> None:
+        self._text = text
+
+    @operation
+    def whoami(self, text: Out) -> None:
+        text.set(self._text)
