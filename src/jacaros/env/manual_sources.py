@@ -85,12 +85,20 @@ def _value(node: ast.expr) -> str:
     if isinstance(node, ast.JoinedStr):
         return "text"
     if isinstance(node, ast.Call):
-        return (
+        return _property_read(node) or (
             _value(node.args[0])
             if node.args and not isinstance(node.args[0], ast.Starred)
             else _called(node.func)
         )
     return "value"
+
+
+def _property_read(call: ast.Call) -> str | None:
+    """The property that ``self.value("count")`` reads."""
+    match call:
+        case ast.Call(func=ast.Attribute(attr="value"), args=[ast.Constant(value=str(name)), *_]):
+            return name
+    return None
 
 
 def _called(function: ast.expr) -> str:

@@ -208,3 +208,18 @@ def test_the_manual_of_one_artifact_shows_its_own_operations(play):
         assert [each.usage for each in manual.properties] == ["of_its_own(_, _)"]
 
     play(scene)
+
+
+class Meter(Artifact):
+    """Counts."""
+
+    def init(self):
+        self.define_property("count", 0)
+
+    @operation
+    def inc(self):
+        self.signal("counted", self.value("count"), self.value("count", 0))
+
+
+def test_a_value_read_from_a_property_is_called_like_it():
+    assert [each.usage for each in describe(Meter).signals] == ["counted(count, count)"]
