@@ -53,6 +53,7 @@ class Interruption:
 
     def run(self, make_loop: Callable[[], asyncio.AbstractEventLoop], main: Coroutine[Any, Any, int]) -> int:
         """Run *main*, which says by `of` what signals end, on a new loop; the exit code."""
+        outside = signal.getsignal(signal.SIGINT)
         try:
             with asyncio.Runner(loop_factory=make_loop) as runner:
                 try:
@@ -64,6 +65,9 @@ class Interruption:
         except Interrupted:
             return self.exit_code
         finally:
+            if signal.SIGINT in self._before:
+                # What `_take` found there was the runner's own, which is over.
+                self._before[signal.SIGINT] = outside
             self._give_back()
 
     @contextmanager

@@ -1,6 +1,7 @@
 """The command line: exit codes, outputs, and what it tells about mistakes."""
 
 import json
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -29,6 +30,12 @@ def test_a_program_prints_its_lines_and_gives_its_code(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert outcome(capsys, "run", "hello.asl", "--clock", "fast") == (3, "[hello] hi\n", "")
+
+
+def test_after_a_run_signals_are_as_before(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)]
+    outcome(capsys, "run", "hello.asl", "--clock", "fast")
+    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)] == before
 
 
 def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,7 @@
 
 import collections.abc
 import enum
+import sys
 import typing
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, NamedTuple, NewType
@@ -266,3 +267,15 @@ def test_what_an_artifact_gives_comes_back_as_it_was(case):
 )
 def test_any_input_is_taken_as_it_is_where_nothing_is_said(value):
     assert received(object, value) is value
+
+
+T = typing.TypeVar("T")
+
+
+@pytest.mark.skipif(sys.version_info < (3, 12), reason="Python 3.11 has no such aliases")
+def test_an_alias_with_a_parameter_is_what_it_stands_for() -> None:
+    """Newer versions of numpy make ``NDArray`` such an alias."""
+    several = typing.TypeAliasType("several", list[T], type_params=(T,))
+    assert received(several[int], [1, 2.0]) == [1, 2]
+    with pytest.raises(Unsuitable):
+        received(several[int], ["one"])

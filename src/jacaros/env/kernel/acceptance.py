@@ -46,10 +46,26 @@ def _unwrapped(annotation: Any) -> Any:
             annotation = annotation.__supertype__
         elif typing.get_origin(annotation) is typing.Annotated:
             annotation = typing.get_args(annotation)[0]
-        elif type(annotation).__name__ == "TypeAliasType":
+        elif _is_alias(annotation):
             annotation = annotation.__value__
+        elif _is_alias(typing.get_origin(annotation)):
+            annotation = _alias_of(annotation)
         else:
             return _SAME.get(annotation, annotation) if _hashable(annotation) else annotation
+
+
+def _is_alias(annotation: Any) -> bool:
+    # By name: Python 3.11 has none of its own, only those of typing_extensions.
+    return type(annotation).__name__ == "TypeAliasType"
+
+
+def _alias_of(annotation: Any) -> Any:
+    """What an alias with parameters means, such as numpy's ``NDArray[float64]``."""
+    alias = typing.get_origin(annotation)
+    given = dict(zip(alias.__type_params__, typing.get_args(annotation), strict=False))
+    value = alias.__value__
+    parameters = getattr(value, "__parameters__", ())
+    return value[tuple(given.get(each, Any) for each in parameters)] if parameters else value
 
 
 def _kind_of_class(kind: type) -> Kind:
