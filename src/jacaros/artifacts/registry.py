@@ -111,8 +111,18 @@ def find_type(
         or _by_alias(name, built_in)
     )
     if found is None:
-        raise UnknownArtifactType(name, _candidates(name, search_modules, built_in))
+        text = _other_class(name.rpartition(".")[2], search_modules)
+        raise UnknownArtifactType(name, () if text else _candidates(name, search_modules, built_in), text)
     return found
+
+
+def _other_class(name: str, modules: Iterable[ModuleType]) -> str:
+    """What to say when there is a class of that name that is no artifact type; empty when there is none."""
+    for module in modules:
+        if isinstance(vars(module).get(name), type):
+            file = Path(module.__file__ or module.__name__).name
+            return f"{name} of {file} is no artifact type: derive it from jacaros.env.Artifact"
+    return ""
 
 
 def _of_project(name: str, project: ProjectModules) -> type[Artifact] | None:

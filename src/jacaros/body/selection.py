@@ -141,9 +141,22 @@ class Selection:
                 return f"; the internal action is written with a dot: .{call.name}"
             near = difflib.get_close_matches(call.key, offers, n=3, cutoff=0.7)
         if not near:
+            if (forgotten := _without_mark(call.name, places)) is not None:
+                return (
+                    f"; the method {call.name} of '{forgotten.name}' is no operation for agents (@operation)"
+                )
             nothing = all(a.type_name in DEFAULT_TYPES for w in places for a in w.artifacts())
             return "; no artifact has been made there yet (makeArtifact)" if nothing else ""
         return f"; did you mean {' or '.join(key + offers[key] for key in near[:3])}?"
+
+
+def _without_mark(name: str, places: Sequence[Workspace]) -> ArtifactId | None:
+    """An artifact that has a method of this name which agents cannot call."""
+    for workspace in places:
+        for artifact in workspace.artifacts():
+            if artifact.type_name not in DEFAULT_TYPES and workspace.has_method(artifact, name):
+                return artifact
+    return None
 
 
 def _internal_action_hint(name: str) -> str:

@@ -78,6 +78,9 @@ class Workspace(Protocol):
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
         """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``; raises `UnknownArtifact`."""
 
+    def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
+        """True when its class has a public method of that name, an operation or not; see `offers`."""
+
     # ---- asked for
 
     async def make_artifact(

@@ -298,6 +298,15 @@ class Workspace(ports.Workspace):
         """
         return self._registry.interface(artifact_id) or self._steps_of(artifact_id).interface
 
+    def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
+        """True when the author of an artifact's class wrote a public method of that name, an operation or not.
+
+        Raises:
+            UnknownArtifact: it is gone.
+        """
+        methods = vars(self._steps_of(artifact_id).artifact_type)
+        return not name.startswith("_") and callable(methods.get(name))
+
     def properties(self, artifact_id: ArtifactId) -> tuple[ObservableProperty, ...]:
         """The observable properties of an artifact, as observers know them.
 

@@ -75,6 +75,12 @@ def test_the_artifacts_file_of_a_project_is_searched_before_the_built_in_ones(tm
         find("Countre")
 
 
+def test_a_class_that_is_no_artifact_is_told(tmp_path: Path) -> None:
+    find = type_finder(write(tmp_path, "artifacts.py", "class Counter:\n    pass\n"))
+    with pytest.raises(UnknownArtifactType, match=r"Counter of artifacts\.py is no artifact type: derive it"):
+        find("Counter")
+
+
 def test_several_projects_with_files_of_the_same_names_live_in_one_process(tmp_path: Path) -> None:
     finders = []
     for number in (1, 2):

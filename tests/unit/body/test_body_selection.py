@@ -52,6 +52,7 @@ async def test_a_directed_action_without_target_says_what_is_wrong(
     failure = one.do("raed", Var(), artifact_id=a)
     assert "did you mean read" in message_of(failure)
     assert (reason_of(failure) or "").startswith("unknown_operation(cobj_")
+    assert "the method positive of 'motor' is no operation for agents" in message_of(one.do("positive"))
     assert "says nothing to the environment" in message_of(one.do("read", Var(), artefact_name="motor"))
     assert "wants an artifact" in message_of(one.do("read", Var(), artifact_id=3))
     assert "wants a workspace" in message_of(one.do("read", Var(), wid=a))

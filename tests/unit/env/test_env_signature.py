@@ -66,6 +66,14 @@ def test_keyword_parameters_cannot_be_given_by_agents():
             signature(function)
 
 
+def test_a_method_needs_self():
+    def bare():
+        pass
+
+    with pytest.raises(InvalidArtifact, match="bare: its first parameter must be self"):
+        signature_of(bare, skip_first=True)
+
+
 @pytest.mark.parametrize(
     ("annotation", "argument", "received"),
     [

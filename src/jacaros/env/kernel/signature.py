@@ -104,9 +104,14 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
     """Read the signature of an operation from its Python function.
 
     Raises:
-        InvalidArtifact: it has parameters that agents cannot give (keyword-only or ``**``).
+        InvalidArtifact: it has parameters that agents cannot give (keyword-only or ``**``), or no ``self``.
     """
-    listed = list(inspect.signature(function).parameters.values())[1 if skip_first else 0 :]
+    listed = list(inspect.signature(function).parameters.values())
+    if skip_first:
+        if not listed:
+            raise InvalidArtifact(f"{function.__qualname__}: its first parameter must be self")
+        if listed[0].kind is not inspect.Parameter.VAR_POSITIONAL:
+            del listed[0]
     kinds = _annotations(function)
     parameters, rest = [], None
     for each in listed:
