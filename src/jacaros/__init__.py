@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from jacaros.extension.literal import Literal
     from jacaros.extension.python_agent import PythonAgent
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
-    from jacaros.mas.errors import GoalFailed
-    from jacaros.mas.mas import Mas
-    from jacaros.mas.python_main import run
+    from jacaros.mas.embedding.errors import GoalFailed
+    from jacaros.mas.embedding.main import run
+    from jacaros.mas.embedding.mas import Mas
 
 __version__ = VERSION
 
@@ -69,11 +69,11 @@ _PLACES = {
     "Atom": "jacaros.env.values",
     "BeliefBase": "jacaros.extension.belief_base",
     "Event": "jacaros.extension.views",
-    "GoalFailed": "jacaros.mas.errors",
+    "GoalFailed": "jacaros.mas.embedding.errors",
     "Intention": "jacaros.extension.views",
     "JacarosError": "jacaros.errors",
     "Literal": "jacaros.extension.literal",
-    "Mas": "jacaros.mas.mas",
+    "Mas": "jacaros.mas.embedding.mas",
     "Message": "jacaros.extension.views",
     "OperationFailed": "jacaros.env.errors",
     "Option": "jacaros.extension.views",
@@ -87,7 +87,7 @@ _PLACES = {
     "WrongArguments": "jacaros.bdi.internal_action",
     "arithmetic_function": "jacaros.extension.declaring",
     "internal_action": "jacaros.extension.declaring",
-    "run": "jacaros.mas.python_main",
+    "run": "jacaros.mas.embedding.main",
 }
 
 

@@ -9,7 +9,7 @@ from jacaros.behaviour_trees.keys import FromBlackboard, ToBlackboard
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome
-from jacaros.env.session_operation import SessionOperation
+from jacaros.env.session.operation import SessionOperation
 from jacaros.env.values import Atom, Out, Structure, text
 
 MISTAKES = ("unknown_operation", "wrong_op_arguments")

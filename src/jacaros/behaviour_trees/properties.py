@@ -7,7 +7,7 @@ from py_trees.common import Status
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
 from jacaros.env.errors import OperationFailed, UnknownProperty
 from jacaros.env.ids import ArtifactId
-from jacaros.env.observed import ObservedProperty
+from jacaros.env.session.observed import ObservedProperty
 from jacaros.env.values import equal, plain, text
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from py_trees.common import Status
 
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour, nothing
-from jacaros.env.signal_stream import ReceivedSignal
+from jacaros.env.session.signal_stream import ReceivedSignal
 from jacaros.env.values import text
 
 

@@ -36,10 +36,10 @@ from jacaros.env.values import UNSET, Atom, Out, Structure, plain, text
 from jacaros.env.workspace import Workspace
 
 if TYPE_CHECKING:
-    from jacaros.env.observed import ObservedProperty, PropertyChange
-    from jacaros.env.session import Session
-    from jacaros.env.session_operation import SessionOperation
-    from jacaros.env.signal_stream import ReceivedSignal, SignalStream
+    from jacaros.env.session.observed import ObservedProperty, PropertyChange
+    from jacaros.env.session.operation import SessionOperation
+    from jacaros.env.session.session import Session
+    from jacaros.env.session.signal_stream import ReceivedSignal, SignalStream
 
 __all__ = [
     "UNSET",
@@ -83,12 +83,12 @@ __all__ = [
 ]
 
 _LATER = {
-    "ObservedProperty": "jacaros.env.observed",
-    "PropertyChange": "jacaros.env.observed",
-    "ReceivedSignal": "jacaros.env.signal_stream",
-    "Session": "jacaros.env.session",
-    "SessionOperation": "jacaros.env.session_operation",
-    "SignalStream": "jacaros.env.signal_stream",
+    "ObservedProperty": "jacaros.env.session.observed",
+    "PropertyChange": "jacaros.env.session.observed",
+    "ReceivedSignal": "jacaros.env.session.signal_stream",
+    "Session": "jacaros.env.session.session",
+    "SessionOperation": "jacaros.env.session.operation",
+    "SignalStream": "jacaros.env.session.signal_stream",
 }
 
 

@@ -5,10 +5,10 @@ from typing import Any, TypeVar
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.ids import ArtifactId
-from jacaros.env.observed import ObservedProperty
-from jacaros.env.session import Session
-from jacaros.env.session_operation import SessionOperation
-from jacaros.env.signal_stream import SignalStream
+from jacaros.env.session.observed import ObservedProperty
+from jacaros.env.session.operation import SessionOperation
+from jacaros.env.session.session import Session
+from jacaros.env.session.signal_stream import SignalStream
 
 T = TypeVar("T")
 _REQUIRED: Any = object()

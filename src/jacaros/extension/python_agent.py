@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
-from jacaros.env.observed import PropertyChange
-from jacaros.env.session import Session
-from jacaros.env.signal_stream import ReceivedSignal
+from jacaros.env.session.observed import PropertyChange
+from jacaros.env.session.session import Session
+from jacaros.env.session.signal_stream import ReceivedSignal
 from jacaros.env.values import text
 from jacaros.errors import JacarosError
 from jacaros.extension.conversation import ReceivedMessage, content_of, heard

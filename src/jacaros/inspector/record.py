@@ -10,7 +10,7 @@ from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import write_replay
 from jacaros.inspector.watch import Watch
-from jacaros.mas.mas import Mas
+from jacaros.mas.embedding.mas import Mas
 
 
 @contextmanager

@@ -49,9 +49,9 @@ class AgentClasses:
         for spec in agents:
             try:
                 if spec.is_python:
-                    from jacaros.mas import python_agents  # here: most projects have none
+                    from jacaros.mas.python_agents import loading  # here: most projects have none
 
-                    python_agents.check(self._modules, spec, self._warn_once)
+                    loading.check(self._modules, spec, self._warn_once)
                 else:
                     self._objects(spec)
             except JacarosError as error:
@@ -76,9 +76,9 @@ class AgentClasses:
             ProjectError: a class cannot be found or begun.
         """
         if spec.is_python:
-            from jacaros.mas import python_agents
+            from jacaros.mas.python_agents import loading
 
-            return python_agents.make(self._modules, spec, run, seed)
+            return loading.make(self._modules, spec, run, seed)
         objects = self._objects(spec)
         if any(objects):
             return self._custom(spec, program, run, seed, options, code, plans, objects)

@@ -17,7 +17,7 @@ from jacaros.asl.suppression import Suppressions, wanted
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
-from jacaros.mas.project import read_project
+from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 

@@ -20,7 +20,7 @@ def load_deployment(path: str | Path) -> Deployment:
         return _lone_agent(path)
     if path.suffix not in _PROJECTS:
         raise ProjectError([Diagnostic("error", f"{path} is no .mas2j, .jcm, .asl or .py file")])
-    from jacaros.mas.project import read_project  # here: a lone program starts sooner without it
+    from jacaros.mas.project.reading import read_project  # here: a lone program starts sooner without it
 
     deployment = read_project(path).deployment
     if any(diagnostic.severity == "error" for diagnostic in deployment.ignored):

@@ -192,7 +192,9 @@ class System:
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
         if spec.is_python:
             if self._has_environment:
-                from jacaros.mas.python_situation import situate  # here: most projects have no such agent
+                from jacaros.mas.python_agents.situation import (
+                    situate,  # here: most projects have no such agent
+                )
 
                 situate(host, spec, self.surroundings().environment)
             return

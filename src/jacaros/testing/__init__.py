@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from jacaros.mas.pursued_goal import PursuedGoal
+    from jacaros.mas.embedding.pursued_goal import PursuedGoal
     from jacaros.testing.harness import AgentHarness
     from jacaros.testing.judging import Verdict, judge
     from jacaros.testing.junit import write_junit

@@ -28,9 +28,9 @@ from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.watched import WatchedGoal
 from jacaros.clock import Timer
 from jacaros.compiler.lowering import lower_value
+from jacaros.mas.embedding.pursued_goal import PursuedGoal
 from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs
-from jacaros.mas.pursued_goal import PursuedGoal
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules

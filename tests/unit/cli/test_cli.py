@@ -189,8 +189,14 @@ NOT_FOR_A_LONE_PROGRAM = (
     *("multiprocessing", "sqlite3", "tempfile", "unittest", "xml", "zipfile"),
     # ours: what other commands, projects and robots need
     *("jacaros.artifacts", "jacaros.asl.layout", "jacaros.body", "jacaros.env", "jacaros.extension"),
-    *("jacaros.inspector", "jacaros.mas.checking", "jacaros.mas.jcm", "jacaros.mas.mas2j"),
-    *("jacaros.mas.project", "jacaros.mas.surroundings", "jacaros.ros", "jacaros.sim", "jacaros.testing"),
+    *("jacaros.inspector", "jacaros.mas.checking", "jacaros.mas.project.jcm", "jacaros.mas.project.mas2j"),
+    *(
+        "jacaros.mas.project.reading",
+        "jacaros.mas.surroundings",
+        "jacaros.ros",
+        "jacaros.sim",
+        "jacaros.testing",
+    ),
 )
 """What a program that talks to no robot does not wait for at its start."""
 

@@ -1,0 +1,356 @@
+"""A working session: how anybody uses the environment, be it a script, a behaviour tree, or an agent in Python."""
+
+import asyncio
+from collections.abc import Callable, Sequence
+from types import TracebackType
+from typing import Any
+
+from jacaros.env.artifact import Artifact
+from jacaros.env.choice import artifact_named, chosen_artifact
+from jacaros.env.environment import Environment
+from jacaros.env.errors import OperationFailed, WorkspaceError
+from jacaros.env.ids import ArtifactId, resolve_path
+from jacaros.env.operation import OperationOutcome, OperationRequest
+from jacaros.env.ports import Workspace
+from jacaros.env.session.account import Account
+from jacaros.env.session.operation import SessionOperation
+from jacaros.env.session.perception import Perceiving
+from jacaros.env.session.workspaces import SessionWorkspaces
+from jacaros.env.values import Out, Structure, plain
+
+
+class Session(Perceiving):
+    """A working session in an environment, CArtAgO's word: it joins workspaces, focuses artifacts and acts.
+
+    It is for the event loop of the environment, and takes plain values (see `jacaros.env.values`).  An
+    artifact can be given as its id or by its name, which is looked for in the joined workspaces, or as a path.
+    With ``with`` it is closed at the end.
+
+    Args:
+        environment: where it works.
+        name: who works; it counts as creator of artifacts, as caller of operations, and as addressee of
+            signals, beside those of agents.
+        home: full path of the workspace that it begins in.
+        account: told what it waits for.
+
+    Raises:
+        UnknownWorkspace: there is none at *home*.
+    """
+
+    def __init__(
+        self, environment: Environment, name: str, home: str = "/main", account: Account | None = None
+    ) -> None:
+        super().__init__(environment, name, account)
+        self._workspaces = SessionWorkspaces(environment, home)
+        self._watched: dict[Workspace, Callable[[], None]] = {}
+        self._under_way: dict[SessionOperation, None] = {}
+
+    # ---- workspaces
+
+    @property
+    def joined(self) -> tuple[str, ...]:
+        """Full paths of the joined workspaces, in the order of joining; the current one comes last."""
+        return self._workspaces.joined
+
+    def join(self, path: str) -> str:
+        """Join a workspace, and make it the current one; joining again does the latter only.
+
+        Args:
+            path: full, or from the current workspace.
+
+        Returns:
+            The full path.
+
+        Raises:
+            UnknownWorkspace: there is none.
+        """
+        self._check()
+        return self._workspaces.join(path).path
+
+    def quit(self, workspace: str) -> None:
+        """Leave a workspace, given by path or name, and stop to focus what is in it.
+
+        Raises:
+            OperationFailed: it was not joined; reason ``workspace_not_joined(Name)``.
+        """
+        left = self._workspaces.quit(workspace)
+        for artifact in self.focused:
+            if artifact.workspace == left.path:
+                self._lose(left, artifact)
+        stop_watching = self._watched.pop(left, None)
+        if stop_watching is not None:
+            stop_watching()
+
+    def create_workspace(self, path: str) -> str:
+        """Make a workspace; it is not joined.
+
+        Args:
+            path: full, or from the current workspace.
+
+        Returns:
+            The full path.
+
+        Raises:
+            OperationFailed: it is there already, or the workspace above it is not.
+        """
+        self._check()
+        return self.environment.create_workspace(resolve_path(self._workspaces.current.path, path)).path
+
+    # ---- artifacts
+
+    async def make_artifact(
+        self, name: str, artifact_type: str | type[Artifact], arguments: Sequence[object] = ()
+    ) -> ArtifactId:
+        """Make an artifact, and wait until its ``init`` has ended.
+
+        Args:
+            name: in the current workspace, or a path.
+            artifact_type: the class or the name of one.
+            arguments: for ``init``.
+
+        Raises:
+            OperationFailed: see `Workspace.make_artifact`.
+        """
+        self._check()
+        workspace, plain_name = self._workspaces.place(name)
+        self._account.begin()
+        try:
+            return await workspace.make_artifact(
+                plain_name, artifact_type, [plain(each) for each in arguments], self.name
+            )
+        finally:
+            self._account.end()
+
+    def lookup(self, name: str) -> ArtifactId:
+        """Find an artifact by name, in the joined workspaces, or by path.
+
+        Raises:
+            OperationFailed: there is none; reason ``artifact_not_available(Name)``.
+        """
+        if "/" in name:
+            workspace, name = self._workspaces.place(name)
+            return workspace.lookup(name)
+        return artifact_named(self._workspaces.in_order(), name)
+
+    def dispose_artifact(self, artifact: ArtifactId | str) -> None:
+        """End an artifact; see `Workspace.dispose_artifact`.
+
+        Raises:
+            OperationFailed: there is none, or its workspace was not joined.
+        """
+        found = self._artifact(artifact)
+        self._workspaces.of(found).dispose_artifact(found)
+
+    def link_artifacts(self, source: ArtifactId | str, port: str, target: ArtifactId | str) -> None:
+        """Put *target* behind an out port of *source*; see `Workspace.link`.
+
+        Raises:
+            OperationFailed: an artifact or the port is not there.
+        """
+        found = self._artifact(source)
+        self._workspaces.of(found).link(found, port, self._artifact(target))
+
+    def _artifact(self, wanted: ArtifactId | str) -> ArtifactId:
+        self._check()
+        return wanted if isinstance(wanted, ArtifactId) else self.lookup(wanted)
+
+    # ---- focus
+
+    def focus(self, artifact: ArtifactId | str) -> ArtifactId:
+        """Perceive an artifact from now on; its properties are there when this returns.
+
+        Focusing again has no effect.
+
+        Raises:
+            OperationFailed: there is none, or its workspace was not joined.
+        """
+        found = self._artifact(artifact)
+        workspace = self._workspaces.of(found)
+        if found not in self.focused:
+            self._begin_focus(workspace, found)
+        return found
+
+    def _begin_focus(self, workspace: Workspace, artifact: ArtifactId) -> None:
+        if workspace not in self._watched:
+            self._watched[workspace] = workspace.watch(self._look)
+        self._observed.begin(artifact)
+        try:
+            workspace.focus(artifact, self._observed)
+        except OperationFailed:
+            self._observed.end(artifact)
+            raise
+
+    def _look(self, artifact: ArtifactId, is_there: bool) -> None:
+        if not is_there:
+            self._observed.gone(artifact)
+
+    async def focus_when_available(self, name: str) -> ArtifactId:
+        """Wait until there is an artifact of that name in the current workspace (or at a path), and focus it.
+
+        Raises:
+            OperationFailed: its workspace is not there, or was not joined.
+        """
+        self._check()
+        workspace, plain_name = self._workspaces.place(name)
+        if any(artifact.name == plain_name for artifact in workspace.artifacts()):
+            return self.focus(workspace.lookup(plain_name))
+        self._workspaces.named(workspace.path)
+        found: asyncio.Future[ArtifactId] = asyncio.get_running_loop().create_future()
+
+        def look(artifact: ArtifactId, is_there: bool) -> None:
+            if is_there and artifact.name == plain_name and not found.done():
+                found.set_result(self.focus(artifact))
+
+        stop = workspace.watch(look)
+        try:
+            with self._account.waiting():
+                return await found
+        finally:
+            stop()
+
+    def stop_focus(self, artifact: ArtifactId | str) -> None:
+        """Perceive an artifact no more; without effect when it is not focused.
+
+        Raises:
+            OperationFailed: there is none of that name.
+        """
+        if isinstance(artifact, str):
+            named = [each for each in self.focused if artifact in (each.name, each.path)]
+            artifact = named[0] if named else self.lookup(artifact)
+        if artifact in self.focused:
+            self._lose(self._workspaces.of(artifact), artifact)
+
+    def _lose(self, workspace: Workspace, artifact: ArtifactId) -> None:
+        workspace.stop_focus(artifact, self._observed)
+        self._observed.end(artifact)
+
+    # ---- operations
+
+    async def act(
+        self,
+        operation: str,
+        *arguments: object,
+        artifact: ArtifactId | str | None = None,
+        workspace: str | None = None,
+        timeout: float | None = None,
+    ) -> Any:
+        """Do an operation, and wait for its end.
+
+        When the task that waits is cancelled, so is the operation.
+
+        Args:
+            operation: name of the operation.
+            arguments: values, and `Out` objects where results are wanted.
+            artifact: which one is to do it.  Without it, the joined workspaces are gone through (the current
+                one, home, the others); where several artifacts offer the operation, one made by this session
+                comes before one that it focuses, and that before others.
+            workspace: path or name of the workspace of the artifact.
+            timeout: seconds that it may take; then it fails with ``operation_timeout(Operation,Milliseconds)``.
+
+        Returns:
+            The values of the `Out` arguments: None without any, the value of the one, a tuple of several.
+
+        Raises:
+            OperationFailed: with the message and the reason.
+        """
+        return await self.begin(
+            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout
+        )
+
+    def begin(
+        self,
+        operation: str,
+        *arguments: object,
+        artifact: ArtifactId | str | None = None,
+        workspace: str | None = None,
+        timeout: float | None = None,
+    ) -> SessionOperation:
+        """Begin an operation; the arguments are those of `act`.
+
+        Returns:
+            Its handle.  An operation that cannot begin, such as one that nobody offers, has failed already.
+        """
+        self._check()
+        if any(each is Out for each in arguments):
+            raise WorkspaceError(
+                f"an argument of {operation} is the class Out: write Out() where a result is wanted"
+            )
+        given = tuple(map(plain, arguments))
+        handle = SessionOperation(operation, given, self._complain)
+        self._under_way[handle] = None
+        self._account.begin()
+        handle.on_end(self._ended)
+        try:
+            target = self._target(operation, len(given), artifact, workspace)
+        except OperationFailed as failure:
+            handle.end(OperationOutcome(False, failure.message, failure.reason))
+            return handle
+        request = OperationRequest(target, operation, given, self.name, None, handle.end, timeout)
+        handle.began(self.environment.execute(request))
+        return handle
+
+    def cancel_operations(self) -> None:
+        """Cancel all operations under way."""
+        for handle in tuple(self._under_way):
+            handle.cancel()
+
+    def _ended(self, handle: SessionOperation) -> None:
+        del self._under_way[handle]
+        self._account.end()
+
+    def _target(
+        self, operation: str, arity: int, artifact: ArtifactId | str | None, workspace: str | None
+    ) -> ArtifactId:
+        if artifact is None and workspace is None:
+            # Nearly always it is the only one of the current workspace.
+            candidates = self._workspaces.current.providers(operation, arity)
+            if len(candidates) == 1:
+                return candidates[0]
+        places = self._workspaces.in_order() if workspace is None else (self._workspaces.named(workspace),)
+        if isinstance(artifact, ArtifactId):
+            self._workspaces.of(artifact)
+            return artifact
+        if artifact is not None:
+            return self.lookup(artifact) if "/" in artifact else artifact_named(places, artifact)
+        chosen = chosen_artifact(places, operation, arity, self.name, self.focused)
+        if chosen is not None:
+            return chosen
+        names = ", ".join(place.path for place in places)
+        where = f"workspace {names}" if len(places) == 1 else f"the workspaces {names}"
+        raise OperationFailed(
+            f"no artifact of {where} has an operation {operation}/{arity}{_offer(places, operation)}",
+            Structure("unknown_operation", (str.__str__(operation),)),
+        )
+
+    # ---- the end
+
+    def close(self) -> None:
+        """Cancel the operations under way, stop to focus, and end the streams of signals; once is enough."""
+        if self._closed:
+            return
+        self._closed = True
+        self.cancel_operations()
+        for stop_watching in self._watched.values():
+            stop_watching()
+        self._end_perceiving()
+
+    def __enter__(self) -> "Session":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<session {self.name} in {self._workspaces.current.path}>"
+
+
+def _offer(places: Sequence[Workspace], operation: str) -> str:
+    """What there is of that name, with another number of arguments."""
+    for place in places:
+        for artifact in place.artifacts():
+            same = [key for key in place.offers(artifact) if key.rpartition("/")[0] == operation]
+            if same:
+                return f"; {artifact.name} has {', '.join(same)}"
+    return ""

@@ -1,0 +1,1 @@
+"""A multi-agent system inside a Python program."""

@@ -1,0 +1,169 @@
+"""A multi-agent system inside a Python program: its beginning, its end, and its time."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import replace
+from types import TracebackType
+from typing import Self
+
+from jacaros.clock import Clock, VirtualEventLoop, clock_of
+from jacaros.errors import UsageError
+from jacaros.mas.deployment import Deployment
+from jacaros.mas.embedding.errors import RunEnded
+from jacaros.mas.embedding.printed import OnLog, OnPrint, PrintedConsole
+from jacaros.mas.embedding.waits import Waits
+from jacaros.mas.options import RunOptions
+from jacaros.mas.system import System
+
+
+class EmbeddedRun:
+    """The run of a system as long as a block of a Python program.
+
+    Args:
+        deployment: what to run.
+        options: how; the clock is that of the event loop.
+        on_print: called with agent and text whenever an agent prints.
+        on_log: called with a line for people and its level.
+
+    Raises:
+        UsageError: options that cannot go together.
+    """
+
+    def __init__(
+        self, deployment: Deployment, options: RunOptions, on_print: OnPrint | None, on_log: OnLog | None
+    ) -> None:
+        options.check()
+        self._deployment = deployment
+        self._options = options
+        self._console = PrintedConsole(on_print, on_log)
+        self._begun: tuple[System, Waits] | None = None
+        self._stop_watching: Callable[[], None] = lambda: None
+        self._at_end: list[Callable[[], None]] = []
+
+    async def __aenter__(self) -> Self:
+        """Make what the project declares, and let its agents begin.
+
+        Raises:
+            JacarosError: it cannot be started; the text tells what is wrong.
+        """
+        if self._begun is not None:
+            raise UsageError("this system has run already; make another Mas")
+        loop = asyncio.get_running_loop()
+        clock = clock_of(loop)
+        options = replace(self._options, fast=clock.virtual)
+        options.check()
+        system = System(self._deployment, clock, self._console, options)
+        waits = Waits(clock)
+        self._begun = system, waits
+        system.population.when_ended = waits.agent_ended
+        try:
+            await system.start()
+        except BaseException:
+            await system.close()
+            waits.run_ended("the run could not be started")
+            raise
+        system.when_ended(lambda code: waits.run_ended(f"the run ended with exit code {code}"))
+        if isinstance(loop, VirtualEventLoop):
+            self._stop_watching = loop.when_stuck(waits.stuck)
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        system, waits = self._running
+        self._stop_watching()
+        waits.run_ended("the run has ended")
+        for close in self._at_end:
+            close()
+        system.end(0)
+        await system.close()
+        if system.error is not None and (error is None or isinstance(error, RunEnded)):
+            raise system.error
+
+    @property
+    def _running(self) -> tuple[System, Waits]:
+        if self._begun is None:
+            raise RunEnded("the system has not begun to run: use it inside `async with Mas(...) as mas:`")
+        return self._begun
+
+    @property
+    def system(self) -> System:
+        """The run itself, for what this class does not offer; it may change with every version.
+
+        Raises:
+            RunEnded: it has not begun.
+        """
+        return self._running[0]
+
+    @property
+    def _open(self) -> System:
+        """The running system.
+
+        Raises:
+            RunEnded: it does not run (any more).
+        """
+        system, _ = self._running
+        if system.exit_code is not None:
+            raise RunEnded("the run has ended")
+        return system
+
+    def stop(self, exit_code: int = 0) -> None:
+        """End the run, as ``.stopMAS`` does; the block goes on, and no agent has another turn."""
+        self._running[0].end(exit_code)
+
+    async def ended(self) -> int:
+        """Wait until the run ends by itself (``.stopMAS``) or by `stop`; its exit code.
+
+        Raises:
+            InternalError: a defect of JaCaROS ended it.
+        """
+        system, _ = self._running
+        code = await system.ended()
+        if system.error is not None:
+            raise system.error
+        return code
+
+    @property
+    def exit_code(self) -> int | None:
+        """The exit code of the run; None while it goes on."""
+        return self._begun[0].exit_code if self._begun is not None else None
+
+    async def until_idle(self, timeout: float | None = None) -> None:
+        """Wait until no agent has anything to do or to wait for, and no operation is under way.
+
+        Worlds, batteries and processes of artifacts do not count: they never end.
+
+        Args:
+            timeout: seconds of the run's clock; None to wait as long as it takes.
+
+        Raises:
+            TimeoutError: they were still busy then.
+            RunEnded: the run ended before.
+        """
+        system, waits = self._running
+        idle: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        stop = system.idleness.watch(lambda: None if idle.done() else idle.set_result(None))
+        if system.scheduler.idle:
+            system.idleness.look()
+        try:
+            await waits.wait(idle, lambda: "the agents did not get idle", timeout)
+        finally:
+            stop()
+
+    # ---- time
+
+    @property
+    def clock(self) -> Clock:
+        """The run's clock: that of the event loop."""
+        return self._running[0].clock
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait for so many seconds of the run's clock."""
+        await self.clock.sleep(seconds)
+
+    def __repr__(self) -> str:
+        if self._begun is None:
+            return f"<Mas {self._deployment.name}, not begun>"
+        code = self.exit_code
+        how = "running" if code is None else f"ended with exit code {code}"
+        return f"<Mas {self._deployment.name}, {how}>"

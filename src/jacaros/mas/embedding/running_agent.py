@@ -1,0 +1,281 @@
+"""An agent of a running system, as Python code around it sees it."""
+
+import asyncio
+from collections.abc import Callable, Generator
+from typing import Any
+
+from jacaros.asl.loader import parse_term
+from jacaros.bdi import goals
+from jacaros.bdi.agent import Agent
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.watched import WatchedGoal
+from jacaros.body.values import to_value
+from jacaros.compiler.lowering import lower_value
+from jacaros.errors import UsageError
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.embedding.errors import AgentEnded, GoalFailed
+from jacaros.mas.embedding.pursued_goal import PursuedGoal
+from jacaros.mas.embedding.waits import Waits
+from jacaros.mas.open_mind import OpenMind, literal, question, values_of
+from jacaros.terms.text import text
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import Functor, String, Term, bare, deref
+
+_RUN_TIME = "<run time>"
+"""The place of goals that no program has written."""
+
+
+class RunningAgent(OpenMind):
+    """An agent of a running system: given beliefs, percepts and goals, asked, and waited for.
+
+    Args:
+        host: what runs it.
+        waits: of the run.
+        end: ends the agent.
+
+    Attributes:
+        name: of the agent.
+    """
+
+    def __init__(self, host: AgentHost, waits: Waits, end: Callable[[AgentHost], None]) -> None:
+        self.name = host.name
+        self._host = host
+        self._waits = waits
+        self._end = end
+
+    @property
+    def mind(self) -> Agent:
+        """The agent itself, for what this class does not offer.
+
+        Raises:
+            RunEnded: the run has ended.
+            AgentEnded: the agent has.
+            UsageError: it is written in Python, so it has no beliefs and goals.
+        """
+        mind = self._host.mind
+        self._waits.check()
+        if self.ended:
+            raise AgentEnded(f"agent {self.name} has ended")
+        if not isinstance(mind, Agent):
+            raise UsageError(
+                f"agent {self.name} is written in Python: it has no beliefs and goals of the language"
+            )
+        return mind
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended: killed, or with the run."""
+        return self._host.ended
+
+    def receive(self, sender: str, performative: str, content: str) -> None:
+        """Let it receive a message as if *sender* had sent it: ``bob.receive("boss", "achieve", "clean(kitchen)")``.
+
+        Raises:
+            AslError: the content is no term.
+        """
+        mind = self.mind
+        term = lower_value(parse_term(content))
+        self._host.receive(SpeechAct(performative, sender, self.name, term, mind.next_message_id()))
+
+    def achieve(self, goal: str) -> "Goal":
+        """Give it a goal, with an intention of its own; ``await`` what this gives to wait until it is achieved.
+
+        Raises:
+            AslError: it is no literal.
+        """
+        return Goal(goal, self.mind, self._waits)
+
+    async def until(self, formula: str, timeout: float | None = None) -> dict[str, Any]:
+        """Wait until a formula holds for the agent, such as ``count(X) & X > 2``.
+
+        It is looked at whenever the agent has something to do, as by ``.wait(Formula)``.
+
+        Args:
+            formula: in the language; rules of the program and internal actions may be used.
+            timeout: seconds of the run's clock; None to wait as long as it takes.
+
+        Returns:
+            The values of its variables by name, as plain values.
+
+        Raises:
+            AslError: it is no formula.
+            TimeoutError: it did not hold in time; the text tells related beliefs.
+            AgentEnded: the agent ended before.
+            RunEnded: the run ended before.
+        """
+        mind = self.mind
+        if not mind.running and (found := self.ask(formula)) is not None:
+            return found
+        awaited = _Awaited(mind, formula)
+        try:
+            return await self._waits.wait(
+                awaited.future, lambda: self._does_not_hold(formula), timeout, self.name
+            )
+        finally:
+            awaited.forget()
+
+    def _does_not_hold(self, formula: str) -> str:
+        term, _ = question(formula)
+        mentioned = {symbol.name for symbol in _functors(term)}
+        believed = [
+            text(bare(each))
+            for each in (self._host.mind.beliefs.literals() if isinstance(self._host.mind, Agent) else ())
+            if any(symbol.name in mentioned for symbol in _functors(each))
+        ]
+        told = f"it believes {', '.join(believed[:5])}" if believed else "it believes nothing of the kind"
+        return f"{formula} did not hold for agent {self.name} ({told})"
+
+    def kill(self) -> None:
+        """End the agent: its operations are cancelled, the others go on."""
+        if not self.ended:
+            self._end(self._host)
+
+    def __repr__(self) -> str:
+        return f"<agent {self.name}{' (ended)' if self.ended else ''}>"
+
+
+class _Awaited:
+    """A condition that Python code waits for, among those that the agent looks at (`Circumstance.condition_waits`)."""
+
+    def __init__(self, mind: Agent, formula: str) -> None:
+        self.future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
+        self._mind = mind
+        self._formula = formula
+        self._term, self._names = question(formula)
+        self._found: dict[str, Any] = {}
+        self._entry = (self._holds, self)
+        mind.condition_waits.append(self._entry)
+        mind.called = True
+        mind.architecture.ready()
+
+    def _holds(self) -> bool:
+        mark = len(self._mind.trail)
+        try:
+            for _ in self._mind.context.answers(self._term):
+                self._found = values_of(self._names)
+                return True
+            return False
+        finally:
+            undo(self._mind.trail, mark)
+
+    # What the agent asks and tells of a wait.
+
+    @property
+    def ended(self) -> bool:
+        return self.future.done()
+
+    def resume(self) -> None:
+        if not self.future.done():
+            self.future.set_result(self._found)
+
+    def fail(self, message: str) -> None:
+        if not self.future.done():
+            self.future.set_exception(UsageError(f"{self._formula} cannot be evaluated: {message}"))
+
+    def forget(self) -> None:
+        waits = self._mind.condition_waits
+        waits[:] = [entry for entry in waits if entry is not self._entry]
+
+
+class Goal(PursuedGoal):
+    """A goal that Python code has given to a running agent; it can be awaited.
+
+    ``await goal`` ends when it is achieved, and raises `GoalFailed` when it failed and no plan took care of that, or when
+    it was dropped.  A goal that nobody awaits is pursued all the same.
+    """
+
+    def __init__(self, written: str, mind: Agent, waits: Waits) -> None:
+        super().__init__(written, WatchedGoal(mind, literal(written), self._news))
+        self._mind = mind
+        self._waits = waits
+        self._waiting: list[asyncio.Future[None]] = []
+
+    async def wait(self, timeout: float | None = None) -> None:
+        """Wait until it is achieved.
+
+        Args:
+            timeout: seconds of the run's clock, after which this raises; the goal is still pursued then, see `drop`.
+
+        Raises:
+            GoalFailed: it failed, and no plan took care of that; or it was dropped.
+            TimeoutError: it was not achieved in time.
+            AgentEnded: the agent ended before.
+            RunEnded: the run ended before.
+        """
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        dropped = (lambda: self.state == "dropped", _Ends(future))
+        if not self._watched.ended:
+            self._waiting.append(future)
+            self._mind.condition_waits.append(dropped)
+            self._mind.called = True
+            self._mind.architecture.ready()
+            try:
+                await self._waits.wait(future, self._not_achieved, timeout, self._mind.name)
+            finally:
+                waits = self._mind.condition_waits
+                waits[:] = [entry for entry in waits if entry is not dropped]
+        if not self.achieved:
+            raise self._failure()
+
+    def __await__(self) -> Generator[Any, None, None]:
+        return self.wait().__await__()
+
+    def drop(self) -> None:
+        """Take the goal back: the intentions that pursue it are dropped, their operations cancelled."""
+        for intention in self._watched.intentions():
+            goals.drop_intention(self._mind, intention)
+        self._news()
+
+    def _news(self) -> None:
+        waiting, self._waiting = self._waiting, []
+        for future in waiting:
+            if not future.done():
+                future.set_result(None)
+
+    def _not_achieved(self) -> str:
+        return f"agent {self._mind.name} did not achieve !{self._written} (it is {self.state})"
+
+    def _failure(self) -> GoalFailed:
+        who = f"goal !{self._written} of agent {self._mind.name}"
+        if not self.failed:
+            return GoalFailed(f"{who} was dropped", self._written)
+        reason = self._watched.reason
+        if reason is None:
+            return GoalFailed(f"{who} failed", self._written)
+        message, where = reason.message(), reason.where()
+        others = ", ".join(text(term) for term in reason.terms if not _is_message(term))
+        told = f"{who} failed{f': {message}' * bool(message)}{f' ({others})' * bool(others)}"
+        told += f", in {where}" * bool(where and where != _RUN_TIME)
+        return GoalFailed(told, self._written, message, tuple(map(to_value, reason.annotations())))
+
+
+class _Ends:
+    """Ends a wait from among the conditions that an agent looks at."""
+
+    def __init__(self, future: asyncio.Future[None]) -> None:
+        self._future = future
+
+    @property
+    def ended(self) -> bool:
+        return self._future.done()
+
+    def resume(self) -> None:
+        if not self._future.done():
+            self._future.set_result(None)
+
+    def fail(self, message: str) -> None:
+        self.resume()
+
+
+def _is_message(term: Term) -> bool:
+    return term.__class__ is tuple and term[0].name == "error_msg" and term[1].__class__ is String
+
+
+def _functors(term: Any) -> list[Functor]:
+    """All functors of a term, those of what a formula is made of too."""
+    term = bare(deref(term))
+    if term.__class__ is Functor:
+        return [term]
+    if term.__class__ is not tuple:
+        return []
+    return [term[0], *(symbol for part in term[1:] for symbol in _functors(part))]

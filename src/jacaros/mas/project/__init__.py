@@ -1,0 +1,1 @@
+"""Project files: `.mas2j` and `.jcm`."""

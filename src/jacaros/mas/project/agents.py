@@ -1,0 +1,120 @@
+"""The agents of a project: their programs, their instances, and where they begin."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.loader import parse_literals
+from jacaros.mas.agent_options import check_option
+from jacaros.mas.deployment import AgentSpec, FocusSpec
+from jacaros.mas.programs import TEST_LIBRARY, library_file
+from jacaros.mas.project.parts import AgentPart, ProjectPart, Written
+from jacaros.mas.project.places import ProjectPlaces
+from jacaros.mas.project.remarks import Remarks
+
+_PROGRAM: Final = ".asl"
+_PYTHON: Final = ".py"
+
+
+class ProjectAgents:
+    """Finds the programs of agents and spreads agents over their instances.
+
+    Args:
+        part: what the project declares.
+        places: its workspaces and artifacts.
+        remarks: takes what is wrong.
+    """
+
+    def __init__(self, part: ProjectPart, places: ProjectPlaces, remarks: Remarks) -> None:
+        self._part, self._places, self._remarks = part, places, remarks
+
+    def instances(self, agent: AgentPart) -> list[AgentSpec]:
+        """One agent for each instance."""
+        for option, value in agent.options.items():
+            found = check_option(option, value, agent.option_places.get(option))
+            if found is not None:
+                self._remarks.add(found)
+        first = AgentSpec(
+            name=agent.name,
+            source_path=self._source(agent),
+            declared_name=agent.name,
+            options=dict(agent.options),
+            beliefs=self._literals(agent.beliefs, "belief"),
+            goals=self._literals(agent.goals, "goal"),
+            agent_class=agent.agent_class,
+            architecture_classes=tuple(agent.architecture_classes),
+            belief_base_class=agent.belief_base_class,
+            host=agent.host,
+            span=agent.span,
+        )
+        return [self._situated(replace(first, name=name), agent) for name in agent.instance_names()]
+
+    # programs
+
+    def _source(self, agent: AgentPart) -> Path:
+        """The file of an agent's program."""
+        written = (agent.source or agent.name).removeprefix("file:")
+        span = agent.source_span or agent.span
+        files = [written] if written.endswith((_PROGRAM, _PYTHON)) else [written + _PROGRAM, written]
+        for folder in agent.folders:
+            for file in files:
+                if (folder / file).is_file():
+                    return folder / file
+        if Path(files[0]).name in TEST_LIBRARY:
+            return library_file(Path(files[0]).name)
+        hint = "it is looked for in " + ", ".join(str(folder) for folder in agent.folders)
+        if "://" in written:
+            hint = "programs are read from files, not over the network"
+        self._remarks.error(f"the program of agent '{agent.name}' is not found: {files[0]}", span, hint)
+        return (agent.folders or (Path(),))[0] / files[0]
+
+    def _literals(self, written: list[Written], what: str) -> str:
+        """The pieces joined; each must be literals."""
+        for text, span in written:
+            try:
+                parse_literals(_literal(text))
+            except AslError as error:
+                message = error.diagnostics[0].message
+                hint = "rules stand in the program of the agent" if ":-" in text else None
+                self._remarks.error(f"'{_first_line(text)}' is no {what}: {message}", span, hint)
+            else:
+                if text.startswith("!") and what == "belief":
+                    self._remarks.error(f"'{text}' is a goal", span, f"goals: {text[1:]}")
+        return ", ".join(_literal(text) for text, _ in written)
+
+    # places
+
+    def _situated(self, agent: AgentSpec, part: AgentPart) -> AgentSpec:
+        """The instance *agent* of *part* with its workspaces and focused artifacts."""
+        join = [self._places.join(wanted) for wanted in part.join]
+        focus = [self._places.focus(wanted) for wanted in part.focus]
+        for workspace in self._part.workspaces:
+            name = self._places.shortest_name(workspace)
+            if any(_means(written, agent) for written, _ in workspace.agents):
+                join.append(name)
+            for artifact in workspace.artifacts:
+                focus += [
+                    FocusSpec(artifact.spec.name, name, namespace)
+                    for written, namespace, _ in artifact.focused_by
+                    if _means(written, agent)
+                ]
+        join += [wanted.workspace for wanted in focus if wanted is not None]
+        return replace(
+            agent,
+            join=tuple(dict.fromkeys(name for name in join if name is not None)),
+            focus=tuple(dict.fromkeys(wanted for wanted in focus if wanted is not None)),
+        )
+
+
+def _first_line(text: str) -> str:
+    first, _, rest = text.partition("\n")
+    return f"{first.rstrip()} ..." if rest else first
+
+
+def _literal(text: str) -> str:
+    return text.strip().rstrip(".,")
+
+
+def _means(name: str, agent: AgentSpec) -> bool:
+    return name in ("*", agent.name, agent.declared_name)

@@ -1,0 +1,143 @@
+"""Agents in `.jcm` project files."""
+
+from typing import Final
+
+from jacaros.asl.source import Span
+from jacaros.asl.spelling import close_matches
+from jacaros.mas.project.cursor import Token, text_of
+from jacaros.mas.project.jcm_values import NAME, JcmValues
+from jacaros.mas.project.parts import AgentPart, FocusPart, JoinPart
+from jacaros.mas.project.unsupported import INSPECTORS, NODES, ROLES
+
+KEYS: Final = (
+    *("beliefs", "goals", "join", "focus", "instances", "roles"),
+    *("ag-class", "ag-arch", "ag-bb-class", "verbose", "debug", "host", "node"),
+)
+
+
+class JcmAgents(JcmValues):
+    """Reads ``agent name : file { ... }``."""
+
+    def agent(self) -> None:
+        """Read one agent; the cursor is on ``agent``."""
+        cursor = self.cursor
+        cursor.advance()
+        name = cursor.lower_name("the name of an agent")
+        agent = AgentPart(name.text, cursor.span_of(name))
+        if cursor.accept(":"):
+            agent.source, agent.source_span = self.file_name("the file of the agent")
+        self.part.agents.append(agent)
+        if cursor.token.kind == "{":
+            self.block(lambda: self._entry(agent))
+        elif not (cursor.token.first or self.at_end()):
+            cursor.fail(
+                f"{cursor.token} does not belong to agent '{agent.name}'",
+                hint="agent name : file.asl { ... }; a file name with blanks stands in quotes",
+            )
+
+    def _entry(self, agent: AgentPart) -> None:
+        cursor = self.cursor
+        key = self.key(KEYS, "an agent")
+        match key.text:
+            case "beliefs":
+                agent.beliefs += self.pieces()
+            case "goals":
+                agent.goals += self.pieces()
+            case "join":
+                self._join(agent)
+            case "focus":
+                self._focus(agent)
+            case "instances":
+                self._instances(agent, key)
+            case "ag-class":
+                agent.agent_class = self._class(key, agent.agent_class)
+            case "ag-bb-class":
+                agent.belief_base_class = self._class(key, agent.belief_base_class)
+            case "ag-arch":
+                agent.architecture_classes += [text for text, _ in self.classes()]
+            case "host" | "node":
+                agent.host = " ".join(text for text, _ in self.names())
+                self.unsupported(NODES, f"'{key.text}' of agent '{agent.name}'", cursor.span_of(key))
+            case "roles":
+                self._roles(agent)
+            case _:
+                self._option(agent, key)
+        if cursor.token.kind not in ("}", "end", ",") and not self.at_end():
+            cursor.fail(f"{cursor.token} does not belong to '{key.text}'")
+
+    def _option(self, agent: AgentPart, key: Token) -> None:
+        """A setting of Jason's, or a parameter of the user's own."""
+        cursor = self.cursor
+        span = cursor.span_of(key)
+        if key.text in agent.options:
+            cursor.warn(f"'{key.text}' is given twice; the last one counts", span)
+        close = [] if key.text in KEYS else close_matches(key.text, KEYS, 0.8)
+        if close:
+            message = f"'{key.text}' is kept as a parameter of your own"
+            cursor.warn(message, span, f"did you mean '{close[0]}'?")
+        agent.option_places[key.text] = span
+        agent.options[key.text] = ", ".join(_unquoted(text) for text, _ in self.pieces())
+        if key.text == "debug":
+            self.unsupported(INSPECTORS, f"'debug' of agent '{agent.name}'", span)
+
+    def _class(self, key: Token, before: str | None) -> str | None:
+        cursor = self.cursor
+        found = self.classes()
+        if not found:
+            cursor.fail(f"the class for '{key.text}' is expected, not {cursor.token}")
+        if len(found) > 1 or before is not None:
+            cursor.report(f"an agent has one '{key.text}'", found[-1][1])
+        return found[0][0]
+
+    def _instances(self, agent: AgentPart, key: Token) -> None:
+        values = self.names()
+        text = values[0][0] if values else ""
+        if len(values) == 1 and text.isdecimal() and 0 < len(text) < 7 and int(text) > 0:
+            agent.instances = int(text)
+        elif values and all(text[:1].islower() for text, _ in values):
+            agent.instances = [text for text, _ in values]
+        else:
+            self.cursor.report(
+                "'instances' is a number or the names of agents",
+                values[0][1] if values else self.cursor.span_of(key),
+            )
+
+    def _join(self, agent: AgentPart) -> None:
+        cursor = self.cursor
+        while cursor.token.kind in NAME and not self.at_end():
+            token = cursor.advance()
+            name = text_of(token)
+            elsewhere = self.node(f"the workspace '{name}'")
+            agent.join.append(JoinPart(name, cursor.span_of(token), elsewhere))
+            cursor.accept(",")
+
+    def _focus(self, agent: AgentPart) -> None:
+        cursor = self.cursor
+        while cursor.token.kind == "word" and not self.at_end():
+            first = token = cursor.advance()
+            namespace = None
+            if cursor.accept("::"):
+                namespace, token = token.text, cursor.name("the name of an artifact")
+            workspace, dot, artifact = token.text.rpartition(".")
+            span = cursor.span_of(first).to(cursor.span_of(token))
+            elsewhere = self.node(f"the artifact '{token.text}'")
+            agent.focus.append(FocusPart(artifact, workspace if dot else None, namespace, span, elsewhere))
+            cursor.accept(",")
+
+    def _roles(self, agent: AgentPart) -> None:
+        """``role in [organisation.]group [@ node]``, several of them."""
+        cursor = self.cursor
+        while cursor.token.kind == "word" and not self.at_end():
+            role = cursor.advance()
+            cursor.expect("in", "roles are written: role in organisation.group")
+            group = cursor.name("the name of a group")
+            span: Span = cursor.span_of(role).to(cursor.span_of(group))
+            self.unsupported(ROLES, f"the role '{role.text}' in '{group.text}'", span)
+            self.node(f"the group '{group.text}'")
+            cursor.accept(",")
+
+
+def _unquoted(text: str) -> str:
+    if len(text) > 1 and text[0] == text[-1] == '"' and '"' not in text[1:-1].replace('\\"', ""):
+        return text[1:-1].replace('\\"', '"')
+    return text

@@ -1,0 +1,269 @@
+"""The values of keys in `.jcm` project files, and the blocks that they stand in."""
+
+from collections.abc import Callable, Iterable
+from typing import Final
+
+from jacaros.asl.source import Span
+from jacaros.asl.spelling import close_matches
+from jacaros.env.values import Atom, Structure
+from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
+from jacaros.mas.project.parts import AgentName, ProjectPart, Written
+from jacaros.mas.project.unsupported import NODES, Topic, Unsupported
+
+SECTIONS: Final = ("agent", "workspace", "institution", "organisation", "organization", "node", "uses")
+NAME: Final = ("word", "string")
+
+
+class JcmValues:
+    """Reads values at the place of a cursor; a value ends before the next key, entry, section or closing bracket.
+
+    Args:
+        cursor: the file and the place in it.
+        part: what is read from the file.
+        entries: words that begin an entry of the block that is read, besides its keys.
+        keys: the keys of that block.
+    """
+
+    def __init__(
+        self,
+        cursor: ProjectCursor,
+        part: ProjectPart,
+        entries: tuple[str, ...] = (),
+        keys: tuple[str, ...] = (),
+    ) -> None:
+        self.cursor = cursor
+        self.part = part
+        self.entries = entries
+        self.keys = keys
+        self._inside = False
+
+    def unsupported(self, topic: Topic, what: str, span: Span, detail: bool = False) -> None:
+        """Record something that has no effect here."""
+        self.part.unsupported.append(Unsupported(topic, what, span, detail))
+
+    # where things end
+
+    def at_section(self) -> bool:
+        """Whether ``agent name``, or another section of the file, begins here; inside of a block, with a line."""
+        cursor = self.cursor
+        token = cursor.token
+        if token.kind != "word" or token.text not in SECTIONS or cursor.peek().kind != "word":
+            return False
+        return token.first or not self._inside
+
+    def at_entry(self) -> bool:
+        """Whether a key or an entry of the block begins here."""
+        cursor = self.cursor
+        if cursor.at_key():
+            return True
+        if cursor.token.kind != "word":
+            return False
+        following = cursor.peek()
+        if cursor.token.text in self.keys:
+            # The ':' was forgotten.
+            return cursor.token.first and following.kind in NAME and not following.first
+        if cursor.token.text not in self.entries:
+            return False
+        if cursor.token.text == "debug":
+            return following.first or following.kind not in NAME or cursor.peek(2).kind == ":"
+        return following.kind == "word"
+
+    def at_end(self) -> bool:
+        """Whether a value ends before the token here."""
+        return self.cursor.token.kind in ("}", "end") or self.at_entry() or self.at_section()
+
+    # blocks
+
+    def block(self, entry: Callable[[], None]) -> None:
+        """``{ ... }`` with *entry* reading each thing in it; after an error the next one is read."""
+        around, self._inside = self._inside, True
+        try:
+            with self.cursor.nested():
+                self._block(entry)
+        finally:
+            self._inside = around
+
+    def _block(self, entry: Callable[[], None]) -> None:
+        cursor = self.cursor
+        opener = cursor.advance()
+        while not cursor.accept("}"):
+            if cursor.token.kind == "end":
+                cursor.fail_unclosed(opener)
+            if self.at_section():
+                cursor.fail_unclosed(opener, "put a '}' before the next section")
+            start = cursor.index
+            try:
+                entry()
+            except UnclosedPanic:
+                raise
+            except ProjectPanic:
+                self.to_next_entry(start)
+            cursor.accept(",")
+
+    def to_next_entry(self, start: int) -> None:
+        """After an error in the entry that began at *start*: to the next one on a line of its own."""
+        cursor = self.cursor
+        if cursor.index == start and cursor.token.kind != "}":
+            cursor.advance()
+        depth = 0
+        while cursor.token.kind != "end":
+            if cursor.token.first and (self.at_section() or (depth <= 0 and self.at_entry())):
+                return
+            if cursor.token.kind == "}" and depth <= 0:
+                return
+            depth += (cursor.token.kind == "{") - (cursor.token.kind == "}")
+            cursor.advance()
+
+    def key(self, known: Iterable[str], what: str) -> Token:
+        """Take ``key:``.
+
+        Args:
+            known: the keys that may stand here.
+            what: the thing that has them, for people.
+        """
+        cursor = self.cursor
+        token = cursor.token
+        if token.kind == "word" and not cursor.at_key():
+            known = list(known)
+            close = close_matches(token.text, known)
+            hint = f"did you mean '{close[0]}'?" if close and close[0] != token.text else None
+            keys = [f"{each}:" for each in known if each not in self.entries]
+            hint = hint or f"{what} has {', '.join([*self.entries, *keys])}"
+            cursor.fail(f"a ':' is missing behind '{token.text}'", hint=hint)
+        if token.kind != "word":
+            cursor.fail(f"'key:' is expected, not '{token.text}'")
+        cursor.advance()
+        cursor.advance()
+        return token
+
+    def unknown_key(self, key: Token, known: Iterable[str], what: str) -> None:
+        """Blame a key that has no meaning, and read its value."""
+        known = list(known)
+        close = close_matches(key.text, known)
+        hint = f"did you mean '{close[0]}'?" if close else f"{what} has {', '.join(known)}"
+        self.cursor.report(f"'{key.text}' is no key of {what}", self.cursor.span_of(key), hint)
+        self.pieces()
+
+    # values
+
+    def pieces(self) -> list[Written]:
+        """The pieces of a value, which are separated by commas or line ends, as written."""
+        cursor = self.cursor
+        found: list[Written] = []
+        while not self.at_end():
+            start = cursor.token
+
+            def ends(start: Token = start) -> bool:
+                token = cursor.token
+                return token.kind == "," or (token.first and token is not start) or self.at_end()
+
+            text = cursor.raw(ends)
+            if text:
+                found.append((text, cursor.span_of(start)))
+            if not cursor.accept(",") and cursor.token is start:
+                cursor.fail(f"'{start.text}' does not belong here")
+        return found
+
+    def names(self) -> list[Written]:
+        """Names separated by blanks, commas or line ends."""
+        cursor = self.cursor
+        found: list[Written] = []
+        while cursor.token.kind in (*NAME, "number", "*") and not self.at_end():
+            token = cursor.advance()
+            found.append((text_of(token), cursor.span_of(token)))
+            cursor.accept(",")
+        return found
+
+    def classes(self) -> list[Written]:
+        """Names of classes with their parameters, as written, separated by blanks, commas or line ends."""
+        cursor = self.cursor
+        found: list[Written] = []
+        while cursor.token.kind in NAME and not self.at_end():
+            token = cursor.advance()
+            text = text_of(token)
+            if cursor.token.kind == "(":
+                text += self.bracketed()
+            found.append((text, cursor.span_of(token)))
+            cursor.accept(",")
+        return found
+
+    def bracketed(self) -> str:
+        """The text from the bracket here to the one that closes it."""
+        start = self.cursor.token.start
+        self.cursor.skip_block()
+        return self.cursor.file.text[start : self.cursor.before().stop]
+
+    def file_name(self, what: str) -> Written:
+        """The name of a file; without quotes it goes on as long as there is no blank."""
+        cursor = self.cursor
+        if cursor.token.kind not in NAME:
+            cursor.fail(f"{what} is expected, not {cursor.token}")
+        first = last = cursor.advance()
+        if first.kind == "string":
+            return text_of(first), cursor.span_of(first)
+        while cursor.token.start == last.stop and cursor.token.kind in (*NAME, ":", "number"):
+            last = cursor.advance()
+        return cursor.file.text[first.start : last.stop], cursor.span_of(first).to(cursor.span_of(last))
+
+    def agent_names(self) -> list[AgentName]:
+        """``[namespace::]agent`` or ``*``, several of them."""
+        cursor = self.cursor
+        found: list[AgentName] = []
+        while cursor.token.kind in ("word", "*") and not self.at_end():
+            token = cursor.advance()
+            namespace = None
+            if cursor.accept("::"):
+                namespace = token.text
+                token = cursor.advance() if cursor.token.kind == "*" else cursor.name("the name of an agent")
+            found.append((token.text, namespace, cursor.span_of(token)))
+            cursor.accept(",")
+        return found
+
+    def node(self, what: str) -> bool:
+        """``@ node`` behind the name of something on another node; whether it is there."""
+        cursor = self.cursor
+        at = cursor.token
+        if not cursor.accept("@"):
+            return False
+        name = cursor.name("the name of a node")
+        self.unsupported(NODES, f"'@ {name.text}' of {what}", cursor.span_of(at).to(cursor.span_of(name)))
+        return True
+
+    def arguments(self, closer: str = ")") -> tuple[object, ...]:
+        """The values between the bracket here and its *closer*."""
+        cursor = self.cursor
+        opener = cursor.advance()
+        values: list[object] = []
+        while not cursor.accept(closer):
+            values.append(self.argument(opener))
+            if cursor.token.kind != closer:
+                cursor.expect(",", f"the '{opener.kind}' of line {opener.line} is closed by '{closer}'")
+        return tuple(values)
+
+    def argument(self, opener: Token) -> object:
+        """One value; strings stay strings, also those that look like numbers."""
+        cursor = self.cursor
+        token = cursor.token
+        if token.kind == "[":
+            with cursor.nested():
+                return list(self.arguments("]"))
+        if token.kind == "number":
+            cursor.advance()
+            return cursor.number(token)
+        if token.kind not in ("word", "string", "quoted"):
+            cursor.fail(
+                "a value is expected", hint=f"the '{opener.kind}' of line {opener.line} is not closed"
+            )
+        if token.kind == "word" and not (token.text[0].isalpha() or token.text[0] in "_$"):
+            cursor.fail(f"'{token.text}' is no value", hint="write a number, or a text in quotes")
+        cursor.advance()
+        if token.kind == "string":
+            return text_of(token)
+        name = token.text.strip("'") if token.kind == "quoted" else token.text
+        if token.kind == "word" and name in ("true", "false"):
+            return name == "true"
+        if cursor.token.kind == "(" and cursor.token.start == token.stop:
+            with cursor.nested():
+                arguments = self.arguments()
+            return Structure(name, arguments) if arguments else Atom(name)
+        return Atom(name)

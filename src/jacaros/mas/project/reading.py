@@ -1,0 +1,167 @@
+"""Project files: from a `.mas2j` or `.jcm` file to what is to be run."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.source import SourceFile
+from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, AgentSpec, Deployment, ProjectError
+from jacaros.mas.project.agents import ProjectAgents
+from jacaros.mas.project.cursor import ProjectCursor
+from jacaros.mas.project.parts import ProjectPart
+from jacaros.mas.project.places import ProjectPlaces
+from jacaros.mas.project.remarks import Remarks
+from jacaros.mas.project.unsupported import condensed, each
+from jacaros.mas.source_text import source_text
+
+_JCM: Final = ".jcm"
+_JCM_PATHS: Final = (".", "src/agt", "src/agt/inc")
+"""Where programs of a `.jcm` file are looked for, unless it has an ``asl-path``."""
+
+_JCM_CODE_PATHS: Final = ("src", "src/env", "src/agt")
+"""Where its Python modules are looked for besides, unless it has a ``java-path``."""
+
+_USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What came of reading a project.
+
+    Attributes:
+        deployment: what can be made of it; ``ignored`` holds what a run tells of its warnings.
+        diagnostics: all that is wrong or without effect, in the order of the text.
+        used: the files that it uses.
+    """
+
+    deployment: Deployment
+    diagnostics: list[Diagnostic]
+    used: frozenset[Path]
+
+
+def read_project(path: Path) -> Reading:
+    """Read a `.mas2j` or `.jcm` file, with the files that it uses.
+
+    Raises:
+        ProjectError: the file cannot be read at all.
+    """
+    files = _Files()
+    part = files.read(path)
+    remarks = Remarks(files.diagnostics)
+    deployment = _deployment(path, part, remarks)
+    told = sorted([*remarks.diagnostics, *condensed(part.unsupported)], key=_place)
+    return Reading(
+        replace(deployment, ignored=tuple(told)),
+        sorted([*remarks.diagnostics, *each(part.unsupported)], key=_place),
+        files.seen - {path.resolve()},
+    )
+
+
+class _Files:
+    """Reads a project file and those that it uses, each once."""
+
+    def __init__(self) -> None:
+        self.diagnostics: list[Diagnostic] = []
+        self._read: set[Path] = set()
+
+    @property
+    def seen(self) -> frozenset[Path]:
+        """All files that were read."""
+        return frozenset(self._read)
+
+    def read(self, path: Path, using: tuple[Path, ...] = ()) -> ProjectPart:
+        """The declarations of one file and, before its own, of the files it uses.
+
+        Raises:
+            ProjectError: the file cannot be read at all.
+        """
+        self._read.add(path.resolve())
+        cursor = ProjectCursor(SourceFile(str(path), _text(path)), self.diagnostics)
+        part = _read_part(path.suffix, cursor)
+        _complete(path, part)
+        for file, span in reversed(part.uses):
+            used = path.parent / (file if file.endswith(_JCM) else file + _JCM)
+            if not used.is_file():
+                cursor.report(f"the project '{file}' is not found", span, f"it is looked for at {used}")
+            elif used.resolve() in (*using, path.resolve()):
+                cursor.report(f"the project '{file}' uses itself", span)
+            elif used.resolve() not in self._read:
+                try:
+                    _import(part, self.read(used, (*using, path.resolve())))
+                except ProjectError as error:
+                    cursor.report(error.diagnostics[0].message, span)
+        return part
+
+
+def _text(path: Path) -> str:
+    try:
+        return source_text(path)
+    except FileNotFoundError:
+        raise ProjectError([Diagnostic("error", f"{path} is not found")]) from None
+    except (OSError, UnicodeError) as error:
+        raise ProjectError([Diagnostic("error", f"{path} cannot be read: {error}")]) from error
+
+
+def _read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
+    # Imported here: a project is written in one of the two.
+    if suffix == _JCM:
+        from jacaros.mas.project.jcm import read_jcm
+
+        return read_jcm(cursor)
+    from jacaros.mas.project.mas2j import read_mas2j
+
+    return read_mas2j(cursor)
+
+
+def _complete(path: Path, part: ProjectPart) -> None:
+    """Find the folders and files that the file at *path* names; they are relative to it."""
+    base = path.parent
+    declared = [base / folder for folder in part.source_paths if not folder.startswith("$")]
+    if path.suffix == _JCM:
+        # As in JaCaMo: the first asl-path takes the place of the usual ones, but for the project's own folder.
+        usual = [base / folder for folder in (_JCM_PATHS[:1] if part.source_paths else _JCM_PATHS)]
+        code = [base / folder for folder in part.code_paths or _JCM_CODE_PATHS]
+    else:
+        usual = [base / folder for folder in _USUAL_PATHS]
+        code = []
+    programs = [*declared, *(folder for folder in usual if folder == base or folder.is_dir())]
+    part.folders = tuple(dict.fromkeys([*programs, *(folder for folder in code if folder.is_dir())]))
+    for agent in part.agents:
+        agent.folders = tuple(dict.fromkeys(programs))
+    if part.world is not None and (base / part.world).exists():
+        part.world = str(base / part.world)
+
+
+def _import(part: ProjectPart, used: ProjectPart) -> None:
+    part.agents[:0] = used.agents
+    part.workspaces[:0] = used.workspaces
+    part.organisations[:0] = used.organisations
+    part.unsupported[:0] = used.unsupported
+    part.folders = tuple(dict.fromkeys([*part.folders, *used.folders]))
+    part.infrastructure = part.infrastructure or used.infrastructure
+    part.world = part.world or used.world
+
+
+def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
+    places = ProjectPlaces(part, remarks)
+    agents = ProjectAgents(part, places, remarks)
+    instances: list[AgentSpec] = [each for agent in part.agents for each in agents.instances(agent)]
+    remarks.repeated([(agent.name, agent.span) for agent in instances], "agents")
+    cartago = (part.environment or "").partition("(")[0] in CARTAGO_ENVIRONMENTS
+    return Deployment(
+        name=part.name,
+        base_path=path.parent,
+        agents=tuple(instances),
+        workspaces=places.specs(),
+        environment=part.environment,
+        artifact_environment=path.suffix == _JCM or cartago,
+        infrastructure=tuple(part.infrastructure),
+        world=part.world,
+        source_paths=part.folders,
+    )
+
+
+def _place(diagnostic: Diagnostic) -> tuple[str, int, int]:
+    span = diagnostic.span
+    return ("", 0, 0) if span is None else (span.file.name, span.line, span.column)

@@ -1,0 +1,266 @@
+"""What runs an agent written in Python: its tasks, its messages, its place in the environment."""
+
+import asyncio
+from collections.abc import Callable, Coroutine, Iterable, Mapping
+from typing import Any
+
+from jacaros.asl.nodes import Literal as LiteralNode
+from jacaros.bdi.act import Completion, Percept
+from jacaros.bdi.options import Options
+from jacaros.bdi.speech_act import SpeechAct
+from jacaros.clock import Clock
+from jacaros.env.errors import WorkspaceError
+from jacaros.env.session.session import Session
+from jacaros.errors import JacarosError
+from jacaros.extension.literal import Literal
+from jacaros.extension.python_agent import PythonAgent
+from jacaros.mas.agent_host import AgentHost, Run
+from jacaros.mas.coroutines import without_exit
+from jacaros.mas.python_agents.attendance import Attendance
+from jacaros.mas.python_agents.correspondence import Correspondence
+from jacaros.mas.python_agents.faults import fault_lines, place_of_fault, said
+from jacaros.mas.python_agents.handlers import Handlers
+from jacaros.terms.values import Term
+
+_PATIENCE = 5.0
+"""Seconds that an agent has at the end of a run to put its things in order."""
+
+
+class PythonAgentHost(AgentHost):
+    """Runs one agent written in Python; it has a task where other agents have a mind that makes cycles.
+
+    Args:
+        agent: the object of the user's class.
+        name: of the agent.
+        run: the run that it belongs to.
+        seed: of the agent's own generator of random numbers.
+        mind_options: how much it tells.
+        options: those of the project file.
+        beliefs: those of the project file.
+    """
+
+    def __init__(
+        self,
+        agent: PythonAgent,
+        name: str,
+        run: Run,
+        seed: str,
+        mind_options: Options,
+        options: Mapping[str, str],
+        beliefs: tuple[Literal, ...],
+    ) -> None:
+        super().__init__(name, run, seed)
+        self.options, self.beliefs = options, beliefs
+        self.open_session: Callable[[], Session] | None = None
+        self.attendance = Attendance(run.activity, self._settled)
+        self.mail = Correspondence(
+            name, self.send, self.agent_names, run.clock, run.activity, self.attendance
+        )
+        self.mind = _Task(self, mind_options)
+        self._agent = agent
+        self._handlers = Handlers(agent, self.mail, self.attendance, self.start)
+        self._session: Session | None = None
+        self._tasks: dict[asyncio.Task[Any], None] = {}
+        self._leaving = self._closed = False
+        agent._host = self
+
+    @property
+    def agent(self) -> PythonAgent:
+        """The object of the user's class."""
+        return self._agent
+
+    # ---- its life
+
+    def begin(self) -> None:
+        """Let the agent begin, in the next turn of the loop."""
+        if self._leaving:
+            return
+        if self._handlers.wanted:
+            self.start(self._handlers.serve())
+        self.start(self._main(self._handlers.wanted))
+
+    async def _main(self, stays: bool) -> None:
+        await self._agent.run()
+        if not stays and not self._leaving:
+            self.start(self._when_all_is_over())
+
+    async def _when_all_is_over(self) -> None:
+        """Refuse messages as soon as nothing of the agent is left to read them."""
+        own = asyncio.current_task()
+        with self.attendance.waiting():
+            while others := [task for task in self._tasks if task is not own]:
+                await asyncio.wait(others)
+        self.mail.close()
+
+    def start(self, work: Coroutine[Any, Any, Any]) -> "asyncio.Task[Any]":
+        """Run a coroutine of the agent; its exception ends the agent."""
+        if self._leaving:
+            work.close()
+            raise JacarosError(f"agent {self.name} is ending, and starts nothing any more")
+        task = asyncio.get_running_loop().create_task(without_exit(work), name=f"agent {self.name}")
+        self._tasks[task] = None
+        self.attendance.add(task)
+        # A task that is cancelled before its first step never came to await the coroutine.
+        task.add_done_callback(lambda _: work.close())
+        task.add_done_callback(self._done)
+        return task
+
+    def _done(self, task: "asyncio.Task[Any]") -> None:
+        self._tasks.pop(task, None)
+        error = None if task.cancelled() else task.exception()
+        # A signal from the keyboard ends the run, wherever it strikes.
+        if error is not None and not self._closed and not isinstance(error, KeyboardInterrupt):
+            self._failed(error)
+        if self._leaving and not self._tasks:
+            self._shut()
+        self._settled()
+
+    def _failed(self, error: BaseException) -> None:
+        for line in fault_lines(error):
+            self._run.console.log(f"[{self.name}] {line}", "error")
+        if not self._leaving:
+            self._run.end_agent(self.name)
+
+    def run(self, fuel: int) -> bool:
+        """Nothing: the loop gives its tasks their turns."""
+        return False
+
+    def _settled(self) -> None:
+        """Have it looked whether the run is idle, as after the turn of any agent."""
+        self._run.scheduler.make_ready(self)
+
+    def halt(self) -> None:
+        """Cancel its tasks and operations; ``finally`` blocks run, and may still act and print."""
+        if self._leaving:
+            return
+        super().halt()
+        self._leaving = True
+        for task in tuple(self._tasks):
+            task.cancel()
+        if self._session is not None:
+            self._session.cancel_operations()
+
+    def end(self) -> None:
+        """Leave the environment; when it has tasks, as soon as they are over."""
+        super().end()
+        if self._tasks:
+            self._run.clock.call_later(_PATIENCE, self._shut)
+        else:
+            self._shut()
+
+    async def close(self) -> None:
+        """Wait until its tasks have put their things in order."""
+        await super().close()
+        if self._tasks:
+            await asyncio.wait(tuple(self._tasks), timeout=_PATIENCE)
+        self._shut()
+
+    def _shut(self) -> None:
+        if self._closed:
+            return
+        self._closed = True
+        if self._tasks:
+            what = f"the agent did not end within {_PATIENCE:g} s of its cancellation"
+            self._run.console.log(f"[{self.name}] warning: {what}", "warning")
+        if self._session is not None:
+            self._session.close()
+
+    def _check(self) -> None:
+        """Let an agent that would go on for ever after its end do so no more.
+
+        Raises:
+            JacarosError: everything is closed.
+        """
+        if self._closed:
+            raise JacarosError(f"agent {self.name} has ended")
+
+    # ---- time
+
+    @property
+    def clock(self) -> Clock:
+        """The run's clock."""
+        return self._run.clock
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait on the run's clock."""
+        self._check()
+        with self.attendance.under_way():
+            await self._run.clock.sleep(seconds)
+        self._run.clock.busy(1)
+
+    async def turn(self) -> None:
+        """Let others have their turn; it counts as a reasoning cycle, so that a virtual clock moves on."""
+        self._check()
+        self._run.clock.busy(1)
+        with self.attendance.under_way():
+            await asyncio.sleep(0)
+
+    # ---- the environment
+
+    @property
+    def session(self) -> Session:
+        """The agent's session in the environment.
+
+        Raises:
+            WorkspaceError: the project has no environment.
+        """
+        if self._session is None:
+            if self.open_session is None:
+                raise WorkspaceError(
+                    "the project has no environment (a line `environment: jacaros.Environment` in the project "
+                    "file gives it one)"
+                )
+            self._session = self.open_session()
+            self._handlers.listen(self._session)
+        return self._session
+
+    # ---- people
+
+    def print(self, text: str) -> None:
+        """Show a line of output; also while the agent is ending."""
+        if not self._closed and (self._tasks or not self._ended):
+            self._show(text)
+
+
+class _Task:
+    """What stands in the place of a mind, for the run."""
+
+    def __init__(self, host: PythonAgentHost, options: Options) -> None:
+        self.stopped = False
+        self.options = options
+        self._host = host
+
+    def start(self) -> None:
+        """Let the agent begin."""
+        self._host.begin()
+
+    def post_goal(self, goal: Term) -> None:
+        """Nothing: it has no goals."""
+
+    def adopt(self, goals: Iterable[LiteralNode]) -> None:
+        """Nothing: it has no goals."""
+
+    def run(self, fuel: int) -> bool:
+        """Nothing: it makes no cycles."""
+        return False
+
+    def receive(self, message: SpeechAct) -> None:
+        """Take a message in."""
+        self._host.mail.inbox.put(message)
+
+    def accept_kill(self, killer: str) -> bool:
+        """Whether another agent may end this one."""
+        try:
+            return bool(self._host.agent.accept_kill(killer))
+        except Exception as error:
+            self._host.log("error", f"accept_kill: {said(error)}{place_of_fault(error)}")
+            return True
+
+    def perceive(self, percepts: list[Percept]) -> None:
+        """Nothing: it perceives by its session."""
+
+    def complete(self, act_id: int, completion: Completion) -> None:
+        """Nothing: it acts by its session."""
+
+    def shut_down_in(self, milliseconds: float) -> None:
+        """Nothing: it is cancelled when the time has come."""

@@ -1,0 +1,144 @@
+"""Agents written in Python: from the file that a project names to the object of the user's class."""
+
+from collections.abc import Callable, Sequence
+from types import ModuleType
+from typing import Final
+
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.loader import parse_literals
+from jacaros.asl.spelling import close_matches
+from jacaros.compiler.lowering import lower_value
+from jacaros.extension.literal import Literal, literal_of
+from jacaros.extension.python_agent import PythonAgent
+from jacaros.mas.agent_host import Run
+from jacaros.mas.agent_options import mind_options
+from jacaros.mas.deployment import AgentSpec, ProjectError
+from jacaros.mas.python_agents.faults import place_of_fault
+from jacaros.mas.python_agents.host import PythonAgentHost
+from jacaros.mas.service_directory import NAME as DIRECTORY_NAME
+from jacaros.project_modules import ModuleUnreadable, ProjectModules
+
+_OF_MINDS: Final = (
+    "events",
+    "intBels",
+    "nrcbp",
+    "rule_depth",
+    "goal_depth",
+    "search_limit",
+    "urgency",
+    "tro",
+)
+"""Options that say how a mind reasons."""
+
+
+def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
+    """The class of an agent: the one in its file, the one that the project names, or the one with the agent's name.
+
+    Raises:
+        ProjectError: the file has no such class, or several, or a mistake.
+    """
+    if spec.python_class is not None:
+        return spec.python_class
+    found = _classes(_module(modules, spec))
+    wanted = spec.options.get("class") or spec.agent_class
+    file = spec.source_path
+    if not found:
+        raise _wrong(spec, f"{file} has no class derived from jacaros.PythonAgent")
+    if wanted is not None:
+        if wanted.rpartition(".")[2] in found:
+            return found[wanted.rpartition(".")[2]]
+        close = close_matches(wanted, found)
+        hint = f"did you mean {close[0]}?" if close else f"it has {', '.join(found)}"
+        raise _wrong(spec, f"{file} has no class {wanted} derived from jacaros.PythonAgent", hint)
+    if len(found) == 1:
+        return next(iter(found.values()))
+    for name in (spec.declared_name, spec.name, file.stem):
+        meant = [each for each in found if each.lower() == name.replace("_", "").lower()]
+        if len(meant) == 1:
+            return found[meant[0]]
+    raise _wrong(
+        spec,
+        f"{file} has several classes of agents, and none has the name of agent '{spec.declared_name}'",
+        f"name one of {', '.join(found)}: [class=...] in a .mas2j file, class: ... in a .jcm file",
+    )
+
+
+def _module(modules: ProjectModules, spec: AgentSpec) -> ModuleType:
+    path = spec.source_path.resolve()
+    for folder in modules.folders:
+        if path.is_relative_to(folder):
+            name = ".".join(path.relative_to(folder).with_suffix("").parts)
+            if modules.place(name) == path:
+                try:
+                    return modules.load(name)[0]
+                except ModuleUnreadable as wrong:
+                    raise _wrong(spec, str(wrong)) from wrong
+    raise _wrong(spec, f"{spec.source_path} cannot be imported: the names of its folders are no Python names")
+
+
+def _classes(module: ModuleType) -> dict[str, type[PythonAgent]]:
+    """The classes of agents in a module: its own, or if it has none, those that it imports."""
+    known = {
+        name: value
+        for name, value in vars(module).items()
+        if isinstance(value, type) and issubclass(value, PythonAgent) and value is not PythonAgent
+    }
+    own = {name: value for name, value in known.items() if value.__module__ == module.__name__}
+    return own or known
+
+
+def check(modules: ProjectModules, spec: AgentSpec, warn: Callable[[Diagnostic], None]) -> None:
+    """Look for the class of an agent, and tell what of its declaration has no effect.
+
+    Raises:
+        ProjectError: there is no class for it.
+    """
+    for what in _without_effect(spec):
+        message = f"{what} of agent '{spec.declared_name}' has no effect: the agent is written in Python"
+        warn(Diagnostic("warning", message, spec.span))
+    if spec.name == DIRECTORY_NAME:
+        raise _wrong(spec, "the directory facilitator 'df' cannot be an agent written in Python")
+    agent_class(modules, spec)
+
+
+def _without_effect(spec: AgentSpec) -> Sequence[str]:
+    found = [f"the option '{option}'" for option in _OF_MINDS if option in spec.options]
+    if spec.goals.strip():
+        found.append("'goals'")
+    if spec.architecture_classes:
+        found.append("the architecture class")
+    if spec.belief_base_class:
+        found.append("the belief base class")
+    if any(focus.namespace for focus in spec.focus):
+        found.append("the namespace of a focus")
+    return found
+
+
+def make(modules: ProjectModules, spec: AgentSpec, run: Run, seed: str) -> PythonAgentHost:
+    """The host of an agent written in Python, which is still to begin.
+
+    Raises:
+        ProjectError: there is no class for it, or its constructor fails.
+    """
+    kind = agent_class(modules, spec)
+    try:
+        agent = kind()
+    except Exception as error:
+        message = f"{kind.__name__} cannot be made: {type(error).__name__}: {error}{place_of_fault(error)}"
+        raise _wrong(spec, message) from error
+    return PythonAgentHost(
+        agent, spec.name, run, seed, mind_options(spec.options), spec.options, _beliefs(spec)
+    )
+
+
+def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
+    if not spec.beliefs.strip():
+        return ()
+    return tuple(
+        literal_of(lower_value(node))
+        for node in parse_literals(spec.beliefs, f"the declaration of {spec.name}")
+    )
+
+
+def _wrong(spec: AgentSpec, message: str, hint: str | None = None) -> ProjectError:
+    return ProjectError([Diagnostic("error", message, spec.span, hint)])
