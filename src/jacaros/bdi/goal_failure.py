@@ -97,12 +97,17 @@ def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReaso
 def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
     bottom = next((frame[GOAL] for frame in intention.frames if frame[GOAL][0].kind), None)
     what = "an intention" if bottom is None else f"the goal !{failure.goal_text(bottom)}"
-    where = reason.where()
-    place = f" ({where})" if where else ""
-    told = f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
+    told = lost_text(what, reason)
     agent.architecture.log("warning", told)
     if agent.probe is not None:
         agent.probe.lost(told, reason.span())
+
+
+def lost_text(what: str, reason: FailureReason) -> str:
+    """What people are told of *what* has failed when nobody saved it."""
+    where = reason.where()
+    place = f" ({where})" if where else ""
+    return f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
 
 
 def _lost_in_handler(

@@ -7,6 +7,7 @@ from typing import Any
 from jacaros.asl.loader import parse_term
 from jacaros.bdi import goals
 from jacaros.bdi.agent import Agent
+from jacaros.bdi.goal_failure import lost_text
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.watched import WatchedGoal
 from jacaros.body.values import to_value
@@ -181,7 +182,7 @@ class Goal(PursuedGoal):
     """A goal that Python code has given to a running agent; it can be awaited.
 
     ``await goal`` ends when it is achieved, and raises `GoalFailed` when it failed and no plan took care of that, or when
-    it was dropped.  A goal that nobody awaits is pursued all the same.
+    it was dropped.  A goal that nobody awaits is pursued all the same; when it fails, people are told, as of every goal.
     """
 
     def __init__(self, written: str, mind: Agent, waits: Waits) -> None:
@@ -189,6 +190,7 @@ class Goal(PursuedGoal):
         self._mind = mind
         self._waits = waits
         self._waiting: list[asyncio.Future[None]] = []
+        self._awaited = False
 
     async def wait(self, timeout: float | None = None) -> None:
         """Wait until it is achieved.
@@ -202,6 +204,7 @@ class Goal(PursuedGoal):
             AgentEnded: the agent ended before.
             RunEnded: the run ended before.
         """
+        self._awaited = True
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         dropped = (lambda: self.state == "dropped", _Ends(future))
         if not self._watched.ended:
@@ -231,6 +234,15 @@ class Goal(PursuedGoal):
         for future in waiting:
             if not future.done():
                 future.set_result(None)
+        if self.failed and not self._awaited:
+            # A task that is to await it may be about to begin.
+            asyncio.get_running_loop().call_soon(self._tell_failure)
+
+    def _tell_failure(self) -> None:
+        if not self._awaited:
+            what, reason = f"the goal !{self._written}", self._watched.reason
+            told = lost_text(what, reason) if reason is not None else f"{what} failed"
+            self._mind.architecture.log("warning", told)
 
     def _not_achieved(self) -> str:
         return f"agent {self._mind.name} did not achieve !{self._written} (it is {self.state})"

@@ -653,3 +653,22 @@ def test_the_names_of_mailboxes_are_known_to_agents() -> None:
         assert bob.ask("names(L)") == {"L": [Atom("bob"), Atom("me")]}
 
     run(test)
+
+
+def test_a_failed_goal_that_nobody_awaits_is_told() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "+!refused <- .fail.")
+        bob.achieve("nothing(1)")
+        bob.achieve("refused")
+        later = asyncio.create_task(bob.achieve("awaited").wait())
+        with pytest.raises(GoalFailed):
+            await bob.achieve("awaited_too")
+        with pytest.raises(GoalFailed):
+            await later
+
+    logs: list[str] = []
+    run(test, logs=logs)
+    assert [line.partition(" and has")[0] for line in logs] == [
+        "[bob] warning: the goal !nothing(1) failed",
+        "[bob] warning: the goal !refused failed",
+    ]
