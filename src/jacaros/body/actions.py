@@ -6,6 +6,7 @@ and reasons of failure are the same here.  What else can be done with workspaces
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
@@ -18,7 +19,7 @@ from jacaros.body.selection import Selection
 from jacaros.body.undelivered import unreachable
 from jacaros.body.values import References, to_value
 from jacaros.body.whereabouts import Whereabouts, not_joined
-from jacaros.env.errors import OperationFailed
+from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome
 from jacaros.env.ports import Environment, Told, UnderWay, Workspace
@@ -248,11 +249,13 @@ def focus_when_available(situation: Situation, call: Call, finish: Finish) -> Un
     def look(artifact: ArtifactId, is_there: bool) -> None:
         if not is_there or artifact.name != wanted:
             return
-        stop()
         if not situation.whereabouts.has_joined(workspace.path):
+            stop()
             finish(refused(not_joined(workspace.path), situation.references))
             return
-        situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish), only)
+        with suppress(UnknownArtifact):  # somebody has disposed it at once: the next one is waited for
+            situation.focused.begin(workspace, artifact, call.namespace, _told(situation, finish), only)
+            stop()
 
     stop = workspace.watch(look)
     return _Waiting(stop)

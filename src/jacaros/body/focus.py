@@ -129,10 +129,12 @@ class FocusedArtifacts:
 
         observer: Observer = self._observer(namespace)
         if only is not None:
-            observer = self._filtered[artifact, namespace] = FilteredObserver(observer, only)
+            observer = FilteredObserver(observer, only)
 
         def focused(outcome: OperationOutcome) -> None:
             if outcome.ok:
+                if only is not None:
+                    self._filtered[artifact, namespace] = observer
                 self._take(workspace, artifact, namespace)
             on_done(outcome)
 

@@ -1,7 +1,7 @@
 """Workspaces: where artifacts are made, found, focused, linked, used and disposed."""
 
 import asyncio
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 
 from jacaros.env import ports
@@ -56,6 +56,7 @@ class Workspace(ports.Workspace):
         self._offers: dict[ArtifactId, dict[str, None]] = {}
         self._watchers: dict[object, Watcher] = {}
         self._watchers_of_all: dict[object, Watcher] = {}
+        self._telling: tuple[Iterator[Watcher], ArtifactId, bool] | None = None
 
     # ---- artifacts come and go
 
@@ -76,7 +77,7 @@ class Workspace(ports.Workspace):
         self._registry.promise(artifact_id, artifact_type.interface, make)
         if personal:
             self._personal[name] = artifact_id
-            self._tell(self._watchers_of_all, artifact_id, True)
+            self._tell(tuple(self._watchers_of_all.values()), artifact_id, True)
         else:
             self._artifacts[name] = artifact_id
             self._changed(artifact_id, True)
@@ -177,7 +178,7 @@ class Workspace(ports.Workspace):
     def _forget(self, artifact_id: ArtifactId) -> None:
         if self._personal.get(artifact_id.name) is artifact_id:
             del self._personal[artifact_id.name]
-            self._tell(self._watchers_of_all, artifact_id, False)
+            self._tell(tuple(self._watchers_of_all.values()), artifact_id, False)
         elif self._artifacts.get(artifact_id.name) is artifact_id:
             del self._artifacts[artifact_id.name]
             self._changed(artifact_id, False)
@@ -415,12 +416,21 @@ class Workspace(ports.Workspace):
             else:
                 offering.remove(artifact_id)
         self._offers.pop(artifact_id, None)
-        self._tell(self._watchers, artifact_id, present)
-        self._tell(self._watchers_of_all, artifact_id, present)
+        self._tell((*self._watchers.values(), *self._watchers_of_all.values()), artifact_id, present)
 
-    def _tell(self, watchers: dict[object, Watcher], artifact_id: ArtifactId, present: bool) -> None:
-        for watcher in tuple(watchers.values()):
+    def _tell(self, watchers: tuple[Watcher, ...], artifact_id: ArtifactId, present: bool) -> None:
+        # A watcher may end the artifact that has just come: the others hear of its coming first.
+        self._tell_rest()
+        self._telling = iter(watchers), artifact_id, present
+        self._tell_rest()
+
+    def _tell_rest(self) -> None:
+        if self._telling is None:
+            return
+        untold, artifact_id, present = self._telling
+        for watcher in untold:
             try:
                 watcher(artifact_id, present)
             except Exception as error:
                 self._setting.report(error)
+        self._telling = None

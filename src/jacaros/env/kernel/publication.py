@@ -1,10 +1,18 @@
 """What observers see of one artifact: its committed properties and its signals."""
 
+from collections.abc import Iterator
+from typing import Any
+
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.observation import Observation, Observer, Signal
 from jacaros.env.property import ObservableProperty, PropertyChanges, PropertyStore
 from jacaros.trace import Cause
+
+_Telling = tuple[Iterator[Observer], str | None, Observation, Observation]
+"""Who is still to be told, the only one to hear of the signals (None for all), what that one sees, and what others see."""
+_NOTHING: Any = None
+_NOBODY: _Telling = iter(()), None, _NOTHING, _NOTHING
 
 
 class Publication:
@@ -15,13 +23,14 @@ class Publication:
         observers: who focuses the artifact, in the order of focusing.
     """
 
-    __slots__ = ("_artifact", "_frozen", "_observers", "_setting", "properties")
+    __slots__ = ("_artifact", "_frozen", "_observers", "_setting", "_telling", "properties")
 
     def __init__(self, artifact: ArtifactId, setting: Setting) -> None:
         self._artifact, self._setting = artifact, setting
         self.properties = PropertyStore()
         self._observers: dict[Observer, None] = {}
         self._frozen: tuple[ObservableProperty, ...] | None = None
+        self._telling: _Telling = _NOBODY
 
     @property
     def observers(self) -> tuple[Observer, ...]:
@@ -48,6 +57,7 @@ class Publication:
 
     def remove(self, observer: Observer) -> None:
         """Let *observer* receive nothing more, after the removal of all properties."""
+        self._tell()
         if observer in self._observers:
             del self._observers[observer]
             self._show(observer, removed=self.committed())
@@ -82,20 +92,33 @@ class Publication:
         if not self._observers and self._setting.tracer is None:
             return
         cause = parent if self._setting.tracer is None else self._trace(parent, signals, changes)
-        complete = Observation(self._artifact, signals, *changes, cause)
+        complete = others = Observation(self._artifact, signals, *changes, cause)
+        if addressee is not None:
+            others = Observation(self._artifact, (), *changes, cause)
+        self._tell()
+        self._telling = iter(self.observers), addressee, complete, others
+        self._tell()
+
+    def _tell(self) -> None:
+        """Tell the observers that have not been told yet what is being published.
+
+        What one observer does of it may end the focus of others: they are told before that, so that each sees all
+        things in their order.
+        """
+        untold, addressee, complete, others = self._telling
         if addressee is None:
-            for observer in self.observers:
+            for observer in untold:
                 try:
                     observer.observe(complete)
                 except Exception as error:
                     self._setting.report(error)
-            return
-        others = Observation(self._artifact, (), *changes, cause)
-        for observer in self.observers:
-            if observer.agent == addressee:
-                self._deliver(observer, complete)
-            elif changes.changed or changes.added or changes.removed:
-                self._deliver(observer, others)
+        else:
+            for observer in untold:
+                if observer.agent == addressee:
+                    self._deliver(observer, complete)
+                elif others.changed or others.added or others.removed:
+                    self._deliver(observer, others)
+        self._telling = _NOBODY
 
     def _trace(
         self, parent: Cause | None, signals: tuple[Signal, ...], changes: PropertyChanges

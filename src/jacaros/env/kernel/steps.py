@@ -368,8 +368,26 @@ class Steps(StepInProgress):
             told = f"operation {key} has not ended {PATIENCE:g} s after its artifact was disposed; it is left behind"
             self.setting.log(f"[{self.id.name}] {told}")
             self._tell(execution, outcomes.disposed(execution.request))
+            if (
+                execution.task is not None
+                and execution.declared is not None
+                and execution.declared.kind != EXTERNAL
+            ):
+                self._throw_away(execution.task)
         self._running.clear()
         self.ending.run(self.initialised, self.complain)
+
+    def _throw_away(self, task: "asyncio.Task[None]") -> None:
+        """End a task that takes no cancellation: the end of the loop would wait for it for ever."""
+        try:
+            task.get_coro().close()
+        except BaseException as error:
+            if is_interruption(error):
+                raise
+            self.complain("an operation that was left behind goes on:", error)
+            return
+        task.add_done_callback(lambda over: over.cancelled() or over.exception())
+        task.cancel()
 
     def _close_if_over(self) -> None:
         if self.disposed and not self._running and self.turns.holder is None:

@@ -2,13 +2,14 @@
 
 import asyncio
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from types import TracebackType
 from typing import Any
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.choice import artifact_named, chosen_artifact
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, WorkspaceError
+from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import Workspace
@@ -199,7 +200,10 @@ class Session(Perceiving):
 
         def look(artifact: ArtifactId, is_there: bool) -> None:
             if is_there and artifact.name == plain_name and not found.done():
-                found.set_result(self.focus(artifact))
+                with suppress(
+                    UnknownArtifact
+                ):  # somebody has disposed it at once: the next one is waited for
+                    found.set_result(self.focus(artifact))
 
         stop = workspace.watch(look)
         try:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from jacaros.mas.console import StandardConsole
+from jacaros.mas.python_agents.faults import place_of_fault, said
 
 
 class PrintedLine(NamedTuple):
@@ -50,9 +51,14 @@ class PrintedConsole:
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output."""
-        self._on_print(agent, text)
-        for told in tuple(self._listeners):
-            told(agent, text)
+        for told in (self._on_print, *self._listeners):
+            try:
+                told(agent, text)
+            except Exception as error:
+                self.log(
+                    f"error: a callback for what is printed failed: {said(error)}{place_of_fault(error)}",
+                    "error",
+                )
 
     def log(self, text: str, level: str = "info") -> None:
         """Tell people about what happens."""

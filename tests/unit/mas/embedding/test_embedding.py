@@ -672,3 +672,93 @@ def test_a_failed_goal_that_nobody_awaits_is_told() -> None:
         "[bob] warning: the goal !nothing(1) failed",
         "[bob] warning: the goal !refused failed",
     ]
+
+
+class Door(Artifact):
+    """Is opened once."""
+
+    def init(self) -> None:
+        self.define_property("open", False)
+
+    @operation(name="openIt")
+    def open_it(self) -> None:
+        self.update_property("open", True)
+
+    @operation
+    async def stay(self) -> None:
+        while True:
+            try:
+                await self.sleep(1)
+            except asyncio.CancelledError:
+                self.log("not yet")
+
+
+def test_who_is_told_later_sees_the_change_before_the_end() -> None:
+    """An observer that disposes the artifact of which it is just being told."""
+
+    async def test(mas: Mas) -> None:
+        door = await mas.make_artifact("door", Door)
+        first, second = mas.session("first"), mas.session("second")
+        first.focus(door)
+        second.focus(door)
+        bob = mas.add_agent(
+            "bob", "+open(X) <- .print(open(X)). -open(X) <- .print(no_more(X)).", focus=[door]
+        )
+        seen: list[object] = []
+        second.on_change(lambda change: seen.append((change.before, change.now)))
+        first.on_change(lambda change: first.dispose_artifact(door) if change.now else None)
+        await second.act("openIt")
+        await mas.until_idle()
+        assert seen == [((False,), (True,)), ((True,), None)]
+        assert bob.ask("open(_)") is None
+
+    lines: list[str] = []
+    run(test, lines)
+    assert [line[6:] for line in lines] == ["open(false)", "no_more(false)", "open(true)", "no_more(true)"]
+
+
+def test_an_artifact_that_is_disposed_when_it_appears_is_waited_for() -> None:
+    async def test(mas: Mas) -> None:
+        first, second = mas.session("first"), mas.session("second")
+        first.on_change(lambda change: first.dispose_artifact("door") if change.now and once else None)
+        tasks = [asyncio.create_task(each.focus_when_available("door")) for each in (first, second)]
+        goal = mas.add_agent("bob", '+!see <- focusWhenAvailable("door"); ?open(X).').achieve("see")
+        await mas.sleep(1)
+        await mas.make_artifact("door", Door)
+        once.clear()
+        await mas.sleep(1)
+        assert [task.done() for task in tasks] == [True, False]
+        assert goal.state == "waiting"
+        await mas.make_artifact("door", Door)
+        await goal
+        assert second.focused == (await tasks[1],)
+
+    once = [True]
+    assert run(test).exit_code == 0
+
+
+def test_a_run_ends_though_an_operation_takes_no_cancellation() -> None:
+    async def test(mas: Mas) -> None:
+        session = mas.session("s")
+        await session.make_artifact("door", Door)
+        session.begin("stay")
+        await mas.sleep(3)
+
+    logs: list[str] = []
+    run(test, logs=logs)
+    assert "it is left behind" in logs[-1]
+
+
+def test_a_callback_for_prints_that_raises_harms_no_agent() -> None:
+    async def test(mas: Mas) -> None:
+        def refuse(agent: str, text: str) -> None:
+            raise ValueError("no printing")
+
+        mas.on_print(refuse)
+        await mas.add_agent("bob", "+!go <- .print(a); .print(b).").achieve("go")
+
+    lines: list[str] = []
+    logs: list[str] = []
+    run(test, lines, logs)
+    assert lines == ["[bob] a", "[bob] b"]
+    assert "ValueError: no printing" in logs[0]
