@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from jacaros.extension.literal import Literal
     from jacaros.extension.python_agent import PythonAgent
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
-    from jacaros.mas.embedding.errors import GoalFailed
+    from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded
     from jacaros.mas.embedding.main import run
     from jacaros.mas.embedding.mas import Mas
 
@@ -37,6 +37,7 @@ __all__ = [
     "ActionError",
     "Agent",
     "AgentArch",
+    "AgentEnded",
     "Atom",
     "BeliefBase",
     "Event",
@@ -53,6 +54,7 @@ __all__ = [
     "Plan",
     "PythonAgent",
     "ReceivedMessage",
+    "RunEnded",
     "Structure",
     "UnknownAgent",
     "WrongArguments",
@@ -66,6 +68,7 @@ _PLACES = {
     "ActionError": "jacaros.bdi.internal_action",
     "Agent": "jacaros.extension.agent",
     "AgentArch": "jacaros.extension.architecture",
+    "AgentEnded": "jacaros.mas.embedding.errors",
     "Atom": "jacaros.env.values",
     "BeliefBase": "jacaros.extension.belief_base",
     "Event": "jacaros.extension.views",
@@ -82,6 +85,7 @@ _PLACES = {
     "Plan": "jacaros.extension.views",
     "PythonAgent": "jacaros.extension.python_agent",
     "ReceivedMessage": "jacaros.extension.conversation",
+    "RunEnded": "jacaros.mas.embedding.errors",
     "Structure": "jacaros.env.values",
     "UnknownAgent": "jacaros.extension.errors",
     "WrongArguments": "jacaros.bdi.internal_action",

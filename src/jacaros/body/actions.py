@@ -8,7 +8,7 @@ and reasons of failure are the same here.  What else can be done with workspaces
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 
 from jacaros.bdi.act import Completion
 from jacaros.body.call import Call, name_of
@@ -76,9 +76,10 @@ def _action(name: str, *arities: int) -> Callable[[Action], Action]:
     return register
 
 
-def keys() -> list[str]:
-    """Names with numbers of arguments, such as ``focus/1``."""
-    return [f"{name}/{arity}" for name, arity in ACTIONS]
+@cache
+def keys() -> tuple[str, ...]:
+    """Names with numbers of arguments, such as ``focus/1``; one tuple for all agents."""
+    return tuple(f"{name}/{arity}" for name, arity in ACTIONS)
 
 
 def _give(situation: Situation, call: Call, holder: ArtifactId, index: int, value: object) -> Outputs:

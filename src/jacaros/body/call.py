@@ -146,21 +146,6 @@ def workspace_argument(term: Term, where: str) -> Workspace | str:
     return name
 
 
-def name_argument(term: Term, where: str) -> str:
-    """The name that a string or atom stands for.
-
-    Raises:
-        OperationFailed: it is neither.
-    """
-    name = name_of(bare(term))
-    if name is None:
-        raise OperationFailed(
-            f"{where} wants a name (a string or an atom), not {text(term)}",
-            Structure("wrong_op_arguments", (where,)),
-        )
-    return name
-
-
 def name_of(term: Term) -> str | None:
     """The text of a string or atom, without quotes; None for other terms."""
     if term.__class__ is String:

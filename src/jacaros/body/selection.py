@@ -7,7 +7,7 @@ agent's home, then the others that it has joined (see `jacaros.env.choice` for s
 """
 
 import difflib
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from jacaros.bdi.internal_action import STANDARD
 from jacaros.body.call import ANYWHERE, Call
@@ -32,12 +32,16 @@ class Selection:
     """
 
     def __init__(
-        self, agent: str, whereabouts: Whereabouts, focused: FocusedArtifacts, own_actions: Iterable[str] = ()
+        self,
+        agent: str,
+        whereabouts: Whereabouts,
+        focused: FocusedArtifacts,
+        own_actions: tuple[str, ...] = (),
     ) -> None:
         self._agent = agent
         self._whereabouts = whereabouts
         self._focused = focused
-        self._own_actions = tuple(own_actions)
+        self._own_actions = own_actions
 
     def artifact_for(self, call: Call) -> ArtifactId:
         """The artifact that is to carry out *call*.

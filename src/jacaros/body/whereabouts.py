@@ -1,10 +1,10 @@
 """Where an agent is: the workspaces that it has joined, and the current one of each intention."""
 
-from collections import OrderedDict
 from collections.abc import Callable, Iterator
 
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import resolve_path
+from jacaros.env.joined import in_order, joined_workspace
 from jacaros.env.ports import Environment, Workspace
 from jacaros.env.values import Structure
 
@@ -32,7 +32,7 @@ class Whereabouts:
         self._joined: dict[str, Workspace] = {home: self.home}
         self._last = self.home
         self.watcher: Callable[[Workspace, bool], None] | None = None
-        self._of_intention: OrderedDict[int, Workspace] = OrderedDict()
+        self._of_intention: dict[int, Workspace] = {}
 
     def joined(self) -> tuple[Workspace, ...]:
         """The joined workspaces, in the order of joining."""
@@ -67,12 +67,7 @@ class Whereabouts:
 
     def in_order(self, intention: int) -> Iterator[Workspace]:
         """The workspaces where an intention looks for things: the current one, home, then the others."""
-        current = self.current(intention)
-        yield current
-        if self.home is not current and self.home.path in self._joined:
-            yield self.home
-        if len(self._joined) > 1:
-            yield from (w for w in self._joined.values() if w is not current and w is not self.home)
+        return in_order(self._joined, self.current(intention), self.home)
 
     def find(self, path: str, intention: int) -> Workspace:
         """The workspace at *path*, which starts from the intention's current workspace, or from home without one.
@@ -89,15 +84,11 @@ class Whereabouts:
         Raises:
             OperationFailed: no such workspace was joined.
         """
-        full = resolve_path(self.current(intention).path, name)
-        for workspace in self.in_order(intention):
-            if workspace.path == full or workspace.name == name:
-                return workspace
-        try:
-            # A link may lead there.
-            return self.at(self._environment.workspace(full).path)
-        except OperationFailed:
-            raise not_joined(name) from None
+        current = self.current(intention)
+        found = joined_workspace(self._environment, self._joined, current, self.home, name)
+        if found is None:
+            raise not_joined(name)
+        return found
 
     def join(self, workspace: Workspace, intention: int | None = None) -> bool:
         """Make a workspace the current one; True when it was not joined before."""
@@ -107,10 +98,10 @@ class Whereabouts:
         if is_new and self.watcher is not None:
             self.watcher(workspace, True)
         if intention is not None:
+            self._of_intention.pop(intention, None)
             self._of_intention[intention] = workspace
-            self._of_intention.move_to_end(intention)
             if len(self._of_intention) > self.REMEMBERED_INTENTIONS:
-                self._of_intention.popitem(last=False)
+                del self._of_intention[next(iter(self._of_intention))]
         return is_new
 
     def quit(self, workspace: Workspace) -> bool:

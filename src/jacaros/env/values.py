@@ -170,11 +170,6 @@ def _plain_structure(value: Structure, room: int) -> Structure:
     return Structure(value.functor, tuple(_plain(argument, room) for argument in value.arguments))
 
 
-def plain_key(key: Any) -> Any:
-    """Turn the key of a dictionary into a plain value; one that cannot be a key any more stays."""
-    return _plain_key(key, _DEPTH)
-
-
 def _plain_key(key: Any, room: int) -> Any:
     converted = _plain(key, room)
     try:

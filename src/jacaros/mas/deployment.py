@@ -79,7 +79,7 @@ class AgentSpec:
     @property
     def is_python(self) -> bool:
         """Whether it is an agent written in Python."""
-        return self.python_class is not None or self.source_path.suffix == ".py"
+        return self.python_class is not None or str(self.source_path).endswith(".py")
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,6 @@ from jacaros.terms.values import Term
 if TYPE_CHECKING:
     from jacaros.extension.collecting import Additions, Limits
 
-HOW_TO = "docs/how-to/extend_in_python.md"
-
 
 class PythonCode:
     """What a project's Python modules add to its programs.

@@ -3,6 +3,7 @@
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId, resolve_path
+from jacaros.env.joined import in_order, joined_workspace
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Structure
 
@@ -35,10 +36,7 @@ class SessionWorkspaces:
 
     def in_order(self) -> tuple[Workspace, ...]:
         """Where things are looked for: the current one, home, then the others in the order of joining."""
-        first = [self.current]
-        if self._home.path in self._joined:
-            first.append(self._home)
-        return tuple(dict.fromkeys((*first, *self._joined.values())))
+        return tuple(in_order(self._joined, self.current, self._home))
 
     def join(self, path: str) -> Workspace:
         """Make the workspace at *path*, which starts from the current one, the current one.
@@ -67,11 +65,10 @@ class SessionWorkspaces:
         Raises:
             OperationFailed: it was not joined.
         """
-        full = resolve_path(self.current.path, name)
-        for workspace in self.in_order():
-            if workspace.path == full or workspace.name == name:
-                return workspace
-        raise _not_joined(name)
+        found = joined_workspace(self._environment, self._joined, self.current, self._home, name)
+        if found is None:
+            raise _not_joined(name)
+        return found
 
     def of(self, artifact: ArtifactId) -> Workspace:
         """The joined workspace of an artifact.

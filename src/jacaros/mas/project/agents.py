@@ -100,6 +100,8 @@ class ProjectAgents:
                     if _means(written, agent)
                 ]
         join += [wanted.workspace for wanted in focus if wanted is not None]
+        if not join and not focus:
+            return agent
         return replace(
             agent,
             join=tuple(dict.fromkeys(name for name in join if name is not None)),

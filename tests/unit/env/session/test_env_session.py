@@ -667,3 +667,29 @@ def test_streams_get_a_signal_in_the_order_of_their_making_and_go_when_nobody_re
         assert len(session._streams) == 1
 
     play(scene)
+
+
+def test_a_joined_workspace_is_also_meant_by_a_link_to_it(play):
+    async def scene(stage):
+        session = session_in(stage)
+        session.create_workspace("lab")
+        session.join("lab")
+        await session.make_artifact("counter", Counter)
+        session.join("/main")
+        stage.environment.link_workspace("/main/there", "/main/lab")
+        await session.act("inc", workspace="there")
+        assert session.focus("there/counter").workspace == "/main/lab"
+        assert session.value("count") == 1
+
+    play(scene)
+
+
+def test_what_was_quit_cannot_be_quit_again(play):
+    async def scene(stage):
+        session = session_in(stage)
+        session.quit("main")
+        with pytest.raises(OperationFailed) as failure:
+            session.quit("main")
+        assert failure.value.reason == Structure("workspace_not_joined", ("main",))
+
+    play(scene)
