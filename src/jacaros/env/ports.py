@@ -79,7 +79,7 @@ class Workspace(Protocol):
         """The operations of an artifact for agents, such as ``inc/1`` and ``sum/any``; raises `UnknownArtifact`."""
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
-        """True when its class has a public method of that name, an operation or not; see `offers`."""
+        """True when its class has a public method of that name that is no operation of agents; see `offers`."""
 
     # ---- asked for
 

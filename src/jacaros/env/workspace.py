@@ -25,6 +25,7 @@ from jacaros.env.operation import (
     OperationOutcome,
     OperationRequest,
     ignore_outcome,
+    marks_of,
 )
 from jacaros.env.ports import Made, Told, nobody_waits
 from jacaros.env.property import ObservableProperty
@@ -300,13 +301,16 @@ class Workspace(ports.Workspace):
         return self._registry.interface(artifact_id) or self._steps_of(artifact_id).interface
 
     def has_method(self, artifact_id: ArtifactId, name: str) -> bool:
-        """True when the author of an artifact's class wrote a public method of that name, an operation or not.
+        """True when the author of an artifact's class wrote a public method of that name that is no operation of agents.
 
         Raises:
             UnknownArtifact: it is gone.
         """
-        methods = vars(self._steps_of(artifact_id).artifact_type)
-        return not name.startswith("_") and callable(methods.get(name))
+        method = vars(self._steps_of(artifact_id).artifact_type).get(name)
+        if name.startswith("_") or not callable(method):
+            return False
+        # One that is marked and not offered was taken away by `Artifact.remove_operation`.
+        return all(mark.kind != OPERATION or mark.name not in (None, name) for mark in marks_of(method))
 
     def properties(self, artifact_id: ArtifactId) -> tuple[ObservableProperty, ...]:
         """The observable properties of an artifact, as observers know them.
