@@ -8,6 +8,7 @@ import pytest
 from jacaros.env import (
     Artifact,
     OperationRequest,
+    Session,
     Structure,
     UnknownArtifact,
     internal_operation,
@@ -447,5 +448,28 @@ def test_an_operation_that_rests_in_a_pause_fails_too(play):
         stage.main.dispose_artifact(it)
         await call.wait()
         assert (stage.elapsed, call.reason) == (10.0, Structure("artifact_disposed", ("it",)))
+
+    play(scene)
+
+
+class Farewell(Artifact):
+    """Says something, and is gone."""
+
+    @operation
+    def leave(self):
+        self.define_property("last", 1)
+        self.workspace.dispose_artifact(self.id)
+
+
+def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(play):
+    async def scene(stage):
+        it = await stage.make(Farewell)
+        seen = []
+        with Session(stage.environment, "s") as session:
+            session.focus(it)
+            session.on_change(lambda change: seen.append((change.before, change.now)))
+            await session.act("leave")
+            assert seen == [(None, (1,)), ((1,), None)]
+            assert session.focused == ()
 
     play(scene)

@@ -66,6 +66,7 @@ class Registry:
 
     def dispose(self, steps: Steps) -> None:
         """Forget an artifact and the links from and to it, and end its operations."""
+        steps.publish_last()
         if steps.id in self._steps:
             self._remove(steps.id)
         steps.dispose()

@@ -319,6 +319,12 @@ class Steps(StepInProgress):
             self._roll_back()
         task.cancel()
 
+    def publish_last(self) -> None:
+        """Publish what the operation has changed that is about to dispose its own artifact, while all still know it."""
+        if not self.disposed and self.turns.holder is not None and self.inside():
+            self.disposed = True  # what the step has started does not begin any more
+            self.commit()
+
     def dispose(self) -> None:
         """Take no more operations, leave the observers, and end all operations.
 
@@ -326,8 +332,6 @@ class Steps(StepInProgress):
         """
         self.disposed = True
         survivor = self.turns.holder if self.inside() else None
-        if survivor is not None:
-            self.commit()
         self.publication.close()
         for execution in (*self.turns.waiting_to_begin(), *self._running):
             if execution is not survivor and not execution.stopped:
