@@ -13,10 +13,11 @@ TYPE_CHECKING = (
 )
 
 if TYPE_CHECKING:
+    from jacaros.asl.errors import AslError
     from jacaros.bdi.internal_action import ActionError, WrongArguments
     from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
-    from jacaros.errors import JacarosError
+    from jacaros.errors import InternalError, JacarosError, UsageError
     from jacaros.extension.agent import Agent
     from jacaros.extension.architecture import Action, AgentArch
     from jacaros.extension.belief_base import BeliefBase
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from jacaros.extension.literal import Literal
     from jacaros.extension.python_agent import PythonAgent
     from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
+    from jacaros.mas.deployment import ProjectError
     from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded
     from jacaros.mas.embedding.main import run
     from jacaros.mas.embedding.mas import Mas
@@ -38,11 +40,13 @@ __all__ = [
     "Agent",
     "AgentArch",
     "AgentEnded",
+    "AslError",
     "Atom",
     "BeliefBase",
     "Event",
     "GoalFailed",
     "Intention",
+    "InternalError",
     "JacarosError",
     "Literal",
     "Mas",
@@ -52,11 +56,13 @@ __all__ = [
     "Out",
     "Percept",
     "Plan",
+    "ProjectError",
     "PythonAgent",
     "ReceivedMessage",
     "RunEnded",
     "Structure",
     "UnknownAgent",
+    "UsageError",
     "WrongArguments",
     "arithmetic_function",
     "internal_action",
@@ -69,11 +75,13 @@ _PLACES = {
     "Agent": "jacaros.extension.agent",
     "AgentArch": "jacaros.extension.architecture",
     "AgentEnded": "jacaros.mas.embedding.errors",
+    "AslError": "jacaros.asl.errors",
     "Atom": "jacaros.env.values",
     "BeliefBase": "jacaros.extension.belief_base",
     "Event": "jacaros.extension.views",
     "GoalFailed": "jacaros.mas.embedding.errors",
     "Intention": "jacaros.extension.views",
+    "InternalError": "jacaros.errors",
     "JacarosError": "jacaros.errors",
     "Literal": "jacaros.extension.literal",
     "Mas": "jacaros.mas.embedding.mas",
@@ -83,11 +91,13 @@ _PLACES = {
     "Out": "jacaros.env.values",
     "Percept": "jacaros.extension.views",
     "Plan": "jacaros.extension.views",
+    "ProjectError": "jacaros.mas.deployment",
     "PythonAgent": "jacaros.extension.python_agent",
     "ReceivedMessage": "jacaros.extension.conversation",
     "RunEnded": "jacaros.mas.embedding.errors",
     "Structure": "jacaros.env.values",
     "UnknownAgent": "jacaros.extension.errors",
+    "UsageError": "jacaros.errors",
     "WrongArguments": "jacaros.bdi.internal_action",
     "arithmetic_function": "jacaros.extension.declaring",
     "internal_action": "jacaros.extension.declaring",

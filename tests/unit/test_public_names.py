@@ -1,7 +1,9 @@
 """What `jacaros` offers to the Python code of projects."""
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +14,15 @@ def test_every_public_name_can_be_imported() -> None:
     for name in jacaros.__all__:
         assert getattr(jacaros, name).__module__.startswith("jacaros."), name
     assert set(jacaros.__all__) <= set(dir(jacaros))
+
+
+def test_the_errors_of_the_reference_are_public() -> None:
+    page = Path(__file__).parents[2] / "docs" / "reference" / "python_api.md"
+    table = page.read_text(encoding="utf-8").partition("## Errors")[2].partition("All but")[0]
+    rows = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
+    errors = {name for row in rows for name in re.findall(r"`(\w+)`", row)}
+    assert len(errors) > 8
+    assert errors - {"TimeoutError"} <= set(jacaros.__all__)
 
 
 def test_a_name_that_is_not_there_is_an_attribute_error() -> None:

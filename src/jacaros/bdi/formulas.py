@@ -43,7 +43,6 @@ from jacaros.terms.values import (
 )
 
 Search = Generator[Any, Any, None]
-_YES = ((),)
 
 
 def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Search:

@@ -276,7 +276,7 @@ def stop_focus(situation: Situation, call: Call, finish: Finish) -> None:
 def join_workspace(situation: Situation, call: Call, finish: Finish) -> None:
     """``joinWorkspace(Path [, -Id])``: make a workspace the current one of the intention."""
     intention, session = call.act.intention, situation.session()
-    workspace = _workspace(situation, call, session)
+    workspace = _workspace(call, session)
     if workspace is None:
         workspace = situation.whereabouts.find(_name(call, 0, session), intention)
     output = _give(situation, call, session, 1, workspace)
@@ -285,7 +285,7 @@ def join_workspace(situation: Situation, call: Call, finish: Finish) -> None:
     finish(succeeded(*output))
 
 
-def _workspace(situation: Situation, call: Call, session: ArtifactId) -> Workspace | None:
+def _workspace(call: Call, session: ArtifactId) -> Workspace | None:
     """The workspace whose id is the first argument; None when that is a name."""
     term = bare(call.arguments[0])
     if term.__class__ is Reference and isinstance(term.value, Workspace):
@@ -305,7 +305,7 @@ def quit_workspace(situation: Situation, call: Call, finish: Finish) -> None:
         workspace = _base(situation, call)
     else:
         session = situation.session()
-        workspace = _workspace(situation, call, session) or situation.whereabouts.named(
+        workspace = _workspace(call, session) or situation.whereabouts.named(
             _name(call, 0, session), intention
         )
     if not situation.whereabouts.has_joined(workspace.path):

@@ -63,8 +63,8 @@ class OperationTable:
         exact = [f"{name}/{arity}" for (name, arity), each in self._exact.items() if not each.common]
         return exact + [f"{name}/any" for name in self._variable]
 
-    def explain(self, name: str, arity: int) -> str:
-        """Say what there is instead of ``name/arity``."""
+    def explain(self, name: str) -> str:
+        """Say what there is instead of an operation *name* that takes other numbers of arguments, or none."""
         keys = self.keys()
         same = [key for key in keys if key.rpartition("/")[0] == name]
         if same:

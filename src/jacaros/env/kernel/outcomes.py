@@ -25,7 +25,7 @@ def unknown_operation(request: OperationRequest, kind: str, interface: Interface
             hint = f"; its {other} of that name is for {_CALLERS[other]}"
             break
     else:
-        hint = interface.table(kind).explain(name, arity)
+        hint = interface.table(kind).explain(name)
     message = f"artifact {artifact.name} ({artifact.type_name}) has no {kind} {key(request)}{hint}"
     return OperationOutcome(False, message, Structure("unknown_operation", (artifact, name)))
 
