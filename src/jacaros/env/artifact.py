@@ -13,6 +13,7 @@ from jacaros.env.kernel.faults import text_of
 from jacaros.env.kernel.interface import Interface, interface_of
 from jacaros.env.kernel.linked_call import call_all
 from jacaros.env.kernel.steps import Steps
+from jacaros.env.kernel.unawaited import step_boundary
 from jacaros.env.operation import (
     OPERATION,
     Mark,
@@ -316,14 +317,17 @@ class Artifact:
         if holder.declared is None or not holder.declared.threaded:
             self._steps.commit()
 
+    @step_boundary
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds; a step boundary, others may use the artifact meanwhile."""
         await self._steps.leave(self.clock.sleep(delay), "sleeping")
 
+    @step_boundary
     async def until(self, guard: Callable[[], bool]) -> None:
         """Wait until *guard* is true; a step boundary, *guard* is evaluated whenever a step has ended."""
         await self._steps.until(guard)
 
+    @step_boundary
     async def step(self, awaitable: Awaitable[T]) -> T:
         """Wait for anything else, such as a service call; a step boundary.
 
@@ -331,6 +335,7 @@ class Artifact:
         """
         return await self._steps.leave(awaitable, "waiting for something")
 
+    @step_boundary
     async def pause_point(self, on_pause: Callable[[], None] | None = None) -> float:
         """Wait here while the operation is paused; a step boundary only if it is.
 
@@ -369,6 +374,7 @@ class Artifact:
             )
         self._steps.start(declared, OperationRequest(self.id, declared.name, arguments, None, cause))
 
+    @step_boundary
     async def call_linked(self, port: str | ArtifactId | None, operation: str, *arguments: object) -> None:
         """Call a linked operation of all artifacts behind *port*, and wait for all; a step boundary.
 

@@ -1,12 +1,13 @@
 """One operation on its way: waiting, running, paused, cancelled or ended."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from jacaros.clock import Clock, Timer
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.faults import is_interruption
+from jacaros.env.kernel.unawaited import AskedFor
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.trace import Cause
 
@@ -33,6 +34,7 @@ class OperationExecution:
         request: what was asked for.
         declared: the operation that serves it, None when it was refused.
         arguments: what the operation receives.
+        asked_for: step boundaries that it may have forgotten to await.
         cause: what led to it.
         begun: True once its code has run.
         cancelled: True when it was dropped; nobody is told its outcome.
@@ -50,6 +52,7 @@ class OperationExecution:
         "_pause",
         "_turns",
         "arguments",
+        "asked_for",
         "begun",
         "cancelled",
         "cause",
@@ -75,6 +78,7 @@ class OperationExecution:
         self._turns = turns
         self.request, self.declared, self.arguments, self.cause = request, declared, arguments, cause
         self.begun = self.cancelled = self.told = False
+        self.asked_for: Sequence[AskedFor] = ()
         self.ended = declared is None
         self.verdict: OperationOutcome | None = None
         self.limit: Timer | None = None

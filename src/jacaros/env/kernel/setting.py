@@ -27,6 +27,7 @@ class Setting:
         resources: what the host lends to artifacts, such as ``ros`` and ``console``, by name.
         log: takes a line for people, such as ``[lamp] on``.
         tracer: told of every cause, None while nobody watches.
+        told: what authors have been told once.
         loop: where the operations run, None before the first one.
         on_internal_error: told of defects of JaCaROS itself; None lets them escape.
     """
@@ -36,6 +37,7 @@ class Setting:
     log: Callable[[str], None] = log_to_stderr
     tracer: Tracer | None = None
     on_internal_error: Callable[[BaseException], None] | None = None
+    told: set[object] = field(default_factory=set, init=False)
     loop: asyncio.AbstractEventLoop | None = field(default=None, init=False)
     _loop_thread: int = field(default=0, init=False)
 

@@ -22,6 +22,7 @@ from jacaros.env.kernel.signature import WrongArguments
 from jacaros.env.kernel.step import StepInProgress
 from jacaros.env.kernel.threads import in_thread
 from jacaros.env.kernel.turns import Guard
+from jacaros.env.kernel.unawaited import forgotten
 from jacaros.env.operation import (
     EXTERNAL,
     LINK,
@@ -175,9 +176,8 @@ class Steps(StepInProgress):
     def _run(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
         try:
             result = declared.function(self._artifact, *execution.arguments)
-            if result is not None and inspect.iscoroutine(result):
-                result.close()
-                raise InvalidArtifact(f"{declared.function.__qualname__} gave a coroutine: write async def")
+            if result is not None:
+                self._refuse_result(declared, result)
         except Exception as error:
             self._end(execution, error)
         except BaseException as error:
@@ -220,7 +220,9 @@ class Steps(StepInProgress):
         declared = execution.declared
         assert declared is not None
         if not declared.threaded:
-            await declared.function(self._artifact, *execution.arguments)
+            result = await declared.function(self._artifact, *execution.arguments)
+            if result is not None:
+                self._refuse_result(declared, result)
             return None
         self.publication.freeze()
         try:
@@ -234,8 +236,25 @@ class Steps(StepInProgress):
         finally:
             self.publication.thaw()
 
+    def _refuse_result(self, declared: DeclaredOperation, result: object) -> None:
+        """Tell the author of an operation that nobody gets what it returns."""
+        name = declared.function.__qualname__
+        if inspect.iscoroutine(result):
+            result.close()
+            raise InvalidArtifact(f"{name} gave a coroutine: write async def")
+        if declared not in self.setting.told:
+            self.setting.told.add(declared)
+            self.setting.log(
+                f"[{self.id.name}] what {name} returns is lost: an operation gives its results to parameters "
+                "annotated Out, as in `def ask(self, answer: Out)` with `answer.set(3)`"
+            )
+
     def _end(self, execution: OperationExecution, error: BaseException | None) -> None:
         """End the operation, and with it its last step."""
+        if execution.asked_for:
+            mistake = forgotten(execution)
+            if error is None and not execution.stopped:
+                error = mistake
         if error is None:
             if self.publication.properties.changing or self._started or self._delayed:
                 self.commit()
