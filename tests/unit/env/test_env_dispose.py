@@ -473,3 +473,20 @@ def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(pla
             assert session.focused == ()
 
     play(scene)
+
+
+class Lonely(Artifact):
+    @operation
+    async def leave(self):
+        self.workspace.dispose_artifact(self.id)
+        await self.sleep(1)
+        await self.until(lambda: False)
+
+
+def test_who_disposed_its_own_artifact_does_not_wait_for_others(play):
+    async def scene(stage):
+        outcome = await stage.call(await stage.make(Lonely), "leave").wait()
+        assert outcome.reason == Structure("artifact_disposed", ("it",))
+        assert stage.elapsed == 1
+
+    play(scene)

@@ -8,9 +8,10 @@ from collections.abc import Awaitable, Callable
 from typing import TypeVar
 
 from jacaros.clock import Clock
-from jacaros.env.errors import InvalidArtifact
+from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel import outcomes
 from jacaros.env.kernel.publication import Publication
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.turns import Guard, TurnQueue
@@ -160,6 +161,10 @@ class StepInProgress(ABC):
                 f"artifact {self.id.name}: until wants a function, such as a method or lambda: ..., not {guard!r}"
             )
         if not self.turns.ask(guard):
+            if self.disposed:
+                # Nobody else is there to make it true: only the operation that disposed its own artifact goes on.
+                gone = outcomes.disposed(execution.request)
+                raise OperationFailed(gone.message or "", gone.reason)
             await self.turns.release_until(execution, guard)
 
     async def pause_point(self, on_pause: Callable[[], None] | None) -> float:

@@ -1,0 +1,119 @@
+"""Mistakes with ``await`` and ``return`` that Python itself lets pass."""
+
+import pytest
+
+from jacaros.env import Artifact, Structure, internal_operation, operation
+
+
+class Forgetful(Artifact):
+    def init(self):
+        self.define_property("count", 0)
+
+    @operation
+    async def sleeping(self):
+        self.update_property("count", 1)
+        self.sleep(1)
+
+    @operation
+    def plainly(self):
+        self.update_property("count", 1)
+        self.sleep(1)
+
+    @operation
+    async def waiting(self):
+        await self.sleep(1)
+        self.update_property("count", 1)
+        self.until(lambda: False)
+        await self.sleep(1)
+        self.update_property("count", 2)
+
+    @operation
+    async def thrice(self):
+        later = self.sleep(1)
+        for _ in range(2):
+            await self.sleep(1)
+        await later
+        self.update_property("count", 5)
+
+    @operation
+    async def failing(self):
+        self.sleep(1)
+        self.fail("no", "no")
+
+    @operation
+    def answer(self):
+        return 3
+
+    @operation
+    async def late_answer(self):
+        await self.sleep(1)
+        return 3
+
+    @operation
+    def begin(self):
+        self.start(self.process)
+
+    @internal_operation
+    async def process(self):
+        self.sleep(1)
+
+
+@pytest.mark.parametrize(
+    ("name", "method"), [("sleeping", "sleep"), ("plainly", "sleep"), ("waiting", "until")]
+)
+def test_a_step_boundary_without_await_fails_the_operation(play, name, method):
+    async def scene(stage):
+        it = await stage.make(Forgetful)
+        call = stage.call(it, name)
+        outcome = await call.wait()
+        assert outcome.reason == Structure("operation_error", (f"{name}/0",))
+        assert (
+            f"self.{method}(...) does nothing without await: write `await self.{method}(...)`"
+            in outcome.message
+        )
+        assert "test_env_unawaited.py:" in outcome.message
+        assert stage.property(it, "count") == ((1,) if name == "waiting" else (0,))
+
+    play(scene)
+
+
+def test_an_operation_that_fails_otherwise_tells_that(play):
+    async def scene(stage):
+        it = await stage.make(Forgetful)
+        assert (await stage.call(it, "failing").wait()).reason == "no"
+
+    play(scene)
+
+
+def test_an_operation_that_awaits_all_it_asked_for_goes_well(play):
+    async def scene(stage):
+        it = await stage.make(Forgetful)
+        call = stage.call(it, "thrice")
+        await stage.clock.sleep(1.5)
+        assert len(call.execution.asked_for) == 2
+        assert (await call.wait()).ok
+        assert stage.property(it, "count") == (5,)
+        assert stage.elapsed == 3
+
+    play(scene)
+
+
+def test_a_process_that_forgets_is_told_of(play):
+    async def scene(stage):
+        await stage.call(await stage.make(Forgetful), "begin").wait()
+        await stage.clock.sleep(1)
+
+    assert play(scene).logged("self.sleep(...) does nothing without await")
+
+
+def test_what_an_operation_returns_is_told_to_be_lost_once(play):
+    async def scene(stage):
+        it = await stage.make(Forgetful)
+        for name in ("answer", "answer", "late_answer"):
+            assert (await stage.call(it, name).wait()).ok
+
+    stage = play(scene)
+    assert [line.partition(" is lost")[0] for line in stage.lines if "is lost" in line] == [
+        "[it] what Forgetful.answer returns",
+        "[it] what Forgetful.late_answer returns",
+    ]
