@@ -9,7 +9,7 @@ from typing import Any
 from jacaros.env.artifact import Artifact
 from jacaros.env.choice import artifact_named, chosen_artifact
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError
+from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError, spelling_hint
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import Workspace
@@ -351,10 +351,13 @@ class Session(Perceiving):
 
 
 def _offer(places: Sequence[Workspace], operation: str) -> str:
-    """What there is of that name, with another number of arguments."""
+    """What there is of that name, with another number of arguments; or of a name that may have been meant."""
+    names: set[str] = set()
     for place in places:
         for artifact in place.artifacts():
-            same = [key for key in place.offers(artifact) if key.rpartition("/")[0] == operation]
+            offers = place.offers(artifact)
+            names.update(key.rpartition("/")[0] for key in offers)
+            same = [key for key in offers if key.rpartition("/")[0] == operation]
             if same:
                 return f"; {artifact.name} has {', '.join(same)}"
-    return ""
+    return spelling_hint(operation, sorted(names))

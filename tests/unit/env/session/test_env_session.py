@@ -144,6 +144,8 @@ def test_a_failure_is_raised_with_its_reason(play):
         ) as raised:
             await session.act("inc", 1, 2)
         assert raised.value.reason == Structure("unknown_operation", ("inc",))
+        with pytest.raises(OperationFailed, match=r"has an operation incc/0; did you mean inc"):
+            await session.act("incc")
         with pytest.raises(OperationFailed) as raised:
             await session.act("inc", "two")
         assert raised.value.reason.functor == "wrong_op_arguments"
