@@ -5,10 +5,15 @@ Everything here happens on the loop of the backend's clock: calls come from ther
 
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any, Protocol
 
+from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.fields import FieldType
+from jacaros.ros.graph import GraphContents
+from jacaros.ros.parameter import Parameters
 from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.transform import Transform
 from jacaros.trace import Cause
 
 TOPICS = "topics"
@@ -21,6 +26,36 @@ QOS = "qos"
 """Reliability and durability are negotiated as on ROS 2."""
 REGISTRATION = "registration"
 """There is a master that can go and come back."""
+ACTIONS = "actions"
+"""Action clients and servers."""
+PARAMETERS = "parameters"
+"""Reading and writing parameters."""
+DECLARED_PARAMETERS = "declared parameters"
+"""A node says which parameters it has, of which type and range; elsewhere any name may be set."""
+PARAMETER_EVENTS = "parameter events"
+"""News of changed parameters."""
+DEADLINES = "deadlines"
+"""`QoS.deadline`, and news of a missed one."""
+GRAPH_QOS = "qos in the graph"
+"""`Backend.contents` tells the quality of service of other nodes' endpoints."""
+
+
+class TopicTrouble(StrEnum):
+    """What a subscription can learn besides messages."""
+
+    DEADLINE_MISSED = "deadline_missed"
+    INCOMPATIBLE_QOS = "incompatible_qos"
+    """A publisher is there whose offer does not meet the request: nothing will come from it."""
+    OTHER_TYPE = "other_type"
+    """The topic carries messages of another type."""
+
+
+@dataclass(frozen=True, slots=True)
+class TopicEvent:
+    """Trouble at a topic, with one line for people: what was found, and what to write."""
+
+    trouble: TopicTrouble
+    text: str
 
 
 @dataclass(slots=True)
@@ -127,12 +162,19 @@ Handler = Callable[[Any], Any | Awaitable[Any]]
 """Takes a request; gives a response message, a mapping of its fields or None for the defaults."""
 
 
+DEFAULT_POLICY = ActionPolicy()
+
+
 class Backend(Protocol):
     """A node in a ROS graph."""
 
     @property
     def name(self) -> str:
-        """``memory``, ``ros1`` or ``ros2``."""
+        """``memory``, ``ros1``, ``ros2`` or ``rosbridge``."""
+
+    @property
+    def ros_version(self) -> int:
+        """1 or 2: whose names and types are usual in this graph (``memory``: 2)."""
 
     @property
     def capabilities(self) -> frozenset[str]:
@@ -181,9 +223,22 @@ class Backend(Protocol):
         """Make a publisher; raises `NameInvalid` or `UnknownInterface`."""
 
     def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS = DEFAULT_QOS,
+        on_event: Callable[[TopicEvent], None] | None = None,
     ) -> Subscription:
-        """Have *callback* called on the loop for each message; raises `NameInvalid`, `UnknownInterface`."""
+        """Have *callback* called on the loop for each message; raises `NameInvalid`, `UnknownInterface`.
+
+        Args:
+            topic: any form of its name.
+            type_name: of its messages.
+            callback: takes each message.
+            qos: what is asked for; `CapabilityMissing` for a deadline where there are none.
+            on_event: told of trouble, on the loop; without it trouble goes to the log.
+        """
 
     def service(self, name: str, type_name: str, handler: Handler) -> Service:
         """Offer a service; raises `NameInvalid` or `UnknownInterface`.
@@ -194,12 +249,77 @@ class Backend(Protocol):
     def client(self, name: str, type_name: str) -> Client:
         """Make a client of a service; raises `NameInvalid` or `UnknownInterface`."""
 
+    def action_client(self, name: str, type_name: str) -> ActionClient:
+        """Make a client of an action (``nav2_msgs/action/NavigateToPose``).
+
+        Raises:
+            NameInvalid, UnknownInterface: as `client`.
+            CapabilityMissing: there are no actions here (`ACTIONS`).
+        """
+
+    def action_server(
+        self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
+    ) -> ActionServer:
+        """Offer an action; each accepted goal is carried out by *execute*, as a task on the loop.
+
+        Raises:
+            NameInvalid, UnknownInterface, CapabilityMissing: as `action_client`.
+        """
+
+    def parameters(self, node: str | None = None) -> Parameters:
+        """Give the parameters of our own node, or of another by its name.
+
+        Raises:
+            NameInvalid: the name breaks the rules.
+            CapabilityMissing: there are no parameters here (`PARAMETERS`).
+        """
+
+    async def contents(self, timeout: float = 5.0) -> GraphContents:
+        """Look at the graph.
+
+        Raises:
+            ServiceError: the graph (master, bridge) cannot be asked within *timeout* seconds.
+        """
+
     def tf_broadcast(self, transform: Any, static: bool = False) -> None:
         """Publish a ``geometry_msgs/msg/TransformStamped`` (message or mapping) on ``/tf`` or ``/tf_static``.
 
         Raises:
             CapabilityMissing: ``tf2_msgs`` is not installed.
             MessageMismatch: the transform does not fit the definition.
+        """
+
+    def tf_listen(self) -> None:
+        """Begin to listen to ``/tf`` and ``/tf_static``; looking up does that too, but then knows nothing at first.
+
+        Raises:
+            CapabilityMissing: as `tf_broadcast`.
+        """
+
+    def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> Transform:
+        """Give the transform that takes points in frame *source* to frame *target*, as ``tf2``'s look-up does.
+
+        Args:
+            target, source: frames, without a slash in front.
+            stamp: seconds since the epoch; between two known transforms it is interpolated; None: the newest
+                time for which all of the way is known.
+
+        Raises:
+            TransformUnavailable: with the reason.
+            CapabilityMissing: as `tf_broadcast`.
+        """
+
+    async def tf_wait(
+        self, target: str, source: str, stamp: float | None = None, timeout: float | None = None
+    ) -> Transform:
+        """`tf_lookup` as soon as it is possible, at most *timeout* seconds of the clock later."""
+
+    def rosout(self, level: str, text: str) -> None:
+        """Write a line to the graph's log ``/rosout`` under our node's name.
+
+        Args:
+            level: ``debug``, ``info``, ``warn``, ``error`` or ``fatal``.
+            text: the line.
         """
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
@@ -209,15 +329,3 @@ class Backend(Protocol):
         dropped.  On `ros1` and `ros2` it may run in a thread of its own, so it does nothing but publish.
         The result takes the hook back.
         """
-
-    def action_client(self, name: str, type_name: str) -> Any:
-        """Not there yet: raises `CapabilityMissing`."""
-
-    def action_server(self, name: str, type_name: str, execute: Callable[..., Any]) -> Any:
-        """Not there yet: raises `CapabilityMissing`."""
-
-    def parameters(self, node: str | None = None) -> Any:
-        """Not there yet: raises `CapabilityMissing`."""
-
-    def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> Any:
-        """Not there yet: raises `CapabilityMissing`."""

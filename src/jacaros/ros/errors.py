@@ -51,5 +51,41 @@ class CallFailed(ServiceError):
     """The server reported a failure, or the connection to it broke during the call."""
 
 
+class ServerUnavailable(ServiceUnavailable):
+    """Nobody offered the action until the time-out."""
+
+
+class ServerLost(ServiceError):
+    """The action server went away while a goal was under way; whether the robot went on is not known."""
+
+
+class GoalRejected(ServiceError):
+    """The action server refused the goal; the text says why where the server did."""
+
+
+class ParameterError(RosError):
+    """Something is wrong with a parameter; the parent of the reasons below."""
+
+
+class ParameterUnknown(ParameterError):
+    """The node has no such parameter."""
+
+
+class ParameterRefused(ParameterError):
+    """The node, or the declaration of the parameter, refuses the value."""
+
+
+class TransformUnavailable(RosError):
+    """No transform between two frames is known for that time; the text says what is known.
+
+    Attributes:
+        reason: ``unknown_frame``, ``not_connected``, ``too_old`` or ``too_new``.
+    """
+
+    def __init__(self, text: str, reason: str = "unknown_frame") -> None:
+        super().__init__(text)
+        self.reason = reason
+
+
 class CapabilityMissing(RosError):
     """The backend cannot do this, on principle or not yet; the text says which backends can."""

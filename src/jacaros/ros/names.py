@@ -32,6 +32,12 @@ def service_type(name: str) -> str:
     return _interface_type(name, "srv")
 
 
+@cache
+def action_type(name: str) -> str:
+    """Give the full form ``nav2_msgs/action/NavigateToPose`` of an action type; see `message_type`."""
+    return _interface_type(name, "action")
+
+
 def _interface_type(name: str, kind: str) -> str:
     parts = name.split("/")
     if len(parts) == 2:
@@ -53,6 +59,21 @@ def request_type(service: str) -> str:
 def response_type(service: str) -> str:
     """Name the response message of a service type given in full form."""
     return f"{service}_Response"
+
+
+def goal_type(action: str) -> str:
+    """Name the goal message of an action type given in full form."""
+    return f"{action}_Goal"
+
+
+def result_type(action: str) -> str:
+    """Name the result message of an action type given in full form."""
+    return f"{action}_Result"
+
+
+def feedback_type(action: str) -> str:
+    """Name the feedback message of an action type given in full form."""
+    return f"{action}_Feedback"
 
 
 class NodeNames:

@@ -8,14 +8,18 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from jacaros.clock import Clock
-from jacaros.ros.backend import Publisher, Sample
+from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
+from jacaros.ros.backend import DEFAULT_POLICY, Publisher, Sample
 from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.exit_hooks import ExitHooks
 from jacaros.ros.fields import FieldType
+from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
+from jacaros.ros.parameter import Parameters
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.tf import TransformBroadcaster
+from jacaros.ros.transform import Transform
 from jacaros.trace import cause
 
 
@@ -56,6 +60,7 @@ class Node:
     """
 
     name = "none"
+    ros_version = 2
     capabilities: frozenset[str] = frozenset()
 
     def __init__(
@@ -124,24 +129,41 @@ class Node:
         """Have *hook* called once when the process stops or the backend is closed."""
         return self.exit_hooks.add(hook)
 
-    def action_client(self, name: str, type_name: str) -> NoReturn:
-        """Not there yet."""
+    def rosout(self, level: str, text: str) -> None:
+        """Write a line to the graph's log."""
+        self._missing("writing to /rosout")
+
+    async def contents(self, timeout: float = 5.0) -> GraphContents:
+        """Look at the graph."""
+        self._missing("looking at the graph")
+
+    def action_client(self, name: str, type_name: str) -> ActionClient:
+        """Make a client of an action."""
         self._missing("action clients")
 
-    def action_server(self, name: str, type_name: str, execute: Callable[..., Any]) -> NoReturn:
-        """Not there yet."""
+    def action_server(
+        self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
+    ) -> ActionServer:
+        """Offer an action."""
         self._missing("action servers")
 
-    def parameters(self, node: str | None = None) -> NoReturn:
-        """Not there yet."""
+    def parameters(self, node: str | None = None) -> Parameters:
+        """Give the parameters of our own node, or of another."""
         self._missing("parameters")
 
-    def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> NoReturn:
-        """Not there yet."""
+    def tf_listen(self) -> None:
+        """Begin to listen to transforms."""
+        self._missing("listening to transforms")
+
+    def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> Transform:
+        """Look up a transform."""
+        self._missing("looking up transforms")
+
+    async def tf_wait(
+        self, target: str, source: str, stamp: float | None = None, timeout: float | None = None
+    ) -> Transform:
+        """Look up a transform as soon as that is possible."""
         self._missing("looking up transforms")
 
     def _missing(self, what: str) -> NoReturn:
-        raise CapabilityMissing(
-            f"{what}: not yet supported by any backend of this version of JaCaROS (asked of {self.name}); "
-            "topics, services and sending transforms are"
-        )
+        raise CapabilityMissing(f"{what}: the {self.name} backend cannot do this")

@@ -18,11 +18,14 @@ class QoS:
         durability: ``transient_local`` publishers keep their last messages for late subscriptions; on ROS 1
             such a publisher is latched and keeps one.
         depth: messages kept while a receiver is behind; the oldest is dropped first.
+        deadline: a publisher promises, and a subscription expects, a message every so many seconds; None: no promise.
+            Only where the backend has the capability ``deadlines``.
     """
 
     reliability: Reliability = "reliable"
     durability: Durability = "volatile"
     depth: int = 10
+    deadline: float | None = None
 
     def __post_init__(self) -> None:
         if self.reliability not in ("reliable", "best_effort"):
@@ -31,6 +34,8 @@ class QoS:
             raise RosError(f"durability is volatile or transient_local, not {self.durability!r}")
         if isinstance(self.depth, bool) or not isinstance(self.depth, int) or self.depth < 1:
             raise RosError(f"depth is a whole number from 1 on, not {self.depth!r}")
+        if self.deadline is not None and not self.deadline > 0.0:
+            raise RosError(f"deadline is a number of seconds above zero, not {self.deadline!r}")
 
 
 DEFAULT_QOS = QoS()
@@ -52,4 +57,7 @@ def incompatibility(offered: QoS, requested: QoS) -> str | None:
         return "the subscription asks for reliable, the publisher offers best_effort"
     if requested.durability == "transient_local" and offered.durability == "volatile":
         return "the subscription asks for transient_local, the publisher offers volatile"
+    if requested.deadline is not None and (offered.deadline is None or offered.deadline > requested.deadline):
+        promised = "none" if offered.deadline is None else f"{offered.deadline:g} s"
+        return f"the subscription asks for a deadline of {requested.deadline:g} s, the publisher promises {promised}"
     return None

@@ -11,7 +11,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from jacaros.ros.backend import QOS, SERVICE_ERRORS, SERVICES, TOPICS, TRANSFORMS, Backend, Handler, Sample
+from jacaros.ros.backend import (
+    QOS,
+    SERVICE_ERRORS,
+    SERVICES,
+    TOPICS,
+    TRANSFORMS,
+    Backend,
+    Handler,
+    Sample,
+    TopicEvent,
+)
 from jacaros.ros.errors import CallFailed, CallTimedOut, MessageMismatch, ServiceUnavailable
 from jacaros.ros.names import message_type, request_type, service_type
 from jacaros.ros.node import Node, NodeSettings
@@ -296,7 +306,12 @@ class MemoryBackend(Node):
         return self._joined(MemoryPublisher(self, self.resolve(topic), message_type(type_name), qos))
 
     def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS = DEFAULT_QOS,
+        on_event: Callable[[TopicEvent], None] | None = None,
     ) -> MemorySubscription:
         """Have *callback* called for every message."""
         full_type = message_type(type_name)

@@ -25,6 +25,7 @@ from jacaros.ros.backend import (
     Backend,
     Handler,
     Sample,
+    TopicEvent,
 )
 from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, call_failure, stay_local
 from jacaros.ros.backends.ros1_repairs import (
@@ -286,6 +287,7 @@ class Ros1Backend(Node):
     """
 
     name = "ros1"
+    ros_version = 1
     capabilities = frozenset({TOPICS, SERVICES, SERVICE_ERRORS, TRANSFORMS, REGISTRATION})
     _started = False
 
@@ -334,7 +336,12 @@ class Ros1Backend(Node):
         return publisher
 
     def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS = DEFAULT_QOS,
+        on_event: Callable[[TopicEvent], None] | None = None,
     ) -> Ros1Subscription:
         """Have *callback* called for every message."""
         subscription = Ros1Subscription(self, self.resolve(topic), message_type(type_name), callback, qos)

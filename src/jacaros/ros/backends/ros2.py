@@ -22,7 +22,7 @@ import rclpy.qos  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
 import rclpy.task  # type: ignore[import-not-found]
 
-from jacaros.ros.backend import QOS, SERVICES, TOPICS, TRANSFORMS, Backend, Handler, Sample
+from jacaros.ros.backend import QOS, SERVICES, TOPICS, TRANSFORMS, Backend, Handler, Sample, TopicEvent
 from jacaros.ros.backends.ros2_output import leave_standard_output_alone
 from jacaros.ros.backends.ros2_types import RosidlSchema
 from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceUnavailable, UnknownInterface
@@ -270,7 +270,12 @@ class Ros2Backend(Node):
         return publisher
 
     def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS = DEFAULT_QOS,
+        on_event: Callable[[TopicEvent], None] | None = None,
     ) -> Ros2Subscription:
         """Have *callback* called for every message."""
         subscription = Ros2Subscription(self, self.resolve(topic), message_type(type_name), callback, qos)

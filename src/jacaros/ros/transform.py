@@ -1,0 +1,76 @@
+"""A rigid motion in space: what tf looks up, applied to points and headings."""
+
+import math
+from dataclasses import dataclass
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """Takes points in one frame to another: first turned, then shifted (REP 105's frames, tf2's convention).
+
+    Attributes:
+        translation: x, y, z in metres.
+        rotation: unit quaternion x, y, z, w.
+        stamp: the time for which it holds, in seconds since the epoch; 0 when it holds always (static).
+    """
+
+    translation: Vector = (0.0, 0.0, 0.0)
+    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    stamp: float = 0.0
+
+    @property
+    def yaw(self) -> float:
+        """Heading of the turned x axis in the plane, in radians, counter-clockwise."""
+        x, y, z, w = self.rotation
+        return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+    def apply(self, point: Vector) -> Vector:
+        """Give *point* of the source frame in the target frame."""
+        x, y, z = rotate(self.rotation, point)
+        dx, dy, dz = self.translation
+        return (x + dx, y + dy, z + dz)
+
+    def after(self, first: "Transform") -> "Transform":
+        """The transform that applies *first* and then this one; it holds for the older of both times."""
+        stamps = [stamp for stamp in (self.stamp, first.stamp) if stamp > 0.0]
+        return Transform(
+            self.apply(first.translation), multiply(self.rotation, first.rotation), min(stamps, default=0.0)
+        )
+
+    def inverse(self) -> "Transform":
+        """The way back."""
+        x, y, z, w = self.rotation
+        back = (-x, -y, -z, w)
+        dx, dy, dz = rotate(back, self.translation)
+        return Transform((-dx, -dy, -dz), back, self.stamp)
+
+
+def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
+    """The rotation *b* followed by *a*."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def rotate(q: Quaternion, v: Vector) -> Vector:
+    """Turn a vector."""
+    x, y, z, w = q
+    # v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector part
+    tx, ty, tz = (
+        2.0 * (y * v[2] - z * v[1]),
+        2.0 * (z * v[0] - x * v[2]),
+        2.0 * (x * v[1] - y * v[0]),
+    )
+    return (
+        v[0] + w * tx + y * tz - z * ty,
+        v[1] + w * ty + z * tx - x * tz,
+        v[2] + w * tz + x * ty - y * tx,
+    )
