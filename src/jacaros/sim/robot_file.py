@@ -28,7 +28,7 @@ from jacaros.sim.description import (
     RobotLimits,
 )
 from jacaros.sim.trigonometry import TWO_PI, radians
-from jacaros.sim.yaml_nodes import Node
+from jacaros.yaml_nodes import Node
 
 _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 

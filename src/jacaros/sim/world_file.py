@@ -27,7 +27,7 @@ from pathlib import Path
 from jacaros.sim.description import Dock, Rectangle, Room, Segment, WorldDescription
 from jacaros.sim.errors import Problem, WorldError
 from jacaros.sim.robot_file import read_pose, read_robot
-from jacaros.sim.yaml_nodes import Node, read_document
+from jacaros.yaml_nodes import Node, read_document
 
 _WORLDS = Path(__file__).parent / "worlds"
 _KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "robots")
@@ -73,7 +73,9 @@ def read_world(text: str, name: str = "world") -> WorldDescription:
         WorldError: with all mistakes at once.
     """
     problems: list[Problem] = []
-    document = read_document(name, text, problems)
+    document = read_document(text, problems, "a world")
+    if problems:
+        raise WorldError(name, text, problems)
     description = _world(document)
     if problems:
         raise WorldError(name, text, problems)

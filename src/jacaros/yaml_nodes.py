@@ -1,8 +1,12 @@
-"""YAML values that know where they stand, and readers that note mistakes instead of stopping at the first."""
+"""YAML values that know where they stand, and readers that note mistakes instead of stopping at the first.
+
+World files and mapping files are read with it.
+"""
 
 import difflib
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from io import StringIO
 from typing import Any
 
@@ -10,7 +14,44 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
-from jacaros.sim.errors import Problem, WorldError
+from jacaros.errors import JacarosError
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One mistake: where (line and column count from 1), what, and what to do about it."""
+
+    line: int
+    column: int
+    message: str
+    cure: str = ""
+
+
+class YamlFileError(JacarosError):
+    """A wrong YAML file; ``str()`` shows every mistake with its file, line, excerpt and cure.
+
+    Attributes:
+        file: name of the file.
+        problems: the mistakes, in the order of the lines.
+    """
+
+    def __init__(self, file: str, text: str, problems: list[Problem]) -> None:
+        self.file = file
+        self.problems = sorted(problems, key=lambda problem: (problem.line, problem.column))
+        lines = text.splitlines()
+        super().__init__("\n".join(shown(file, lines, problem) for problem in self.problems))
+
+
+def shown(file: str, lines: list[str], problem: Problem) -> str:
+    """A mistake in the *lines* of a file, as people read it."""
+    told = [f"{file}:{problem.line}:{problem.column}: {problem.message}"]
+    if 0 < problem.line <= len(lines):
+        number = f"{problem.line:>5} | "
+        told.append(number + lines[problem.line - 1])
+        told.append(" " * (len(number) + problem.column - 1) + "^")
+    if problem.cure:
+        told.append(f"  cure: {problem.cure}")
+    return "\n".join(told)
 
 
 class Node:
@@ -123,19 +164,25 @@ def _limits(minimum: float, maximum: float) -> str:
     return f"lie between {minimum:g} and {maximum:g}"
 
 
-def read_document(name: str, text: str, problems: list[Problem]) -> Node:
+def read_document(text: str, problems: list[Problem], what: str) -> Node:
     """Parse *text*; the mistakes its values turn out to have are collected in *problems*.
 
-    Raises:
-        WorldError: when the text is not YAML at all.
+    What is not YAML at all is a mistake as well, and the document is then empty.
+
+    Args:
+        text: of the file.
+        problems: takes the mistakes.
+        what: what the document is called in messages, such as ``a world``.
     """
+    document = None
     try:
         document = YAML(typ="rt").load(StringIO(text))
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-        problem = Problem(line, column, f"not YAML: {error.problem}", "mind indents, colons and quotes")
-        raise WorldError(name, text, [problem]) from None
+        problems.append(
+            Problem(line, column, f"not YAML: {error.problem}", "mind indents, colons and quotes")
+        )
     except YAMLError as error:
-        raise WorldError(name, text, [Problem(1, 1, f"not YAML: {error}")]) from None
-    return Node(document, 1, 1, problems, "a world")
+        problems.append(Problem(1, 1, f"not YAML: {error}"))
+    return Node(document, 1, 1, problems, what)
