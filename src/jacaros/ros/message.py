@@ -15,8 +15,21 @@ from jacaros.ros.values import array_of_numbers, single_value
 
 _NO_FIELDS = ("__msgtype__", "structure_needs_at_least_one_member")
 TIMES = (TIME, DURATION)
-DEFAULTS: Mapping[str, Mapping[str, object]] = {"geometry_msgs/msg/Quaternion": {"w": 1.0}}
-"""Default values of ROS 2's definitions; ROS 1 knows none, so they are set there too: no zero rotations."""
+DEFAULTS: Mapping[str, Mapping[str, object]] = {
+    "geometry_msgs/msg/Quaternion": {"w": 1.0},
+    "irobot_create_msgs/action/DriveDistance_Goal": {"max_translation_speed": 0.3},
+    "irobot_create_msgs/action/RotateAngle_Goal": {"max_rotation_speed": 1.9},
+    "nav2_msgs/action/DockRobot_Goal": {
+        "use_dock_id": True,
+        "max_staging_time": 1000.0,
+        "navigate_to_staging_pose": True,
+    },
+    "nav2_msgs/action/DockRobot_Result": {"success": True},
+    "nav2_msgs/action/UndockRobot_Goal": {"max_undocking_time": 30.0},
+    "nav2_msgs/action/UndockRobot_Result": {"success": True},
+}
+"""Default values of ROS 2's definitions; ROS 1 and the memory graph know none, so they are set there too: no zero
+rotations."""
 
 
 class Schema(Protocol):
