@@ -15,6 +15,8 @@ packages=(
   python3-rospy python3-rosmaster python3-genpy
   python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-diagnostic-msgs
   python3-std-srvs python3-tf2-msgs python3-venv
+  # For the tests alone: a genuine action type, and genuine peers.
+  python3-actionlib python3-actionlib-msgs python3-move-base-msgs python3-tf2-ros python3-rosparam
 )
 
 say() { echo "install_ros1: $*" >&2; }
@@ -36,7 +38,7 @@ installed() { dpkg-query -W -f='${Status}\n' "${packages[@]}" 2>/dev/null | grep
 command -v dpkg-query >/dev/null && command -v apt-get >/dev/null || refuse "this is no Debian system"
 
 if [ "$(installed)" -lt "${#packages[@]}" ]; then
-  say "installing ${#packages[@]} Debian packages and what they need (about 160 MB on disk)"
+  say "installing ${#packages[@]} Debian packages and what they need (about 240 MB on disk)"
   as_root apt-get update -q >&2
   apt-cache show python3-rospy >/dev/null 2>&1 || refuse "this Debian or Ubuntu has no package python3-rospy"
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${packages[@]}" >&2
@@ -53,5 +55,6 @@ if ! "$venv/bin/python" -c 'import jacaros.ros.open, rosbags, pytest, pytest_rer
   say "installing the project and the test tools into $venv"
   "$venv/bin/python" -m pip install -q --disable-pip-version-check -e "$root" pytest pytest-rerunfailures hypothesis >&2
 fi
-"$venv/bin/python" -W ignore -c 'import jacaros.ros.open, pytest, rospy; from nav_msgs.msg import Odometry; from tf2_msgs.msg import TFMessage'
+"$venv/bin/python" -W ignore -c 'import jacaros.ros.open, pytest, rospy; from nav_msgs.msg import Odometry; from tf2_msgs.msg import TFMessage
+import actionlib, move_base_msgs.msg, rosparam, tf2_ros'
 say "ready: $venv/bin/python -m pytest tests/contracts --require-ros1"

@@ -69,3 +69,92 @@ def test_octets_are_bytes() -> None:
     factory = MessageFactory(GenpySchema())
     assert factory.make("sensor_msgs/msg/Image", {"data": [1, 255]}).data == b"\x01\xff"
     assert plain(factory.make("sensor_msgs/msg/Image", {"data": [7]}))["data"] == [7]
+
+
+MOVE_BASE = """geometry_msgs/PoseStamped target_pose
+---
+---
+geometry_msgs/PoseStamped base_position
+"""
+PARTS = ("Goal", "Result", "Feedback", "ActionGoal", "ActionResult", "ActionFeedback", "Action")
+
+
+def define(folder: Path, type_name: str, text: str) -> None:
+    package, kind, name = type_name.split("/")
+    path = folder / package / kind / f"{name}.{kind}"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+def test_an_installed_action_is_used(tmp_path: Path) -> None:
+    messages = pytest.importorskip("move_base_msgs.msg")
+    define(tmp_path, "move_base_msgs/action/MoveBase", "int8 other\n---\n---\n")
+    schema = GenpySchema([tmp_path])
+    assert schema.action_class("move_base_msgs/action/MoveBase", "ActionGoal") is messages.MoveBaseActionGoal
+    assert type(schema.new("move_base_msgs/action/MoveBase_Goal")) is messages.MoveBaseGoal
+
+
+def test_a_generated_action_is_the_genuine_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    messages = pytest.importorskip("move_base_msgs.msg")
+    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
+    genuine = {part: getattr(messages, f"MoveBase{part}")._md5sum for part in PARTS}
+    define(tmp_path, "copied_msgs/action/MoveBase", MOVE_BASE)
+    schema = GenpySchema([tmp_path])
+    made = {part: schema.action_class("copied_msgs/action/MoveBase", part) for part in PARTS}
+    assert {part: kind._md5sum for part, kind in made.items()} == genuine
+    assert made["ActionGoal"]._type == "copied_msgs/MoveBaseActionGoal"
+    assert type(made["Action"]().action_goal.goal) is made["Goal"]
+
+
+def test_our_action_definitions_are_generated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path))
+    factory = MessageFactory(GenpySchema())
+    goal = factory.make("nav2_msgs/action/NavigateToPose_Goal", {"pose": {"pose": {"position": {"x": 2}}}})
+    assert goal.pose.pose.position.x == 2.0
+    assert goal.pose.pose.orientation.w == 1.0
+    feedback = factory.make("nav2_msgs/action/NavigateToPose_Feedback", {"navigation_time": 1.5})
+    assert to_seconds(feedback.navigation_time) == 1.5
+    result = factory.make("nav2_msgs/action/NavigateToPose_Result", {"error_code": 9001})
+    assert result.error_code == result.FAILED_TO_LOAD_BEHAVIOR_TREE
+
+
+def test_definitions_of_ros2_are_read_as_ros1_would_write_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
+    define(
+        tmp_path,
+        "lab_msgs/msg/Spot",
+        "# a place\nuint8 HERE=1 # in this room\nstring NAME=a # b\nstring<=8 name\nfloat64[<=3] place\n"
+        'builtin_interfaces/Time seen\nstring<=4 AREA="x"\nbool known true\n',
+    )
+    define(tmp_path, "lab_msgs/msg/Spots", "std_msgs/Header header\nlab_msgs/Spot[] spots\nSpot best\n")
+    define(tmp_path, "lab_msgs/srv/Find", "Spot like\n---\nSpot[] found\n")
+    schema = GenpySchema([tmp_path])
+    fields = {name: str(kind) for name, kind in schema.fields("lab_msgs/msg/Spot").items()}
+    assert fields == {
+        "name": "string",
+        "place": "float64[]",
+        "seen": "builtin_interfaces/msg/Time",
+        "known": "bool",
+    }
+    factory = MessageFactory(schema)
+    spots = factory.make("lab_msgs/msg/Spots", {"spots": [{"name": "door", "place": [1, 2]}]})
+    assert spots.spots[0].HERE == 1
+    assert plain(spots)["best"]["place"] == []
+    assert plain(factory.make("lab_msgs/srv/Find_Request", {"like": {"name": "x"}}))["like"]["name"] == "x"
+
+
+def test_unknown_and_wrong_actions_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path / "cache"))
+    define(tmp_path, "lab_msgs/action/Cut", "int32 a\n---\n")
+    define(tmp_path, "lab_msgs/action/Odd", "int33 a\n---\n---\n")
+    schema = GenpySchema([tmp_path])
+    with pytest.raises(UnknownInterface, match=r"no YActionAction\); is it x/action/Y\?; install"):
+        schema.action_class("x/action/YAction", "Goal")
+    with pytest.raises(
+        UnknownInterface, match="the definition of lab_msgs/action/Cut is wrong: an action def"
+    ):
+        schema.new("lab_msgs/action/Cut_Goal")
+    with pytest.raises(UnknownInterface, match="lab_msgs/msg/int33"):
+        schema.new("lab_msgs/action/Odd_Goal")

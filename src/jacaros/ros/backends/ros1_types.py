@@ -1,20 +1,24 @@
-"""The message and service classes of ROS 1 as a `Schema`; services that no package offers are generated."""
+"""The message, service and action classes of ROS 1 as a `Schema`; what no package offers is generated."""
 
-import hashlib
-import os
-import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
+from jacaros.ros.backends.ros1_generation import (
+    action_texts,
+    generated_message,
+    generated_service,
+)
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, TIME, FieldType, from_ros1
 from jacaros.ros.interfaces import definition
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 """Where ROS 1 keeps what ROS 2 has elsewhere."""
+
+ACTION_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
+"""Ends of the names of the messages that an action is made of, longer ones first."""
 
 _TIME_FIELDS = {
     TIME: {"sec": FieldType("uint32"), "nanosec": FieldType("uint32")},
@@ -23,10 +27,10 @@ _TIME_FIELDS = {
 
 
 class GenpySchema:
-    """Classes of the installed ROS 1 packages.
+    """Classes of the installed ROS 1 packages, and of definitions.
 
     Args:
-        roots: folders with further service definitions; see `jacaros.ros.interfaces`.
+        roots: folders with further definitions; see `jacaros.ros.interfaces`.
     """
 
     def __init__(self, roots: Sequence[Path] = ()) -> None:
@@ -54,7 +58,7 @@ class GenpySchema:
         return value
 
     def message_class(self, type_name: str) -> Any:
-        """The class of a message, request or response type in full form; raises `UnknownInterface`."""
+        """The class of a message, or of a part of a service or action, in full form; raises `UnknownInterface`."""
         found = self._classes.get(type_name)
         if found is None:
             found = self._classes[type_name] = self._find_message(type_name)
@@ -65,6 +69,23 @@ class GenpySchema:
         found = self._classes.get(type_name)
         if found is None:
             found = self._classes[type_name] = self._find_service(type_name)
+        return found
+
+    def action_class(self, type_name: str, part: str) -> Any:
+        """The class of one of the messages that actionlib makes of an action.
+
+        Args:
+            type_name: of the action in full form.
+            part: ``ActionGoal``, ``ActionResult``, ``ActionFeedback``, ``Action``, ``Goal``, ``Result`` or
+                ``Feedback``.
+
+        Raises:
+            UnknownInterface: the action is neither installed nor defined.
+        """
+        key = f"{type_name}_{part}"
+        found = self._classes.get(key)
+        if found is None:
+            found = self._classes[key] = self._find_action(type_name, part)
         return found
 
     def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
@@ -78,13 +99,28 @@ class GenpySchema:
         if kind == "srv":
             service, _, part = type_name.rpartition("_")
             return getattr(self.service_class(service), f"_{part.lower()}_class")
-        found = _imported(package, kind, name)
+        if kind == "action":
+            action, _, part = type_name.rpartition("_")
+            return self.action_class(action, part)
+        found = _imported(package, kind, name) or self._generated_message(package, name)
         if found is None:
             raise UnknownInterface(
                 f"message type {type_name} is not installed for ROS 1; on Debian: "
-                f"apt-get install python3-{package.replace('_', '-')}"
+                f"apt-get install python3-{package.replace('_', '-')}; or put its definition into a folder and "
+                f"name that folder in interface_paths: {type_name}.msg"
             )
         return found
+
+    def _generated_message(self, package: str, name: str) -> Any:
+        """The class of a message that is defined, by itself or as a part of an action; None when it is not."""
+        text = definition(f"{package}/msg/{name}", self._roots)
+        if text is not None:
+            return self._generate(generated_message, f"{package}/{name}", text)
+        for suffix in ACTION_SUFFIXES:
+            action_text = definition(f"{package}/action/{name.removesuffix(suffix)}", self._roots)
+            if name.endswith(suffix) and action_text is not None:
+                return self._generated_part(package, name.removesuffix(suffix), suffix, action_text)
+        return None
 
     def _find_service(self, type_name: str) -> Any:
         package, kind, name = type_name.split("/")
@@ -98,7 +134,39 @@ class GenpySchema:
                 f"service type {type_name} is not installed for ROS 1; install its package, or put its "
                 f"definition into a folder and name that folder in interface_paths: {type_name}.srv"
             )
-        return _generated(f"{ros1_package}/{name}", text)
+        return self._generate(generated_service, f"{ros1_package}/{name}", text)
+
+    def _find_action(self, type_name: str, part: str) -> Any:
+        package, _, name = type_name.split("/")
+        if part not in ACTION_SUFFIXES:
+            raise UnknownInterface(f"an action has no part {part!r} ({type_name})")
+        installed = _imported(package, "msg", f"{name}Action") is not None
+        if not installed and definition(type_name, self._roots) is None:
+            guess = name.removesuffix("Action")
+            hint = "" if guess == name else f"; is it {package}/action/{guess}?"
+            raise UnknownInterface(
+                f"action type {type_name} is not installed for ROS 1 ({package}.msg has no {name}Action){hint}; "
+                "install its package, or put its definition into a folder and name that folder in "
+                f"interface_paths: {type_name}.action"
+            )
+        return self.message_class(f"{package}/msg/{name}{part}")
+
+    def _generated_part(self, package: str, name: str, part: str, text: str) -> Any:
+        try:
+            texts = action_texts(name, text)
+        except ValueError as problem:
+            raise UnknownInterface(f"the definition of {package}/action/{name} is wrong: {problem}") from None
+        return self._generate(generated_message, f"{package}/{name}{part}", texts[part])
+
+    def _generate(self, generate: Callable[..., Any], full_name: str, text: str) -> Any:
+        try:
+            return generate(full_name, text, self._named_as_on_ros1)
+        except _definition_errors() as problem:
+            raise UnknownInterface(f"the definition of {full_name} is wrong for ROS 1: {problem}") from None
+
+    def _named_as_on_ros1(self, full_name: str) -> Any:
+        package, name = full_name.split("/")
+        return self.message_class(f"{package}/msg/{name}")
 
 
 def _imported(package: str, kind: str, name: str) -> Any:
@@ -108,40 +176,5 @@ def _imported(package: str, kind: str, name: str) -> Any:
         return None
 
 
-def _generated(full_name: str, text: str) -> Any:
-    """Load the Python class of a service, generated by genpy when it is not in the cache yet."""
-    package, name = full_name.split("/")
-    digest = hashlib.sha256(f"{full_name}\n{text}".encode()).hexdigest()[:16]
-    path = _cache_folder() / f"{package}_{name}_{digest}.py"
-    if not path.is_file():
-        # Written aside and renamed: another process may be loading or writing the same file.
-        handle, aside = tempfile.mkstemp(dir=path.parent, suffix=".part")
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(_python_source(full_name, text))
-        Path(aside).replace(path)
-    spec = spec_from_file_location(f"jacaros_generated_{package}_{name}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return getattr(module, name)
-
-
-def _python_source(full_name: str, text: str) -> str:
-    generator = import_module("genpy.generator")
-    loader = import_module("genmsg.msg_loader")
-    context = loader.MsgContext.create_default()
-    service = loader.load_srv_from_string(context, text, full_name)
-    return "\n".join(generator.srv_generator(context, service, {})) + "\n"
-
-
-def _cache_folder() -> Path:
-    root = os.environ.get("JACAROS_CACHE") or Path.home() / ".cache" / "jacaros"
-    folder = Path(root) / "ros1"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if os.access(folder, os.W_OK):
-            return folder
-    except OSError:  # a read-only or missing home directory
-        pass
-    return Path(tempfile.mkdtemp(prefix="jacaros-ros1-"))
+def _definition_errors() -> tuple[type[Exception], ...]:
+    return (import_module("genmsg").InvalidMsgSpec, import_module("genmsg").MsgGenerationException)

@@ -1,7 +1,7 @@
 """Interface definitions that JaCaROS brings along, and those of the user's own folders.
 
-Definitions are the usual text files, ``<root>/<package>/msg/<Type>.msg`` and
-``<root>/<package>/srv/<Type>.srv``.  The folder ``jacaros_interfaces`` beside this file is also a complete
+Definitions are the usual text files, ``<root>/<package>/msg/<Type>.msg``, ``<root>/<package>/srv/<Type>.srv`` and
+``<root>/<package>/action/<Type>.action``.  The folder ``jacaros_interfaces`` beside this file is also a complete
 ROS 2 interface package, built for installations that lack ``example_interfaces``.
 """
 
@@ -23,9 +23,25 @@ def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
 
 def split_service(text: str) -> tuple[str, str]:
     """Split a service definition at its line ``---`` into request and response."""
-    lines = text.splitlines()
-    try:
-        cut = [line.strip() for line in lines].index("---")
-    except ValueError:
-        raise ValueError("a service definition has a line --- between request and response") from None
-    return "\n".join(lines[:cut]) + "\n", "\n".join(lines[cut + 1 :]) + "\n"
+    parts = _split(text)
+    if len(parts) != 2:
+        raise ValueError("a service definition has a line --- between request and response")
+    return parts[0], parts[1]
+
+
+def split_action(text: str) -> tuple[str, str, str]:
+    """Split an action definition at its two lines ``---`` into goal, result and feedback."""
+    parts = _split(text)
+    if len(parts) != 3:
+        raise ValueError("an action definition has two lines ---: after the goal and after the result")
+    return parts[0], parts[1], parts[2]
+
+
+def _split(text: str) -> list[str]:
+    parts: list[list[str]] = [[]]
+    for line in text.splitlines():
+        if line.strip() == "---":
+            parts.append([])
+        else:
+            parts[-1].append(line)
+    return ["\n".join(lines) + "\n" for lines in parts]
