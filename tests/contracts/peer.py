@@ -203,14 +203,6 @@ class Peer:
         transform = {"header": {"frame_id": "odom", "stamp": 2.5}, "child_frame_id": child}
         self._backend.tf_broadcast(transform, static)
 
-    def ask_for(self, place: str) -> None:
-        getattr(self._backend, place)(
-            *{"action_client": ("a", "b"), "action_server": ("a", "b", print)}.get(place, ())
-        )
-
-    def look_up_transform(self) -> None:
-        self._backend.tf_lookup("map", "base_link")
-
     def hook(self, topic: str, fields: dict[str, Any]) -> None:
         publisher = self._publishers[topic]
         message = publisher.message(**fields)

@@ -80,15 +80,6 @@ def test_messages_are_made_without_a_topic(pair: Pair) -> None:
     assert message["pose"]["orientation"]["w"] == 1.0
 
 
-@pytest.mark.parametrize("place", ["action_client", "action_server", "parameters"])
-def test_what_is_not_there_yet_says_so(pair: Pair, place: str) -> None:
-    left, _ = pair
-    with pytest.raises(CapabilityMissing, match="not yet supported"):
-        left.ask_for(place)
-    with pytest.raises(CapabilityMissing, match="looking up transforms"):
-        left.look_up_transform()
-
-
 def test_transforms_are_broadcast(graph: Any, pair: Pair) -> None:
     left, right = pair
     if "transforms" not in left.capabilities():

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from jacaros.clock import Clock
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
-from jacaros.ros.backend import DEFAULT_POLICY, Publisher, Sample
+from jacaros.ros.backend import DEFAULT_POLICY, Publisher, Sample, Subscription, TopicEvent
 from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.exit_hooks import ExitHooks
 from jacaros.ros.fields import FieldType
@@ -18,7 +18,8 @@ from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
 from jacaros.ros.parameter import Parameters
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.tf import TransformBroadcaster
+from jacaros.ros.rosout import RosoutWriter
+from jacaros.ros.tf import TransformBroadcaster, TransformListener
 from jacaros.ros.transform import Transform
 from jacaros.trace import cause
 
@@ -75,6 +76,8 @@ class Node:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._on_connection: list[Callable[[bool], None]] = []
         self._transforms = TransformBroadcaster(self)
+        self._frames = TransformListener(self)
+        self._rosout = RosoutWriter(self)
 
     @property
     def node_name(self) -> str:
@@ -125,13 +128,24 @@ class Node:
         """Make a publisher."""
         raise NotImplementedError
 
+    def subscription(
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS = DEFAULT_QOS,
+        on_event: Callable[[TopicEvent], None] | None = None,
+    ) -> Subscription:
+        """Have *callback* called for every message."""
+        raise NotImplementedError
+
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
         """Have *hook* called once when the process stops or the backend is closed."""
         return self.exit_hooks.add(hook)
 
     def rosout(self, level: str, text: str) -> None:
         """Write a line to the graph's log."""
-        self._missing("writing to /rosout")
+        self._rosout.write(level, text)
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
         """Look at the graph."""
@@ -153,17 +167,17 @@ class Node:
 
     def tf_listen(self) -> None:
         """Begin to listen to transforms."""
-        self._missing("listening to transforms")
+        self._frames.listen()
 
     def tf_lookup(self, target: str, source: str, stamp: float | None = None) -> Transform:
         """Look up a transform."""
-        self._missing("looking up transforms")
+        return self._frames.lookup(target, source, stamp)
 
     async def tf_wait(
         self, target: str, source: str, stamp: float | None = None, timeout: float | None = None
     ) -> Transform:
         """Look up a transform as soon as that is possible."""
-        self._missing("looking up transforms")
+        return await self._frames.wait(target, source, stamp, timeout)
 
     def _missing(self, what: str) -> NoReturn:
         raise CapabilityMissing(f"{what}: the {self.name} backend cannot do this")

@@ -1,21 +1,35 @@
-"""Sending coordinate transforms."""
+"""Coordinate transforms over the topics ``/tf`` and ``/tf_static``: sending, listening, looking up, waiting."""
 
+import asyncio
+from collections.abc import Callable
 from typing import Any, Protocol
 
-from jacaros.ros.backend import Publisher
-from jacaros.ros.errors import CapabilityMissing, UnknownInterface
+from jacaros.clock import Clock
+from jacaros.ros.backend import Publisher, Sample, Subscription
+from jacaros.ros.errors import CapabilityMissing, TransformUnavailable, UnknownInterface
+from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import QoS
+from jacaros.ros.tf_buffer import TransformBuffer
+from jacaros.ros.transform import Transform
+from jacaros.ros.waiting import Waiting, within
 
 TF = QoS(depth=100)
 TF_STATIC = QoS(durability="transient_local", depth=1)
+ALL_STATIC = QoS(durability="transient_local", depth=100)
+"""For listening: there may be many publishers of static transforms, and each has its last message."""
 MESSAGE = "tf2_msgs/msg/TFMessage"
 
 
 class _Node(Protocol):
     name: str
+    clock: Clock
+    log: Callable[[str], None]
 
     def message(self, type_name: str, /, **fields: Any) -> Any: ...
     def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher: ...
+    def subscription(
+        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = ...
+    ) -> Subscription: ...
 
 
 class TransformBroadcaster:
@@ -32,7 +46,7 @@ class TransformBroadcaster:
 
     def send(self, transform: Any, static: bool) -> None:
         """Publish one transform; see `jacaros.ros.backend.Backend.tf_broadcast`."""
-        self._require_type()
+        _require_type(self._node)
         message = self._node.message(MESSAGE, transforms=[transform])
         if static:
             # A latched topic shows late receivers one message only, so it holds all static transforms.
@@ -41,16 +55,111 @@ class TransformBroadcaster:
             message = self._node.message(MESSAGE, transforms=list(self._static.values()))
         self._publisher(static).publish(message)
 
-    def _require_type(self) -> None:
-        try:
-            self._node.message(MESSAGE)
-        except UnknownInterface as problem:
-            raise CapabilityMissing(
-                f"the {self._node.name} backend cannot send transforms here: {problem}"
-            ) from None
-
     def _publisher(self, static: bool) -> Publisher:
         if static not in self._publishers:
             topic, qos = ("/tf_static", TF_STATIC) if static else ("/tf", TF)
             self._publishers[static] = self._node.publisher(topic, MESSAGE, qos)
         return self._publishers[static]
+
+
+class TransformListener:
+    """Knows what was said on ``/tf`` and ``/tf_static`` since it began to listen.
+
+    Args:
+        node: the backend that receives.
+    """
+
+    def __init__(self, node: _Node) -> None:
+        self._node = node
+        self._listening = False
+        self._buffer = TransformBuffer(self._log)
+        self._latest = 0.0
+        self._told: set[str] = set()
+        self._waiting: list[Callable[[], None]] = []
+
+    def listen(self) -> None:
+        """Begin to listen, unless that was done; raises `CapabilityMissing`."""
+        if self._listening:
+            return
+        _require_type(self._node)
+        self._listening = True
+        self._node.subscription("/tf", MESSAGE, lambda sample: self._take(sample, False), TF)
+        self._node.subscription("/tf_static", MESSAGE, lambda sample: self._take(sample, True), ALL_STATIC)
+
+    def lookup(self, target: str, source: str, stamp: float | None) -> Transform:
+        """Look up; see `jacaros.ros.backend.Backend.tf_lookup`."""
+        self.listen()
+        return self._buffer.lookup(target, source, stamp)
+
+    async def wait(self, target: str, source: str, stamp: float | None, timeout: float | None) -> Transform:
+        """Look up as soon as it is possible; see `jacaros.ros.backend.Backend.tf_wait`."""
+        try:
+            return self.lookup(target, source, stamp)
+        except TransformUnavailable as problem:
+            if problem.reason == "too_old":  # the past does not come back
+                raise
+        what = f"transform from {source} to {target}"
+        with Waiting(self._node.clock, self._node.log, what, "Is the node that sends it running?"):
+            return await self._arrival(target, source, stamp, timeout)
+
+    async def _arrival(
+        self, target: str, source: str, stamp: float | None, timeout: float | None
+    ) -> Transform:
+        arrival: asyncio.Future[Transform] = asyncio.get_running_loop().create_future()
+
+        def look_again() -> None:
+            if arrival.done():
+                return
+            try:
+                arrival.set_result(self._buffer.lookup(target, source, stamp))
+            except TransformUnavailable as problem:
+                if problem.reason == "too_old":
+                    arrival.set_exception(problem)
+
+        self._waiting.append(look_again)
+        try:
+            return await within(self._node.clock, arrival, timeout)
+        except TimeoutError:
+            try:
+                return self._buffer.lookup(target, source, stamp)
+            except TransformUnavailable as problem:
+                text = f"{problem} (waited {timeout:g} s)"
+                raise TransformUnavailable(text, problem.reason) from None
+        finally:
+            self._waiting.remove(look_again)
+
+    def _take(self, sample: Sample, static: bool) -> None:
+        now = self._node.clock.now()
+        if now < self._latest:
+            self._buffer.clear(f"the clock went back by {self._latest - now:.3g} s")
+        self._latest = now
+        for stamped in sample.message.transforms:
+            transform = stamped.transform
+            shift, turn = transform.translation, transform.rotation
+            fault = self._buffer.insert(
+                stamped.header.frame_id,
+                stamped.child_frame_id,
+                Transform(
+                    (shift.x, shift.y, shift.z),
+                    (turn.x, turn.y, turn.z, turn.w),
+                    to_seconds(stamped.header.stamp),
+                ),
+                static,
+            )
+            if fault is not None and fault not in self._told:
+                self._told.add(fault)
+                self._log(f"{sample.topic}: {fault}; it is left out")
+        for look_again in list(self._waiting):
+            look_again()
+
+    def _log(self, text: str) -> None:
+        self._node.log(text)
+
+
+def _require_type(node: _Node) -> None:
+    try:
+        node.message(MESSAGE)
+    except UnknownInterface as problem:
+        raise CapabilityMissing(
+            f"the {node.name} backend has no transforms here, neither to send nor to look up: {problem}"
+        ) from None

@@ -74,3 +74,34 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
         v[1] + w * ty + z * tx - x * tz,
         v[2] + w * tz + x * ty - y * tx,
     )
+
+
+def interpolate(first: Transform, second: Transform, ratio: float) -> Transform:
+    """The transform between two: shifted evenly, turned evenly the short way (slerp).
+
+    Args:
+        first, second: where it begins and ends.
+        ratio: from 0 (*first*) to 1 (*second*).
+    """
+    ax, ay, az = first.translation
+    bx, by, bz = second.translation
+    return Transform(
+        (ax + (bx - ax) * ratio, ay + (by - ay) * ratio, az + (bz - az) * ratio),
+        _slerp(first.rotation, second.rotation, ratio),
+        first.stamp + (second.stamp - first.stamp) * ratio,
+    )
+
+
+def _slerp(a: Quaternion, b: Quaternion, ratio: float) -> Quaternion:
+    cosine = sum(p * q for p, q in zip(a, b, strict=True))
+    if cosine < 0.0:  # q and -q are the same rotation; one of them is the short way
+        b, cosine = (-b[0], -b[1], -b[2], -b[3]), -cosine
+    if cosine > 0.9995:  # so close that the sine below loses its digits
+        weight_a, weight_b = 1.0 - ratio, ratio
+    else:
+        angle = math.acos(cosine)
+        weight_a = math.sin((1.0 - ratio) * angle) / math.sin(angle)
+        weight_b = math.sin(ratio * angle) / math.sin(angle)
+    x, y, z, w = (weight_a * p + weight_b * q for p, q in zip(a, b, strict=True))
+    length = math.sqrt(x * x + y * y + z * z + w * w)
+    return (x / length, y / length, z / length, w / length)

@@ -3,6 +3,7 @@
 Loading the store takes about 0.15 s, so it is done when the first message type is asked for, once a process.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -10,13 +11,15 @@ from typing import Any
 
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType, from_rosbags
-from jacaros.ros.interfaces import definition, split_service
+from jacaros.ros.interfaces import definition, split_action, split_service
 from jacaros.ros.message import DEFAULTS
-from jacaros.ros.names import request_type, response_type
+from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 from jacaros.ros.values import zeros
 
 _FILLER = "structure_needs_at_least_one_member"
 """What ROS 2 puts into empty messages."""
+_WSTRING = re.compile(r"^\s*wstring\b", re.MULTILINE)
+"""A text with wide characters: ours are all the same."""
 _ZEROS: Mapping[str, object] = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0}
 
 
@@ -67,35 +70,61 @@ class RosbagsSchema:
 
     def service(self, type_name: str) -> None:
         """Make the request and response types of a service known; raises `UnknownInterface`."""
-        if request_type(type_name) in _store().types:
-            return
-        text = definition(type_name, self._roots)
-        if text is None:
-            raise UnknownInterface(
-                f"service type {type_name} is not known here; put its definition into a folder and name that "
-                f"folder in interface_paths: {type_name}.srv"
-            )
-        request, response = split_service(text)
-        self._register(request_type(type_name), request)
-        self._register(response_type(type_name), response)
+        self._require_parts(type_name, "service", (request_type, response_type), split_service)
+
+    def action(self, type_name: str) -> None:
+        """Make the goal, result and feedback types of an action known; raises `UnknownInterface`."""
+        self._require_parts(type_name, "action", (goal_type, result_type, feedback_type), split_action)
 
     def _require(self, type_name: str) -> None:
         if type_name in _store().types:
             return
+        whole, _, part = type_name.rpartition("_")
+        if "/srv/" in type_name and part in ("Request", "Response"):
+            self.service(whole)
+        elif "/action/" in type_name and part in ("Goal", "Result", "Feedback"):
+            self.action(whole)
+        else:
+            self._register(type_name, self._definition(type_name, "message", "msg"))
+
+    def _require_parts(
+        self,
+        type_name: str,
+        what: str,
+        names: Sequence[Callable[[str], str]],
+        split: Callable[[str], Sequence[str]],
+    ) -> None:
+        types = [name(type_name) for name in names]
+        if all(part in _store().types for part in types):
+            return
+        text = self._definition(type_name, what, type_name.split("/")[1])
+        try:
+            parts = split(text)
+        except ValueError as problem:
+            raise UnknownInterface(f"the definition of {type_name} is wrong: {problem}") from None
+        for part, definition_of_part in zip(types, parts, strict=True):
+            self._register(part, definition_of_part)
+
+    def _definition(self, type_name: str, what: str, ending: str) -> str:
         text = definition(type_name, self._roots)
         if text is None:
             raise UnknownInterface(
-                f"message type {type_name} is not known here; put its definition into a folder and name that "
-                f"folder in interface_paths: {type_name}.msg"
+                f"{what} type {type_name} is not known here; put its definition into a folder and name that "
+                f"folder in interface_paths: {type_name}.{ending}"
             )
-        self._register(type_name, text)
+        return text
 
     def _register(self, type_name: str, text: str) -> None:
         from rosbags.typesys import get_types_from_msg
 
-        parsed = get_types_from_msg(text, type_name)
-        # The parser puts /msg/ into every name; the types of services are called …/srv/… everywhere else.
-        _store().register({type_name: next(iter(parsed.values()))})
+        # Read as if it were a message: the parser looks for types without a package beside the type itself.
+        package, _, name = type_name.split("/")
+        [parsed] = get_types_from_msg(_WSTRING.sub("string", text), f"{package}/msg/{name}").values()
+        for _, kind in parsed[1]:
+            field = from_rosbags(kind)
+            if field.is_message:
+                self._require(field.base)
+        _store().register({type_name: parsed})
 
     def _compile(self, type_name: str) -> Callable[[], Any]:
         """A function that makes a message, written out as one expression: nested messages need no calls between."""

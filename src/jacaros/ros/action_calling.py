@@ -1,0 +1,335 @@
+"""Action clients apart from the middleware: goals under way, who waits for them, and servers that go away.
+
+`GoalSender` is a whole action client; a backend gives it a `GoalWire` that sends, and tells it what has come in.
+Everything here happens on the loop.
+"""
+
+import asyncio
+import contextlib
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from jacaros.clock import Clock, Timer
+from jacaros.ros.action import SERVER_LOST_AFTER, Outcome
+from jacaros.ros.errors import (
+    CallFailed,
+    CallTimedOut,
+    GoalRejected,
+    ServerLost,
+    ServerUnavailable,
+    ServiceError,
+)
+from jacaros.ros.message import MessageFactory
+from jacaros.ros.names import goal_type
+from jacaros.ros.serving import checked_message, settle
+from jacaros.ros.waiting import Waiting, within
+
+
+class GoalWire(Protocol):
+    """What a middleware does for one action client.
+
+    Nothing here waits.  What comes back is told to the `GoalSender`: `accepted` or `rejected` for each goal sent, then
+    `feedback` and `ended`; `cancel_answered` for each `cancel_goal`; `server_present` whenever that changes.
+    """
+
+    @property
+    def offered(self) -> bool:
+        """Whether a server offers the action, as far as is known."""
+
+    def new_id(self) -> str:
+        """Make up the id of a new goal."""
+
+    def send_goal(self, goal_id: str, goal: Any) -> None:
+        """Send a goal message.
+
+        Raises:
+            CallFailed: the server there cannot take it; the text says why.
+        """
+
+    def cancel_goal(self, goal_id: str) -> None:
+        """Ask the server to cancel a goal, accepted or not yet."""
+
+    def forget_goal(self, goal_id: str) -> None:
+        """The goal is over for this client: nothing more about it needs to be told."""
+
+    def close(self) -> None:
+        """Leave; what was sent just before is still to reach the server."""
+
+
+class PendingGoal:
+    """A goal on the client's side, a `GoalHandle`.  It ends once, for all who wait then or later."""
+
+    def __init__(self, sender: "GoalSender", goal_id: str, on_feedback: Callable[[Any], None] | None) -> None:
+        self.goal_id = goal_id
+        self.on_feedback = on_feedback
+        self.acceptance: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self.abandoned = False
+        self.end: Outcome | ServiceError | None = None
+        self._sender = sender
+        self._waiting: list[asyncio.Future[Outcome]] = []
+        self._asking: list[asyncio.Future[bool]] = []
+
+    async def outcome(self, timeout: float | None = None) -> Outcome:
+        """Wait for the goal's end."""
+        if isinstance(self.end, Outcome):
+            return self.end
+        if self.end is not None:
+            raise self.end.with_traceback(None)
+        waiter: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
+        self._waiting.append(waiter)
+        try:
+            return await within(self._sender.clock, waiter, timeout)
+        except TimeoutError:
+            raise CallTimedOut(
+                f"goal {self.goal_id} of action {self._sender.name} is still under way after {timeout:g} s"
+            ) from None
+        finally:
+            if waiter in self._waiting:
+                self._waiting.remove(waiter)
+
+    async def cancel(self, timeout: float | None = None) -> bool:
+        """Ask the server to cancel the goal."""
+        if isinstance(self.end, Outcome):
+            return False
+        if self.end is not None:
+            raise self.end.with_traceback(None)
+        answer: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
+        self._asking.append(answer)
+        self._sender.ask_to_cancel(self.goal_id)
+        try:
+            return await within(self._sender.clock, answer, timeout)
+        except TimeoutError:
+            raise CallTimedOut(
+                f"the server of action {self._sender.name} did not answer within {timeout:g} s "
+                f"whether it cancels goal {self.goal_id}"
+            ) from None
+        finally:
+            if answer in self._asking:
+                self._asking.remove(answer)
+
+    def cancel_answered(self, agreed: bool) -> None:
+        """The server has agreed to cancel, or not."""
+        for answer in self._asking:
+            settle(answer, agreed, None)
+
+    def finish(self, end: Outcome | ServiceError) -> None:
+        """Note the goal's end and tell all who wait."""
+        if self.end is not None:
+            return
+        self.end = end
+        problem = None if isinstance(end, Outcome) else end
+        settle(self.acceptance, None, problem)
+        for waiter in self._waiting:
+            settle(waiter, end, problem)
+        for answer in self._asking:
+            # What the server answered was lost or overtaken: how the goal ended tells it too.
+            settle(answer, isinstance(end, Outcome) and end.status == "canceled", problem)
+
+
+class GoalSender:
+    """An action client, whatever the middleware.
+
+    Args:
+        clock: measures the time-outs.
+        log: takes one line about waiting, and about callbacks that failed.
+        factory: makes the goal messages.
+        name: absolute name of the action.
+        type_name: action type in full form.
+    """
+
+    wire: GoalWire
+    """To be set by whoever makes this, before the first goal."""
+
+    def __init__(
+        self, clock: Clock, log: Callable[[str], None], factory: MessageFactory, name: str, type_name: str
+    ) -> None:
+        self.clock = clock
+        self.name = name
+        self.type_name = type_name
+        self._log = log
+        self._factory = factory
+        self._goal_type = goal_type(type_name)
+        self._goals: dict[str, PendingGoal] = {}
+        self._arrivals: list[asyncio.Future[None]] = []
+        self._losing: Timer | None = None
+        self._closed = False
+
+    @property
+    def ready(self) -> bool:
+        """Whether a server offers the action, as far as is known."""
+        return not self._closed and self.wire.offered
+
+    @property
+    def busy(self) -> bool:
+        """Whether a goal is under way or somebody waits for the server: a wire that has to ask, asks while this is so."""
+        return bool(self._goals or self._arrivals)
+
+    def goal(self, **fields: Any) -> Any:
+        """Make a goal message."""
+        return self._factory.make(self._goal_type, fields)
+
+    async def send(
+        self, goal: Any = None, on_feedback: Callable[[Any], None] | None = None, timeout: float | None = None
+    ) -> PendingGoal:
+        """Send a goal and wait until the server has accepted it."""
+        message = checked_message(self._factory, self._goal_type, goal)
+        deadline = None if timeout is None else self.clock.now() + timeout
+        await self._server(timeout)
+        pending = PendingGoal(self, self.wire.new_id(), on_feedback)
+        self._goals[pending.goal_id] = pending
+        try:
+            self.wire.send_goal(pending.goal_id, message)
+            await within(
+                self.clock, pending.acceptance, None if deadline is None else deadline - self.clock.now()
+            )
+        except TimeoutError:
+            self._abandon(pending)
+            raise CallTimedOut(
+                f"the server of action {self.name} did not say within {timeout:g} s whether it accepts the goal"
+            ) from None
+        except asyncio.CancelledError:
+            self._abandon(pending)
+            raise
+        except ServiceError:
+            self._forget(pending.goal_id)
+            raise
+        return pending
+
+    def close(self) -> None:
+        """Give the client up: its goals are cancelled, waiting callers fail."""
+        if self._closed:
+            return
+        self._closed = True
+        for goal_id in list(self._goals):
+            if self.wire.offered:
+                self.wire.cancel_goal(goal_id)
+        problem = CallFailed(f"the client of action {self.name} was closed")
+        for goal_id in list(self._goals):
+            self._finish(goal_id, problem)
+        for arrival in list(self._arrivals):
+            settle(arrival, None, problem)
+        self.wire.close()
+
+    def ask_to_cancel(self, goal_id: str) -> None:
+        """Send a request for cancelling; `cancel_answered` will tell."""
+        self.wire.cancel_goal(goal_id)
+
+    # What the wire tells:
+
+    def accepted(self, goal_id: str) -> None:
+        """The server has accepted a goal."""
+        self._sign()
+        pending = self._goals.get(goal_id)
+        if pending is None:
+            return
+        if pending.abandoned:
+            self.wire.cancel_goal(goal_id)
+            self._forget(goal_id)
+        else:
+            settle(pending.acceptance, None, None)
+
+    def rejected(self, goal_id: str, text: str = "") -> None:
+        """The server has refused a goal."""
+        self._sign()
+        because = f": {text}" if text else ""
+        self._finish(goal_id, GoalRejected(f"the server of action {self.name} refused the goal{because}"))
+
+    def feedback(self, goal_id: str, message: Any) -> None:
+        """Feedback of a goal has come."""
+        self._sign()
+        pending = self._goals.get(goal_id)
+        if pending is None or pending.abandoned or pending.on_feedback is None:
+            return
+        try:
+            pending.on_feedback(message)
+        except Exception as problem:  # one bad callback must not stop the news of the others
+            self._log(
+                f"the feedback callback of action {self.name} failed: {type(problem).__name__}: {problem}"
+            )
+
+    def ended(self, goal_id: str, outcome: Outcome) -> None:
+        """A goal is over."""
+        self._sign()
+        self._finish(goal_id, outcome)
+
+    def cancel_answered(self, goal_id: str, agreed: bool) -> None:
+        """The server has answered a request for cancelling."""
+        self._sign()
+        pending = self._goals.get(goal_id)
+        if pending is not None:
+            pending.cancel_answered(agreed)
+
+    def fail(self, goal_id: str, problem: ServiceError) -> None:
+        """Something between us and the server broke for good: the end of a goal will not be told."""
+        self._finish(goal_id, problem)
+
+    def server_present(self, present: bool, same: bool = True) -> None:
+        """A server has come or gone.
+
+        Args:
+            present: whether one is there now.
+            same: the one that is there now may know the goals; False: it is another, which does not.
+        """
+        if present:
+            if not same:
+                self._lose("was replaced by another")
+            self._sign()
+            for arrival in list(self._arrivals):
+                settle(arrival, None, None)
+        elif self._losing is None and self._goals:
+            self._losing = self.clock.call_later(SERVER_LOST_AFTER, lambda: self._lose("went away"))
+
+    # Within:
+
+    async def _server(self, timeout: float | None) -> None:
+        if self._closed:
+            raise CallFailed(f"the client of action {self.name} was closed")
+        if self.wire.offered:
+            return
+        what = f"action {self.name} ({self.type_name})"
+        deadline = None if timeout is None else self.clock.now() + timeout
+        with Waiting(self.clock, self._log, what, "Is the node that offers it running?"):
+            while not self.wire.offered:
+                arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+                self._arrivals.append(arrival)
+                try:
+                    await within(
+                        self.clock, arrival, None if deadline is None else deadline - self.clock.now()
+                    )
+                except TimeoutError:
+                    raise ServerUnavailable(f"nobody offered {what} within {timeout:g} s") from None
+                finally:
+                    self._arrivals.remove(arrival)
+
+    def _abandon(self, pending: PendingGoal) -> None:
+        """Nobody wants the goal any more: cancel it now if it was accepted, else when it is."""
+        pending.abandoned = True
+        accepted = pending.acceptance.done() and not pending.acceptance.cancelled()
+        if pending.end is None and accepted and pending.acceptance.exception() is None:
+            with contextlib.suppress(ServiceError):
+                self.wire.cancel_goal(pending.goal_id)
+            self._forget(pending.goal_id)
+
+    def _finish(self, goal_id: str, end: Outcome | ServiceError) -> None:
+        pending = self._goals.get(goal_id)
+        if pending is not None:
+            self._forget(goal_id)
+            pending.finish(end)
+
+    def _forget(self, goal_id: str) -> None:
+        if self._goals.pop(goal_id, None) is not None:
+            self.wire.forget_goal(goal_id)
+        if not self._goals:
+            self._sign()
+
+    def _sign(self) -> None:
+        """Something was heard of the server: it is not lost."""
+        if self._losing is not None:
+            self._losing.cancel()
+            self._losing = None
+
+    def _lose(self, how: str) -> None:
+        self._sign()
+        for goal_id in list(self._goals):
+            text = f"the server of action {self.name} {how} during goal {goal_id}; whether it goes on is not known"
+            self._finish(goal_id, ServerLost(text))

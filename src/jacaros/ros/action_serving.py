@@ -1,0 +1,255 @@
+"""Action servers apart from the middleware: judging goals, carrying them out, and what their ends become.
+
+A backend hands over what came from clients (`ServedGoals.judge`, `begin`, `cancel`) and is told what to send them: feedback
+and the end.  Everything here happens on the loop.
+"""
+
+import asyncio
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from jacaros.ros.action import Abort, ActionPolicy, Execute, GoalStatus, Outcome, ServerGoal
+from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.message import MessageFactory, field_names
+from jacaros.ros.names import feedback_type, result_type
+from jacaros.ros.serving import checked_message
+
+PREEMPTED = "preempted by a newer goal"
+CLOSED = "the server was closed"
+TEXT_FIELDS = ("error_msg", "message")
+"""Where results of actions say in words how it went."""
+
+
+class GoalListener(Protocol):
+    """Who brings the news of one goal to its client."""
+
+    def feedback(self, message: Any) -> None:
+        """The goal has got so far: a feedback message."""
+
+    def ended(self, outcome: Outcome) -> None:
+        """The goal is over; called once."""
+
+
+class GoalUnderWay:
+    """A goal that is carried out: what its code sees of it, a `ServerGoal`."""
+
+    def __init__(
+        self,
+        goal_id: str,
+        request: Any,
+        send: Callable[[Any], Any],
+        tell: Callable[["GoalUnderWay", Outcome], None],
+    ) -> None:
+        self.goal_id = goal_id
+        self.request = request
+        self.cancel_requested = False
+        self.task: asyncio.Task[Any] | None = None
+        self.why_aborted = ""
+        self.over = False
+        self._send = send
+        self._tell = tell
+
+    def feedback(self, message: Any = None, /, **fields: Any) -> None:
+        """Tell the client how far the goal is; after the goal's end nothing."""
+        if message is not None and fields:
+            raise TypeError("give a feedback message or its fields, not both")
+        if not self.over:
+            self._send(message if message is not None else fields)
+
+    def end(self, outcome: Outcome) -> None:
+        """Tell the end, unless it was told."""
+        if not self.over:
+            self.over = True
+            self._tell(self, outcome)
+
+    def stop(self) -> None:
+        """Throw ``CancelledError`` into the code that carries the goal out."""
+        if self.task is not None:
+            self.task.cancel()
+
+
+class ServedGoals:
+    """The goals of one action server.
+
+    Args:
+        factory: makes the messages.
+        name: absolute name of the action.
+        type_name: action type in full form.
+        execute: the user's coroutine function.
+        policy: how to treat goals.
+        log: takes one line about code that failed.
+    """
+
+    def __init__(
+        self,
+        factory: MessageFactory,
+        name: str,
+        type_name: str,
+        execute: Execute,
+        policy: ActionPolicy,
+        log: Callable[[str], None],
+    ) -> None:
+        self._factory = factory
+        self._name = name
+        self._result_type = result_type(type_name)
+        self._feedback_type = feedback_type(type_name)
+        self._execute = execute
+        self._policy = policy
+        self._log = log
+        self._goals: dict[str, GoalUnderWay] = {}
+        self._stopping: set[asyncio.Task[Any]] = set()
+        self._closed = False
+
+    def judge(self, request: Any) -> str | None:
+        """Tell whether a goal message is accepted: None, or the reason for refusing it."""
+        if self._closed:
+            return CLOSED
+        if self._policy.accept is None:
+            return None
+        try:
+            return self._policy.accept(request)
+        except Exception as problem:  # the server lives on, and the client learns of it
+            reason = f"{type(problem).__name__}: {problem}"
+            self._log(f"judging a goal of action {self._name} failed: {reason}")
+            return reason
+
+    def begin(self, goal_id: str, request: Any, listener: GoalListener) -> ServerGoal:
+        """Carry an accepted goal out as a task of its own; *listener* is told of feedback and the end.
+
+        Where goals take over from each other, the code of the newer one begins when that of the older has ended.
+        """
+
+        def send(given: Any) -> None:
+            listener.feedback(checked_message(self._factory, self._feedback_type, given))
+
+        goal = GoalUnderWay(goal_id, request, send, lambda goal, outcome: self._end(goal, outcome, listener))
+        before: list[asyncio.Task[Any]] = []
+        if self._policy.preempt:
+            before = self._preempt()
+        self._goals[goal_id] = goal
+        goal.task = asyncio.get_running_loop().create_task(self._carry_out(goal, before))
+        goal.task.add_done_callback(lambda task: goal.end(self._outcome(goal, task)))
+        return goal
+
+    def cancel(self, goal_id: str) -> bool:
+        """Handle a client's request for cancelling; True when it is agreed to."""
+        goal = self._goals.get(goal_id)
+        if goal is None or goal.why_aborted:
+            return False
+        if goal.cancel_requested:
+            return True
+        if not self._may_cancel(goal):
+            return False
+        goal.cancel_requested = True
+        goal.stop()
+        return True
+
+    def under_way(self) -> list[str]:
+        """Ids of the goals that are not over."""
+        return list(self._goals)
+
+    def close(self) -> None:
+        """Abort what is under way: its clients are told at once, its code is cancelled."""
+        self._closed = True
+        for goal in list(self._goals.values()):
+            goal.end(self._ended(GoalStatus.ABORTED, None, CLOSED))
+            goal.stop()
+
+    def abandon(self) -> None:
+        """Stop what is under way and tell nobody: what a killed process does."""
+        self._closed = True
+        for goal in list(self._goals.values()):
+            goal.over = True
+            goal.stop()
+        self._goals.clear()
+
+    def _preempt(self) -> list[asyncio.Task[Any]]:
+        for goal in self._goals.values():
+            if not goal.why_aborted and not goal.cancel_requested:
+                goal.why_aborted = PREEMPTED
+            if goal.task is not None:
+                self._stopping.add(goal.task)
+                goal.task.add_done_callback(self._stopping.discard)
+                goal.stop()
+        return list(self._stopping)
+
+    async def _carry_out(self, goal: GoalUnderWay, before: list[asyncio.Task[Any]]) -> Any:
+        if before:
+            await asyncio.wait(before)
+        return await self._execute(goal)
+
+    def _may_cancel(self, goal: ServerGoal) -> bool:
+        if self._policy.may_cancel is None:
+            return True
+        try:
+            return bool(self._policy.may_cancel(goal))
+        except Exception as problem:
+            self._log(
+                f"judging a cancellation of action {self._name} failed: {type(problem).__name__}: {problem}"
+            )
+            return False
+
+    def _end(self, goal: GoalUnderWay, outcome: Outcome, listener: GoalListener) -> None:
+        self._goals.pop(goal.goal_id, None)
+        listener.ended(outcome)
+
+    def _outcome(self, goal: GoalUnderWay, task: asyncio.Task[Any]) -> Outcome:
+        """What the end of a goal's code means."""
+        if task.cancelled():
+            return self._cancelled(goal, None)
+        problem = task.exception()
+        if problem is None:
+            return self._given(goal, task.result())
+        if isinstance(problem, Abort):
+            return self._aborted(problem)
+        return self._failed(f"{type(problem).__name__}: {problem}")
+
+    def _given(self, goal: GoalUnderWay, result: Any) -> Outcome:
+        try:
+            message = checked_message(self._factory, self._result_type, result)
+        except MessageMismatch as problem:
+            return self._failed(str(problem))
+        if goal.cancel_requested or goal.why_aborted:
+            return self._cancelled(goal, message)
+        return Outcome(GoalStatus.SUCCEEDED, message, text_of(message))
+
+    def _cancelled(self, goal: GoalUnderWay, result: Any) -> Outcome:
+        if goal.cancel_requested:
+            return self._ended(GoalStatus.CANCELED, result, "")
+        return self._ended(
+            GoalStatus.ABORTED, result, goal.why_aborted or "the code of the goal was cancelled"
+        )
+
+    def _aborted(self, problem: Abort) -> Outcome:
+        try:
+            return self._ended(GoalStatus.ABORTED, problem.result, problem.text)
+        except MessageMismatch as mismatch:
+            return self._failed(f"{mismatch} (aborting: {problem.text})")
+
+    def _failed(self, reason: str) -> Outcome:
+        self._log(f"the code of action {self._name} failed: {reason}")
+        return self._ended(GoalStatus.ABORTED, None, reason)
+
+    def _ended(self, status: GoalStatus, result: Any, text: str) -> Outcome:
+        message = checked_message(self._factory, self._result_type, result)
+        if text:
+            self._fill_in(message, text)
+        return Outcome(status, message, text or text_of(message))
+
+    def _fill_in(self, result: Any, text: str) -> None:
+        """Write *text* into the result where it has a place for it and none was given."""
+        fields = self._factory.fields(self._result_type)
+        for name in TEXT_FIELDS:
+            field = fields.get(name)
+            if field is not None and field.base == "string" and not field.array and not getattr(result, name):
+                setattr(result, name, text)
+
+
+def text_of(result: Any) -> str:
+    """What a result message says in words, or ""."""
+    for name in TEXT_FIELDS:
+        if name in (field_names(result) or ()):
+            text = getattr(result, name)
+            if isinstance(text, str) and text:
+                return text
+    return ""
