@@ -83,11 +83,28 @@ def command_line() -> Iterator[str]:
         yield f"## jacaros {name}\n"
         yield f"{inspect.cleandoc(command.help or '')}\n"
         own = click.Context(command, parent=context, info_name=name)
-        yield f"```text\n{command.get_usage(own)}\n```\n"
-        options = [each for each in command.params if isinstance(each, click.Option)]
-        if options:
-            yield "| option | meaning |\n|---|---|"
-            yield "\n".join(map(_option, options)) + "\n"
+        if isinstance(command, click.Group):
+            yield from _parts(command, own)
+        else:
+            yield from _usage(command, own)
+
+
+def _parts(group: click.Group, context: click.Context) -> Iterator[str]:
+    """The commands of a command, with the usage of each."""
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        assert command is not None
+        yield f"### {context.command_path} {name}\n"
+        yield f"{inspect.cleandoc(command.help or '')}\n"
+        yield from _usage(command, click.Context(command, parent=context, info_name=name))
+
+
+def _usage(command: click.Command, context: click.Context) -> Iterator[str]:
+    yield f"```text\n{command.get_usage(context)}\n```\n"
+    options = [each for each in command.params if isinstance(each, click.Option)]
+    if options:
+        yield "| option | meaning |\n|---|---|"
+        yield "\n".join(map(_option, options)) + "\n"
 
 
 def _option(option: click.Option) -> str:
@@ -103,7 +120,8 @@ def _option(option: click.Option) -> str:
         if option.required
         else ""
     )
-    return f"| `{option.opts[0]}{value}` | {_cell(option.help or '')}{default} |"
+    names = "`, `".join([f"{option.opts[0]}{value}", *option.secondary_opts])
+    return f"| `{names}` | {_cell(option.help or '')}{default} |"
 
 
 def _cell(text: str) -> str:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 
+from jacaros.cli.graph_options import graph_options, read_remaps
 from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
 from jacaros.mas.console import Console, StandardConsole
@@ -17,10 +18,10 @@ from jacaros.mas.system import System
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
     "--clock",
-    type=click.Choice(["real", "fast"]),
+    type=click.Choice(["real", "fast", "ros"]),
     default="real",
     show_default=True,
-    help="In real time, or as fast as the machine can (not with a real ROS graph).",
+    help="In real time; as fast as the machine can (not with a real ROS graph); or as /clock of a real ROS graph says.",
 )
 @click.option("--seed", type=int, help="Makes random numbers repeatable; with --clock fast the whole run.")
 @click.option(
@@ -33,7 +34,17 @@ from jacaros.mas.system import System
 @click.option("--world", metavar="FILE", help="World file, or the name of a world that comes with jacaros.")
 @click.option("--until-idle", is_flag=True, help="End when no agent has anything to do or to wait for.")
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds of the run's clock.")
-@click.option("--namespace", default="", metavar="NAME", help="Put before relative ROS names.")
+@graph_options
+@click.option(
+    "--rosout/--no-rosout",
+    default=None,
+    help="Write what agents print, and warnings, to /rosout too (on real graphs they are).",
+)
+@click.option(
+    "--diagnostics/--no-diagnostics",
+    default=None,
+    help="Publish the state of agents and connection on /diagnostics (on real graphs it is).",
+)
 @click.option(
     "--record", type=click.Path(path_type=Path), metavar="FILE", help="Record the run as JSON lines."
 )
@@ -59,7 +70,13 @@ def command(
     world: str | None,
     until_idle: bool,
     seconds: float | None,
+    domain_id: int | None,
+    master: str | None,
     namespace: str,
+    node_name: str | None,
+    remap: tuple[str, ...],
+    rosout: bool | None,
+    diagnostics: bool | None,
     record: Path | None,
     replay: Path | None,
     ground_truth: Path | None,
@@ -82,6 +99,13 @@ def command(
         namespace=namespace,
         until_idle=until_idle,
         seconds=seconds,
+        ros_clock=clock == "ros",
+        domain_id=domain_id,
+        master=master,
+        node_name=node_name,
+        remap=read_remaps(remap) if remap else {},
+        rosout=rosout,
+        diagnostics=diagnostics,
     )
     console = StandardConsole("warning" if quiet else "info")
     if not watched:

@@ -46,7 +46,7 @@ def launch(
         # Before the programs are read: their syntax trees are many objects that all stay.
         gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
     deployment = project if isinstance(project, Deployment) else load_deployment(project)
-    clock: Clock = VirtualClock() if options.fast else WallClock()
+    clock = _clock(options, console)
 
     async def main() -> int:
         mas = System(deployment, clock, console, options)
@@ -73,6 +73,14 @@ def launch(
         return interruption.run(partial(new_event_loop, clock), main())
     finally:
         watchdog.stop()
+
+
+def _clock(options: RunOptions, console: Console) -> Clock:
+    if options.ros_clock:
+        from jacaros.ros.ros_clock import RosClock  # here: only for simulators on a real graph
+
+        return RosClock(lambda text: console.log(f"[ros] {text}"))
+    return VirtualClock() if options.fast else WallClock()
 
 
 def _escaped(mas: System, context: dict[str, Any]) -> None:

@@ -1,9 +1,14 @@
 """How a project is run: what the command line or a Python program decides."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jacaros.errors import UsageError
+
+if TYPE_CHECKING:
+    from jacaros.ros.address import GraphAddress
 
 ROS_KINDS = ("memory", "ros1", "ros2")
 
@@ -21,6 +26,10 @@ class RunOptions:
         namespace: put before relative ROS names.
         until_idle: end when no agent has anything to do and no operation is under way.
         seconds: end after so many seconds of the run's clock.
+        ros_clock: time is that of the graph's ``/clock``, as a simulator publishes it.
+        domain_id, master, bridge, node_name, remap: see `jacaros.ros.address.GraphAddress`.
+        rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
+        diagnostics: publish the state of agents and connection on ``/diagnostics``; None: on real graphs.
     """
 
     fast: bool = False
@@ -31,6 +40,38 @@ class RunOptions:
     namespace: str = ""
     until_idle: bool = False
     seconds: float | None = None
+    ros_clock: bool = False
+    domain_id: int | None = None
+    master: str | None = None
+    bridge: str | None = None
+    node_name: str | None = None
+    remap: Mapping[str, str] = field(default_factory=dict)
+    rosout: bool | None = None
+    diagnostics: bool | None = None
+
+    @property
+    def real_graph(self) -> bool:
+        """Whether the graph is one outside of the process."""
+        return self.ros != "memory"
+
+    @property
+    def wants_rosout(self) -> bool:
+        """Whether lines go to ``/rosout``."""
+        return self.real_graph if self.rosout is None else self.rosout
+
+    @property
+    def wants_diagnostics(self) -> bool:
+        """Whether ``/diagnostics`` is published."""
+        return self.real_graph if self.diagnostics is None else self.diagnostics
+
+    @property
+    def address(self) -> "GraphAddress":
+        """The graph, and our names in it."""
+        from jacaros.ros.address import GraphAddress  # here: a program without robots needs none of it
+
+        return GraphAddress(
+            self.ros, self.domain_id, self.master, self.bridge, self.namespace, self.node_name, self.remap
+        )
 
     def check(self) -> None:
         """Refuse what cannot go together.
@@ -45,5 +86,16 @@ class RunOptions:
                 f"the virtual clock (--clock fast) cannot run with a real ROS graph (--ros {self.ros}): its "
                 "nodes live in real time; use --clock real"
             )
+        if self.ros_clock and not self.real_graph:
+            raise UsageError(
+                "--clock ros follows the /clock of a real ROS graph (--ros ros1 or ros2); in the graph inside the "
+                "process time is virtual with --clock fast"
+            )
+        if self.real_graph or self._names_the_graph():
+            self.address.check()
         if self.seconds is not None and self.seconds < 0:
             raise UsageError("--for wants a number of seconds that is not negative")
+
+    def _names_the_graph(self) -> bool:
+        options = (self.domain_id, self.master, self.bridge, self.node_name)
+        return bool(self.namespace or self.remap or any(option is not None for option in options))

@@ -13,6 +13,7 @@ from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
     from jacaros.ros.backend import Backend
+    from jacaros.ros.ros_clock import RosClock
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World
 
@@ -54,6 +55,7 @@ class RosGraph:
         self._backend: Backend | None = None
         self._world_backend: Backend | None = None
         self._node: SimNode | None = None
+        self._followed: RosClock | None = None
         self.world: World | None = None
 
     async def start(self) -> None:
@@ -69,6 +71,8 @@ class RosGraph:
             backend = self._open()
             self._backend = backend
             await backend.start()
+            if self._options.ros_clock:
+                self._follow_clock(backend)
             # Only on demand: a project that names a world for practice also runs on the real robot.
             if self._options.world is not None:
                 self._start_world(backend)
@@ -85,8 +89,15 @@ class RosGraph:
             self._start_world(self._world_backend)
         return self._backend
 
+    @property
+    def joined(self) -> "Backend | None":
+        """Our node, None while nobody has asked for the graph."""
+        return self._backend
+
     async def close(self) -> None:
         """Stop the robots, then the world, and leave the graph."""
+        if self._followed is not None:
+            self._followed.close()
         if self._backend is not None:
             await self._backend.close()
         if self._node is not None:
@@ -95,16 +106,19 @@ class RosGraph:
             await self._world_backend.close()
 
     def _open(self) -> "Backend":
-        from jacaros.ros.open import open_backend
-
-        return open_backend(
-            self._options.ros, self._clock, self._name, self._options.namespace, log=self._log_ros
-        )
+        return self._options.address.open(self._clock, self._name, self._log_ros)
 
     def _open_for_world(self, beside: Any) -> "Backend":
         from jacaros.ros.open import open_backend
 
         return open_backend("memory", self._clock, "world", log=self._log_ros, graph=beside.graph)
+
+    def _follow_clock(self, backend: "Backend") -> None:
+        from jacaros.ros.ros_clock import RosClock
+
+        assert isinstance(self._clock, RosClock), "the launch makes the clock that the options ask for"
+        self._followed = self._clock
+        self._clock.listen(backend)
 
     def _log_ros(self, text: str) -> None:
         self._log(f"[ros] {text}")

@@ -34,6 +34,7 @@ from jacaros.terms.values import Term
 
 if TYPE_CHECKING:
     from jacaros.env.environment import Environment
+    from jacaros.mas.diagnostics import Diagnostics
     from jacaros.mas.surroundings import Surroundings
 
 
@@ -82,8 +83,8 @@ class System:
         self.scheduler = Scheduler(clock, self.idleness.look, self.fail)
         self.idleness.turns = self.scheduler
         self._surroundings: Surroundings | None = None
-        log = self.console.log
-        self.ros = RosGraph(self.options, clock, deployment.name, deployment.world, log)
+        self._diagnostics: Diagnostics | None = None
+        self.ros = self._find_graph()
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
         if self.options.until_idle or when_idle is not None:
             self.idleness.watch(when_idle or (lambda: self.end(0)))
@@ -97,6 +98,14 @@ class System:
         self._ending = False
         self._exit_code: int | None = None
         self._error: BaseException | None = None
+
+    def _find_graph(self) -> RosGraph:
+        deployment, options = self.deployment, self.options
+        if options.wants_rosout:
+            from jacaros.mas.rosout import RosoutConsole  # here: only for runs on a real graph
+
+            self.console = RosoutConsole(self.console, lambda: self.ros.joined)
+        return RosGraph(options, self.clock, deployment.name, deployment.world, self.console.log)
 
     def _found(
         self, prepare: Callable[[Program], Program] | None, when_made: Callable[[AgentHost], None] | None
@@ -154,6 +163,8 @@ class System:
         programs = population.programs.load_all(self.deployment.agents)
         population.check(self.deployment.agents)
         await self.ros.start()
+        if self.options.wants_diagnostics:
+            self._publish_diagnostics()
         if self._has_environment and self._is_furnished():
             await self.surroundings().furnish(self.deployment)
         agents = list(zip(self.deployment.agents, programs, strict=True))
@@ -163,6 +174,18 @@ class System:
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self.idleness.look()
+
+    def _publish_diagnostics(self) -> None:
+        from jacaros.mas.diagnostics import Diagnostics  # here: only for runs on a real graph
+        from jacaros.ros.errors import UnknownInterface
+
+        diagnostics = Diagnostics(self.ros.backend(), self.clock, lambda: self.directory, lambda: self._error)
+        try:
+            diagnostics.start()
+        except UnknownInterface as missing:
+            self.console.log(f"warning: there will be no /diagnostics: {missing}", "warning")
+        else:
+            self._diagnostics = diagnostics
 
     def _is_furnished(self) -> bool:
         """Whether the environment is made at the start, also to tell mistakes in the project's own artifacts."""
@@ -264,6 +287,8 @@ class System:
             await host.close()
         if self._surroundings is not None:
             await self._surroundings.environment.close()
+        if self._diagnostics is not None:
+            self._diagnostics.close()
         await self.ros.close()
 
     # ---- what agents ask for

@@ -17,8 +17,33 @@ def test_the_defaults_go_together() -> None:
         (RunOptions(fast=True, ros="ros2"), "use --clock real"),
         (RunOptions(ros="ros3"), "there are memory, ros1, ros2"),
         (RunOptions(seconds=-1), "not negative"),
+        (RunOptions(ros_clock=True), "--clock fast"),
+        (RunOptions(domain_id=3), "--domain-id goes with --ros ros2, not with --ros memory"),
+        (RunOptions(ros="ros1", domain_id=3), "not with --ros ros1"),
+        (RunOptions(ros="ros2", domain_id=233), "from 0 to 232, not 233"),
+        (RunOptions(ros="ros2", master="http://robot:11311"), "--master goes with --ros ros1"),
+        (RunOptions(ros="ros1", master="robot:11311"), "such as http://robot.lab.example:11311"),
+        (RunOptions(ros="ros1", master="http://robot:port"), "not 'http://robot:port'"),
+        (RunOptions(node_name="3x"), "'3x' is no node name"),
+        (RunOptions(remap={"odom": "/a b"}), "'/a b' is no ROS name"),
     ],
 )
 def test_what_cannot_go_together_is_refused(options: RunOptions, text: str) -> None:
     with pytest.raises(UsageError, match=text):
         options.check()
+
+
+def test_an_address_that_goes_with_its_graph_is_taken() -> None:
+    RunOptions(
+        ros="ros2", domain_id=0, node_name="agents", namespace="robot_1", remap={"odom": "/odom"}
+    ).check()
+    RunOptions(ros="ros1", master="http://127.0.0.1:11311", ros_clock=True).check()
+
+
+def test_lines_and_diagnostics_go_to_real_graphs_unless_told_otherwise() -> None:
+    assert not RunOptions().wants_rosout
+    assert not RunOptions().wants_diagnostics
+    assert RunOptions(ros="ros2").wants_rosout
+    assert RunOptions(ros="ros1").wants_diagnostics
+    assert not RunOptions(ros="ros1", rosout=False).wants_rosout
+    assert RunOptions(diagnostics=True).wants_diagnostics

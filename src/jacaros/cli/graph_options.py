@@ -1,0 +1,58 @@
+"""Options of commands that join a ROS graph: which one, and under which names."""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from jacaros.errors import UsageError
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_OPTIONS = (
+    click.option(
+        "--domain-id",
+        type=int,
+        metavar="N",
+        help="Domain of the ROS 2 graph, in place of the environment's ROS_DOMAIN_ID.",
+    ),
+    click.option(
+        "--master",
+        metavar="URI",
+        help="Master of the ROS 1 graph, in place of the environment's ROS_MASTER_URI.",
+    ),
+    click.option("--namespace", default="", metavar="NAME", help="Put before relative ROS names."),
+    click.option("--node-name", metavar="NAME", help="Name of our node, in place of the system's name."),
+    click.option(
+        "--remap",
+        multiple=True,
+        metavar="FROM:=TO",
+        help="Use the topic or service TO wherever FROM is asked for; may be given more often.",
+    ),
+)
+
+
+def graph_options(command: F) -> F:
+    """Give a command the options ``--domain-id``, ``--master``, ``--namespace``, ``--node-name`` and ``--remap``."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def read_remaps(written: tuple[str, ...]) -> dict[str, str]:
+    """Read ``FROM:=TO`` pairs, as ROS's own tools write them.
+
+    Raises:
+        UsageError: one is written in another way, or a name has two replacements.
+    """
+    remap: dict[str, str] = {}
+    for each in written:
+        old, sign, new = each.partition(":=")
+        if not sign or not old or not new:
+            raise UsageError(
+                f"--remap is written FROM:=TO, such as --remap odom:=/robot_1/odom, not {each!r}"
+            )
+        if remap.get(old, new) != new:
+            raise UsageError(f"--remap gives {old!r} two other names: {remap[old]!r} and {new!r}")
+        remap[old] = new
+    return remap

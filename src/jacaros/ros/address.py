@@ -1,0 +1,100 @@
+"""Which ROS graph, and under which names to join it: what a person says at the command line."""
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from jacaros.clock import Clock
+from jacaros.errors import UsageError
+from jacaros.ros.errors import NameInvalid
+from jacaros.ros.names import NodeNames
+
+if TYPE_CHECKING:
+    from jacaros.ros.backend import Backend
+
+LAST_DOMAIN = 232
+"""The highest domain id whose ports all exist (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
+
+
+@dataclass(frozen=True, slots=True)
+class GraphAddress:
+    """A graph and the names of our node in it; what is None comes from the environment, as in other ROS nodes.
+
+    Attributes:
+        kind: of the graph: ``memory``, ``ros1``, ``ros2`` or ``rosbridge``.
+        domain_id: of ROS 2; else ``ROS_DOMAIN_ID``.
+        master: address of the ROS 1 master, such as ``http://robot:11311``; else ``ROS_MASTER_URI``.
+        bridge: address of a rosbridge server, such as ``ws://robot:9090``.
+        namespace: put before relative names; on ROS 1 ``ROS_NAMESPACE`` when it is empty.
+        node_name: of our node, in place of the name that the program would give it.
+        remap: names to use in place of others.
+    """
+
+    kind: str = "memory"
+    domain_id: int | None = None
+    master: str | None = None
+    bridge: str | None = None
+    namespace: str = ""
+    node_name: str | None = None
+    remap: Mapping[str, str] = field(default_factory=dict)
+
+    def check(self) -> None:
+        """Refuse what cannot be, or cannot go together.
+
+        Raises:
+            UsageError: with what to write instead.
+        """
+        for option, value, kind in (
+            ("--domain-id", self.domain_id, "ros2"),
+            ("--master", self.master, "ros1"),
+            ("--bridge", self.bridge, "rosbridge"),
+        ):
+            if value is not None and self.kind != kind:
+                raise UsageError(f"{option} goes with --ros {kind}, not with --ros {self.kind}")
+        if self.domain_id is not None and not 0 <= self.domain_id <= LAST_DOMAIN:
+            raise UsageError(f"--domain-id is a whole number from 0 to {LAST_DOMAIN}, not {self.domain_id}")
+        if self.master is not None:
+            _check_address("--master", self.master, ("http", "https"), "http://robot.lab.example:11311")
+        if self.bridge is not None:
+            _check_address("--bridge", self.bridge, ("ws", "wss"), "ws://robot.lab.example:9090")
+        try:
+            NodeNames(self.node_name or "node", self.namespace, self.remap)
+        except NameInvalid as wrong:
+            raise UsageError(str(wrong)) from None
+
+    def open(self, clock: Clock, node_name: str, log: Callable[[str], None], **options: Any) -> "Backend":
+        """Make our node; see `jacaros.ros.open.open_backend` for the errors.
+
+        Args:
+            clock: of the run.
+            node_name: unless the address has one.
+            log: takes a line about the connection.
+            options: further ones of the backend.
+        """
+        from jacaros.ros import open as opening
+
+        if self.kind == "ros2":
+            options["domain_id"] = self.domain_id
+        if self.kind == "ros1" and self.master is not None:
+            # rospy reads it there and nowhere else, and has one node in a process anyway.
+            os.environ["ROS_MASTER_URI"] = self.master
+        if self.kind == "rosbridge":
+            options["url"] = self.bridge
+        namespace = self.namespace
+        if not namespace and self.kind == "ros1":
+            namespace = os.environ.get("ROS_NAMESPACE", "")
+        return opening.open_backend(
+            self.kind, clock, self.node_name or node_name, namespace, log=log, remap=self.remap, **options
+        )
+
+
+def _check_address(option: str, written: str, schemes: tuple[str, ...], example: str) -> None:
+    try:
+        parts = urlsplit(written)
+        complete = parts.scheme in schemes and parts.hostname and parts.port
+    except ValueError:
+        complete = None
+    if not complete:
+        raise UsageError(f"{option} is an address with its port, such as {example}, not {written!r}")

@@ -1,0 +1,193 @@
+"""The clock of a simulator: time is what ``/clock`` says (ROS's ``use_sim_time``).
+
+Delays are measured in the time that has passed on ``/clock`` while it went forward.  So everything waits while the
+simulator pauses, runs as fast as it does, and when the simulator is reset and its time jumps back, whoever waits
+goes on waiting for the rest of the delay: nobody waits for a moment that will not come again, and nothing rings early.
+"""
+
+import asyncio
+import heapq
+import itertools
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from jacaros.clock import Timer
+from jacaros.ros.message import to_seconds
+from jacaros.ros.qos import QoS
+
+CLOCK_TOPIC = "/clock"
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+CLOCK_QOS = QoS(reliability="best_effort", depth=1)
+"""What ROS 2's own nodes ask for: an old time is worth nothing."""
+
+OVERTAKEN = 0.1
+"""Seconds by which a message may be older than the one before without being a jump: on an unreliable topic they can
+overtake one another."""
+
+NEARLY = 1e-6
+"""Seconds by which the error of a float may make a timer seem not yet due."""
+
+SILENT_AFTER = 3.0
+"""Seconds of real time after which a clock that does not move is told."""
+
+
+class ClockSource(Protocol):
+    """What gives the messages of ``/clock``: a backend."""
+
+    def subscription(self, topic: str, type_name: str, callback: Callable[[Any], None], qos: QoS) -> Any:
+        """Have *callback* called for each message."""
+
+
+class _Timer:
+    __slots__ = ("callback", "number", "when")
+
+    def __init__(self, when: float, number: int, callback: Callable[[], None]) -> None:
+        self.when, self.number = when, number
+        self.callback: Callable[[], None] | None = callback
+
+    def __lt__(self, other: "_Timer") -> bool:
+        return (self.when, self.number) < (other.when, other.number)
+
+    def cancel(self) -> None:
+        self.callback = None
+
+    def ring(self) -> None:
+        callback, self.callback = self.callback, None
+        if callback is not None:
+            callback()
+
+
+class RosClock:
+    """Time as ``/clock`` tells it; it stands at 0 until the first message, as in all ROS nodes.
+
+    Args:
+        log: takes one line: the clock is silent, it came, it stands still, it jumped back.
+
+    Attributes:
+        elapsed: seconds that have passed forward since the first message.
+    """
+
+    virtual = False
+
+    def __init__(self, log: Callable[[str], None]) -> None:
+        self.elapsed = 0.0
+        self._log = log
+        self._time: float | None = None
+        self._timers: list[_Timer] = []
+        self._numbers = itertools.count()
+        self._on_jump: list[Callable[[float], None]] = []
+        self._watch: asyncio.TimerHandle | None = None
+        self._moved = False
+        self._told_still = False
+        self._subscription: Any = None
+
+    def now(self) -> float:
+        """The newest time of ``/clock`` in seconds; most simulators begin at 0."""
+        return self._time or 0.0
+
+    @property
+    def running(self) -> bool:
+        """Whether a message of ``/clock`` has come."""
+        return self._time is not None
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* when ``/clock`` has gone forward by *delay* seconds."""
+        timer = _Timer(self.elapsed + max(0.0, delay), next(self._numbers), callback)
+        if delay <= 0.0:
+            asyncio.get_running_loop().call_soon(timer.ring)
+        else:
+            heapq.heappush(self._timers, timer)
+        return timer
+
+    async def sleep(self, delay: float) -> None:
+        """Wait until ``/clock`` has gone forward by *delay* seconds."""
+        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        timer = self.call_later(delay, lambda: None if done.done() else done.set_result(None))
+        try:
+            await done
+        finally:
+            timer.cancel()
+
+    def busy(self, cycles: int) -> None:
+        """Nothing: the simulator moves the time."""
+
+    def on_jump(self, told: Callable[[float], None]) -> Callable[[], None]:
+        """Have *told* called after time jumped back, with the jump in seconds (below zero).
+
+        Returns:
+            what ends that.
+        """
+        self._on_jump.append(told)
+        return lambda: self._on_jump.remove(told) if told in self._on_jump else None
+
+    def listen(self, source: ClockSource) -> None:
+        """Follow the ``/clock`` of a graph that our node has joined."""
+        self._subscription = source.subscription(
+            CLOCK_TOPIC, CLOCK_TYPE, lambda sample: self.move_to(to_seconds(sample.message.clock)), CLOCK_QOS
+        )
+        self._log(f"waiting for the time on {CLOCK_TOPIC}")
+        self._look_later()
+
+    def close(self) -> None:
+        """Follow the graph no more; time stands still."""
+        if self._subscription is not None:
+            self._subscription.close()
+            self._subscription = None
+        if self._watch is not None:
+            self._watch.cancel()
+            self._watch = None
+
+    def move_to(self, time: float) -> None:
+        """Take a message of ``/clock``; timers that are due ring soon, in their order."""
+        before = self._time
+        if before is not None and before - OVERTAKEN <= time <= before:
+            return
+        self._time = time
+        if before is None:
+            self._log(f"{CLOCK_TOPIC} is there: it is {time:.3f} s")
+        elif time < before:
+            self._jump(time - before)
+        else:
+            self.elapsed += time - before
+            self._ring()
+        self._note_motion()
+
+    def _ring(self) -> None:
+        timers, loop = self._timers, asyncio.get_running_loop()
+        due = self.elapsed + NEARLY
+        while timers and (timers[0].callback is None or timers[0].when <= due):
+            timer = heapq.heappop(timers)
+            if timer.callback is not None:
+                # Through the loop, so that an error reaches its handler and not the middleware.
+                loop.call_soon(timer.ring)
+
+    def _jump(self, by: float) -> None:
+        self._log(
+            f"{CLOCK_TOPIC} jumped back by {-by:.3f} s (was the simulator reset?); waits go on for the rest of their time"
+        )
+        for told in tuple(self._on_jump):
+            told(by)
+
+    def _note_motion(self) -> None:
+        self._moved = True
+        if self._told_still:
+            self._told_still = False
+            self._log(f"{CLOCK_TOPIC} goes on")
+
+    def _look_later(self) -> None:
+        self._watch = asyncio.get_running_loop().call_later(SILENT_AFTER, self._look)
+
+    def _look(self) -> None:
+        if not self._moved and not self._told_still:
+            self._told_still = True
+            if self._time is None:
+                self._log(
+                    f"nobody publishes {CLOCK_TOPIC}: time stands still until a simulator does. Start it with its clock "
+                    "(`jacaros sim WORLD --clock ros`), or run with --clock real"
+                )
+            else:
+                self._log(
+                    f"{CLOCK_TOPIC} stands still at {self._time:.3f} s: everybody waits for the simulator"
+                )
+        self._moved = False
+        self._look_later()

@@ -1,0 +1,158 @@
+"""The clock of a simulator: it follows `/clock`, waits when it is silent, and is not misled when it jumps back."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from jacaros.clock import VirtualClock, run
+from jacaros.ros.message import stamp
+from jacaros.ros.open import open_backend
+from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
+
+
+def on_loop(main: Callable[[RosClock, list[str]], Awaitable[None]]) -> list[str]:
+    """Run *main* with a clock on the virtual loop, which stands for real time; what the clock said."""
+    lines: list[str] = []
+
+    async def go() -> None:
+        await main(RosClock(lines.append), lines)
+
+    run(go, VirtualClock())
+    return lines
+
+
+async def settle() -> None:
+    for _ in range(3):
+        await asyncio.sleep(0)
+
+
+def test_time_is_zero_until_the_first_message_and_then_that_of_the_newest() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        assert (clock.now(), clock.running) == (0.0, False)
+        clock.move_to(100.0)
+        assert (clock.now(), clock.elapsed, clock.running) == (100.0, 0.0, True)
+        clock.move_to(100.5)
+        assert (clock.now(), clock.elapsed) == (100.5, 0.5)
+
+    on_loop(main)
+
+
+def test_timers_ring_in_their_order_when_the_clock_has_gone_forward() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        rung: list[str] = []
+        clock.call_later(2.0, lambda: rung.append("late"))
+        clock.call_later(1.0, lambda: rung.append("early"))
+        clock.call_later(1.0, lambda: rung.append("next"))
+        clock.call_later(1.5, lambda: rung.append("cancelled")).cancel()
+        clock.call_later(0.0, lambda: rung.append("now"))
+        await settle()
+        assert rung == ["now"]
+        clock.move_to(50.0)
+        await asyncio.sleep(60.0)
+        assert rung == ["now"], "the first message sets the time, it does not pass any"
+        clock.move_to(51.0)
+        await settle()
+        assert rung == ["now", "early", "next"]
+        clock.move_to(60.0)
+        await settle()
+        assert rung == ["now", "early", "next", "late"]
+
+    on_loop(main)
+
+
+def test_after_a_jump_back_waits_go_on_for_the_rest_of_their_time() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        rung: list[float] = []
+        jumps: list[float] = []
+        stop = clock.on_jump(jumps.append)
+        clock.move_to(1000.0)
+        clock.call_later(3.0, lambda: rung.append(clock.now()))
+        clock.move_to(1002.0)
+        clock.move_to(0.0)
+        await settle()
+        assert (rung, jumps) == ([], [-1002.0])
+        clock.move_to(0.5)
+        await settle()
+        assert rung == []
+        clock.move_to(1.0)
+        await settle()
+        assert rung == [1.0]
+        stop()
+        clock.move_to(0.0)
+        assert jumps == [-1002.0]
+
+    lines = on_loop(main)
+    assert any("jumped back by 1002.000 s" in line for line in lines)
+
+
+def test_a_periodic_timer_rings_once_after_a_jump_and_not_in_a_burst() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        rung: list[float] = []
+
+        def tick() -> None:
+            rung.append(clock.now())
+            clock.call_later(0.1, tick)
+
+        clock.move_to(10.0)
+        tick()
+        for time in (10.1, 10.2, 5000.0, 1.0, 1.1, 1.2):
+            clock.move_to(time)
+            await settle()
+        assert rung == [10.0, 10.1, 10.2, 5000.0, 1.1, 1.2]
+
+    on_loop(main)
+
+
+def test_messages_that_overtook_each_other_are_no_jump() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        clock.move_to(10.0)
+        clock.move_to(10.02)
+        clock.move_to(10.01)
+        assert clock.now() == 10.02
+
+    assert not any("jumped" in line for line in on_loop(main))
+
+
+def test_a_sleeper_that_is_cancelled_leaves_no_timer() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        clock.move_to(1.0)
+        sleeper = asyncio.ensure_future(clock.sleep(5.0))
+        await settle()
+        sleeper.cancel()
+        await settle()
+        clock.move_to(7.0)
+        await settle()
+        assert sleeper.cancelled()
+
+    on_loop(main)
+
+
+def test_it_follows_the_graph_and_tells_of_silence_and_pauses() -> None:
+    lines: list[str] = []
+    real = VirtualClock()
+
+    async def main() -> None:
+        node = open_backend("memory", real, "agents", log=lines.append)
+        await node.start()
+        clock = RosClock(lines.append)
+        clock.listen(node)
+        await real.sleep(10.0)
+        assert sum("nobody publishes /clock" in line for line in lines) == 1
+        publisher = node.publisher("/clock", CLOCK_TYPE)
+        await publish(publisher, 7.0)
+        assert clock.now() == 7.0
+        assert any("goes on" in line for line in lines)
+        await real.sleep(10.0)
+        assert sum("stands still at 7.000 s" in line for line in lines) == 1
+        clock.close()
+        await publish(publisher, 9.0)
+        assert clock.now() == 7.0
+        await node.close()
+
+    async def publish(publisher: Any, time: float) -> None:
+        message = publisher.message()
+        stamp(message.clock, time)
+        publisher.publish(message)
+        await real.sleep(0.1)
+
+    run(main, real)
