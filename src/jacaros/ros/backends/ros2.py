@@ -44,6 +44,10 @@ SETTLING = 0.5
 """Seconds between finding a server and the first request: what it answers before it knows the client is lost."""
 
 
+COURTESY = 0.002
+"""Seconds that rclpy's executor lets the agents go first: it computes for long (in Python) before it waits again."""
+
+
 class Ros2Publisher:
     """Publisher of `Ros2Backend`."""
 
@@ -94,7 +98,7 @@ class Ros2Subscription:
         self.topic = topic
         self._node = node
         self._queue: Handoff[Any] = Handoff(
-            node.loop, qos.depth, lambda message: callback(node.sample(message, topic))
+            node.loop, qos.depth, lambda message: callback(node.sample(message, topic)), COURTESY
         )
         kind = node.factory.message_class(type_name)
         self._subscription: Any = node.rcl.create_subscription(kind, topic, self._queue.put, _profile(qos))
