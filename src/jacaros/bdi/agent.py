@@ -220,6 +220,18 @@ class Agent(Circumstance):
             self.called = True
             self.architecture.ready()
 
+    def has_untaken(self, name: str) -> bool:
+        """Whether a change or event of a belief called *name* from the environment still waits to be taken up."""
+        for percepts in self.percepts:
+            for each in percepts:
+                symbol = functor_of(each.literal)
+                if symbol is not None and symbol.name == name:
+                    return True
+        return any(
+            intention is None and goal[0].kind == "" and goal[0].functor.name == name
+            for goal, intention, _, _ in self.events
+        )
+
     def complete(self, act_id: int, completion: Completion) -> None:
         """An external action ended; an id that is not pending (any more) is ignored."""
         if act_id == self._beginning:

@@ -33,6 +33,9 @@ class Mind(Protocol):
     def perceive(self, percepts: list[Percept]) -> None:
         """Take percepts in."""
 
+    def has_untaken(self, name: str) -> bool:
+        """Whether percepts about properties called *name* have still to be taken up."""
+
     def complete(self, act_id: int, completion: Completion) -> None:
         """Be told the end of an act."""
 
@@ -87,7 +90,7 @@ class AgentBody:
         self._entered = False
         self._session: ArtifactId | None = None
         self._whereabouts = Whereabouts(environment, home)
-        focused = FocusedArtifacts(agent, writer, references, mind.perceive)
+        focused = FocusedArtifacts(agent, writer, references, mind.perceive, mind.has_untaken)
         self._selection = Selection(agent, self._whereabouts, focused, keys())
         self._situation = Situation(
             agent,

@@ -18,7 +18,7 @@ A pattern is for the beginning too.
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
-from jacaros.env.observation import Observation, Observer, Signal
+from jacaros.env.observation import Observation, Observer, Signal, SlowObserver
 from jacaros.env.property import Change, ObservableProperty
 from jacaros.env.values import Atom, Out, Structure, equal
 
@@ -121,6 +121,10 @@ class FilteredObserver:
     def agent(self) -> str:
         """Name of the agent that observes."""
         return self._observer.agent
+
+    def has_untaken(self, name: str) -> bool:
+        """Whether the other observer has still to take something up."""
+        return isinstance(self._observer, SlowObserver) and self._observer.has_untaken(name)
 
     def observe(self, observation: Observation) -> None:
         """Hand on what passes."""

@@ -21,6 +21,9 @@ _PERSONAL = ("body_", "session_")
 Notice = Callable[[list[Percept]], None]
 """Where percepts go."""
 
+Untaken = Callable[[str], bool]
+"""Whether percepts about properties of a name have still to be taken up."""
+
 
 class FocusObserver:
     """Perceives for an agent, in one namespace of its program.
@@ -28,12 +31,16 @@ class FocusObserver:
     Attributes:
         agent: name of the agent.
         notice: where its percepts go.
+        has_untaken: whether the mind has still to take up percepts about properties of a name.
     """
 
-    __slots__ = ("_namespace", "_writer", "agent", "notice")
+    __slots__ = ("_namespace", "_writer", "agent", "has_untaken", "notice")
 
-    def __init__(self, agent: str, namespace: str | None, writer: PerceptWriter, notice: Notice) -> None:
+    def __init__(
+        self, agent: str, namespace: str | None, writer: PerceptWriter, notice: Notice, untaken: Untaken
+    ) -> None:
         self.agent = agent
+        self.has_untaken = untaken
         self.notice = notice
         self._namespace = namespace
         self._writer = writer
@@ -55,8 +62,16 @@ class FocusedArtifacts:
     in several namespaces, with beliefs in each.
     """
 
-    def __init__(self, agent: str, writer: PerceptWriter, references: References, notice: Notice) -> None:
+    def __init__(
+        self,
+        agent: str,
+        writer: PerceptWriter,
+        references: References,
+        notice: Notice,
+        untaken: Untaken = lambda name: False,
+    ) -> None:
         self._agent = agent
+        self._untaken = untaken
         self._writer = writer
         self._references = references
         self._notice = notice
@@ -177,7 +192,7 @@ class FocusedArtifacts:
     def _observer(self, namespace: str | None) -> FocusObserver:
         observer = self._observers.get(namespace)
         if observer is None:
-            observer = FocusObserver(self._agent, namespace, self._writer, self._notice)
+            observer = FocusObserver(self._agent, namespace, self._writer, self._notice, self._untaken)
             self._observers[namespace] = observer
         return observer
 

@@ -1,6 +1,6 @@
 """What an artifact publishes, and who receives it."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from jacaros.env.ids import ArtifactId
 from jacaros.env.property import Change, ObservableProperty
@@ -50,3 +50,11 @@ class Observer(Protocol):
         """Receive an observation, in the order of the commits; return soon, and do not raise."""
 
     def __hash__(self) -> int: ...
+
+
+@runtime_checkable
+class SlowObserver(Observer, Protocol):
+    """An observer that takes observations up later than it receives them, and can say so."""
+
+    def has_untaken(self, name: str) -> bool:
+        """Whether something that it received about properties called *name* has still to be taken up."""

@@ -55,6 +55,9 @@ class Mind(Protocol):
     def perceive(self, percepts: list[Percept]) -> None:
         """Take percepts in."""
 
+    def has_untaken(self, name: str) -> bool:
+        """Whether percepts about properties called *name* have still to be taken up."""
+
     def complete(self, act_id: int, completion: Completion) -> None:
         """Be told the end of an action."""
 

@@ -80,7 +80,7 @@ def test_on_demand_nothing_passes_but_the_newest_is_there() -> None:
 
 def test_not_a_number_equals_itself() -> None:
     nan = math.nan
-    passed = Passed(ReadingPolicy()).feed((0, (nan,)), (1, (nan,)), (2, (1.0,)), (3, (nan,)))
+    passed = Passed(ReadingPolicy(finite=False)).feed((0, (nan,)), (1, (nan,)), (2, (1.0,)), (3, (nan,)))
     assert [math.isnan(values[0]) for _, values in passed] == [True, False, True]  # type: ignore[arg-type]
 
 
@@ -129,13 +129,14 @@ def test_arguments_are_a_robot_name_and_options_in_any_order() -> None:
     assert read_arguments(["r", nested], READING_OPTIONS, "Art").options == {"rate": 5.0, "mode": "verbose"}
     assert read_arguments([None], READING_OPTIONS, "Art").robot == ""
     policy = ReadingPolicy.from_options(read.options)
-    assert policy == ReadingPolicy(on_demand=True, rate=5.0, dead_band=(0.1, 0.0))
+    assert policy == ReadingPolicy(on_demand=True, rate=5.0, dead_band=(0.1, 0.0), latest_only=True)
+    assert ReadingPolicy.from_options({"latest_only": False, "expire": 2.0}) == ReadingPolicy(expire=2.0)
 
 
 @pytest.mark.parametrize(
     ("argument", "text"),
     [
-        (Structure("rote", (5,)), "no option 'rote'; it knows dead_band, mode, rate"),
+        (Structure("rote", (5,)), "no option 'rote'; it knows dead_band, expire, latest_only, mode, rate"),
         (Structure("rate", (0,)), "rate(0) wants a number above zero"),
         (Structure("rate", ("fast",)), "wants a number"),
         (Structure("rate", (True,)), "wants a number"),

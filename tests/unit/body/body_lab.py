@@ -132,6 +132,9 @@ class Robot:
         self.percepts.extend(percepts)
         self.log.extend(f"{p.kind} {text(p.literal)}" for p in percepts)
 
+    def has_untaken(self, name: str) -> bool:
+        return False
+
     def complete(self, act_id: int, completion: Completion) -> None:
         assert act_id not in self.completions
         self.completions[act_id] = completion

@@ -1,10 +1,11 @@
 """``ArtSimBattery``: a battery that a timer drains, as in the thesis, or the robot's own battery."""
 
 import math
+from functools import partial
 from typing import ClassVar
 
 from jacaros.artifacts.ros.options import not_negative, number, one_of, positive, text
-from jacaros.artifacts.ros.reading import Reading, ReadingPolicy
+from jacaros.artifacts.ros.reading import Outlet, Reading, ReadingPolicy
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.ros.backend import Sample
@@ -41,6 +42,7 @@ class ArtSimBattery(RosArtifact):
         level(N): percent at the beginning (100), of the timer.
         source(S): ``timer`` or ``robot``.
         topic(T): another topic than ``battery_state``.
+        expire(S): the robot's charge is unknown again when it says nothing for so long.
         dock_timeout(S): how long `operation_recharge` waits for the dock's current (5 s).
 
     Properties:
@@ -55,6 +57,7 @@ class ArtSimBattery(RosArtifact):
         "source": one_of("timer", "robot"),
         "topic": text,
         "dock_timeout": positive,
+        "expire": positive,
     }
 
     def open(self) -> None:
@@ -65,10 +68,16 @@ class ArtSimBattery(RosArtifact):
         self._share = math.inf
         self._fed_at = -math.inf
         self._full_since = math.inf
-        self._told = Reading(ReadingPolicy(on_demand=True), self.clock, lambda values, cause: None)
+        expire = self.options.get("expire")
+        assert expire is None or isinstance(expire, float)
+        policy = ReadingPolicy(on_demand=True, expire=expire)
+        self._told = self._kept(
+            Reading(policy, self.clock, None, Outlet(withdraw=partial(self.start, self.forget_battery)))
+        )
         self.follows_robot = self._follows_robot()
         if self.follows_robot:
             topic = str(self.options.get("topic", "battery_state"))
+            self._faulty = self.faults_of(topic)
             self.subscription(topic, "sensor_msgs/msg/BatteryState", self._take, SENSOR_DATA)
         else:
             self._show(max(0, min(FULL, round(self._option("level", FULL)))))
@@ -134,11 +143,14 @@ class ArtSimBattery(RosArtifact):
         charging = status == constant(state, "POWER_SUPPLY_STATUS_CHARGING")
         full = status == constant(state, "POWER_SUPPLY_STATUS_FULL")
         share = float(state.percentage)
+        if not math.isfinite(share):
+            self._faulty.not_finite("percentage", share)
+            share = self._share
         # Many drivers know no status: there, a charge that rises tells of the current.
         if charging or full or share > self._share:
             self._fed_at = sample.stamp
         self._share = share
-        if math.isfinite(share):
+        if math.isfinite(float(state.percentage)):
             level = FULL if full else min(FULL, max(0, round(100.0 * share)))
             if level < FULL:
                 self._full_since = math.inf
@@ -152,6 +164,14 @@ class ArtSimBattery(RosArtifact):
         """Show what the robot says of its battery."""
         self._charging = charging
         self._show(level)
+
+    @internal_operation
+    def forget_battery(self) -> None:
+        """Show nothing: what the robot said has expired."""
+        if self._level != UNKNOWN:
+            self._level = UNKNOWN
+            self.remove_property("battery")
+            self.remove_property("diagnostics")
 
     async def _charge_in_dock(self) -> None:
         patience = self._option("dock_timeout", 5.0)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import ClassVar
 
+from jacaros.artifacts.ros.faults import Header
 from jacaros.artifacts.ros.options import positive, text
 from jacaros.artifacts.ros.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
@@ -23,30 +24,33 @@ class ArtBaseScan(RosArtifact):
     the sensor's greatest range.
 
     Options:
-        mode, rate, dead_band: see `ReadingPolicy`.
+        mode, rate, dead_band, latest_only, expire: see `ReadingPolicy`.
         topic(T): another topic, such as ``base_scan``.
         max(R): range of a beam without an echo, in metres, and greatest range shown.
+        frame(F): the only frame in which scans are believed; that of the first scan by default.
 
     Properties:
-        laserrange(R0, R25, R50, R75, R100): metres; all 0 before the first scan.
+        laserrange(R0, R25, R50, R75, R100): metres; all 0 before the first scan.  With `expire` it is not there then.
     """
 
-    known_options: ClassVar = {**READING_OPTIONS, "topic": text, "max": positive}
+    known_options: ClassVar = {**READING_OPTIONS, "topic": text, "max": positive, "frame": text}
 
     _ranges: Reading
 
     def open(self) -> None:
         """Define the property and listen."""
-        self.define_property("laserrange", 0, 0, 0, 0, 0)
-        self._ranges = self.reading("laserrange", ReadingPolicy.from_options(self.options))
+        self._ranges = self.reading(
+            "laserrange", ReadingPolicy.from_options(self.options), *[0] * len(SHARES)
+        )
         topic = str(self.options.get("topic", "scan"))
+        self._header = Header(self.faults_of(topic), str(self.options.get("frame", "")))
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take, SENSOR_DATA)
 
     def _take(self, sample: Sample) -> None:
         scan = sample.message
         longest = self.options.get("max", float(scan.range_max))
         assert isinstance(longest, float)
-        if len(scan.ranges):
+        if len(scan.ranges) and self._header.accepts(sample):
             self._ranges.take(sampled(scan.ranges, longest), sample.cause)
 
     @operation(name="getCurrentBaseScan")

@@ -239,15 +239,18 @@ class Motion:
 
     def _has_odometry(self) -> bool:
         """Whether there is odometry to drive by; fails when there was none for too long."""
-        age = self._wheels.odometer.age(self._wheels.clock.now())
-        if age is not None and age <= STALE:
+        odometer = self._wheels.odometer
+        age = odometer.age(self._wheels.clock.now())
+        # By a clock that was set back the newest odometry is from the future: then too it tells nothing of now.
+        if odometer.trusted and age is not None and abs(age) <= STALE:
             self._blind_since = None
             return True
         if self._blind_since is None:
             self._blind_since = self._active
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
-            raise MotionFailed(f"no odometry came for {limit:g} s", "no_odometry", limit)
+            bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""
+            raise MotionFailed(f"no odometry came for {limit:g} s{bad}", "no_odometry", limit)
         return False
 
     def _check(self, command: Velocity | None) -> None:

@@ -3,12 +3,11 @@
 import math
 from typing import ClassVar
 
-from jacaros.artifacts.ros.odometer import ODOMETRY, Odometry, read_odometry
+from jacaros.artifacts.ros.odometer import ODOMETRY, Odometer, Odometry
 from jacaros.artifacts.ros.options import text
 from jacaros.artifacts.ros.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
-from jacaros.ros.backend import Sample
 from jacaros.ros.qos import SENSOR_DATA
 
 NO_ODOMETRY = "no_odometry"
@@ -22,16 +21,17 @@ class ArtOdometry(RosArtifact):
     message and fail with ``no_odometry(5)`` when none comes in 5 s.
 
     Options:
-        mode(verbose) or mode(on_demand), rate(Hz), dead_band(D): see `ReadingPolicy`; the fields of a dead
-            band are those of each property.
+        mode(verbose) or mode(on_demand), rate(Hz), dead_band(D), latest_only(false), expire(S): see `ReadingPolicy`;
+            the fields of a dead band are those of each property.
         topic(T): another topic.
+        frame(F): the only frame in which odometry is believed; that of the first message by default.
 
     Properties:
-        odom(X, Y, Z): position in metres; 0, 0, 0 before the first message.
+        odom(X, Y, Z): position in metres; 0, 0, 0 before the first message.  With `expire` it is not there then.
         pose(X, Y, Heading): metres and degrees in (-180, 180].
     """
 
-    known_options: ClassVar = {**READING_OPTIONS, "topic": text}
+    known_options: ClassVar = {**READING_OPTIONS, "topic": text, "frame": text}
     on_demand: ClassVar[bool] = False
 
     _position: Reading
@@ -40,16 +40,16 @@ class ArtOdometry(RosArtifact):
     def open(self) -> None:
         """Define the properties and listen."""
         policy = ReadingPolicy.from_options(self.options, self.on_demand)
-        self.define_property("odom", 0, 0, 0)
-        self.define_property("pose", 0, 0, 0)
-        self._position = self.reading("odom", policy)
-        self._pose = self.reading("pose", policy)
-        self.subscription(str(self.options.get("topic", "odom")), ODOMETRY, self._take, SENSOR_DATA)
+        self._position = self.reading("odom", policy, 0, 0, 0)
+        self._pose = self.reading("pose", policy, 0, 0, 0)
+        topic = str(self.options.get("topic", "odom"))
+        odometer = Odometer(self.faults_of(topic), self._take, str(self.options.get("frame", "")))
+        self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
 
-    def _take(self, sample: Sample) -> None:
-        odometry = read_odometry(sample)
-        self._position.take(odometry.position, sample.cause)
-        self._pose.take(pose_values(odometry), sample.cause)
+    def _take(self, odometry: Odometry) -> None:
+        cause = odometry.sample.cause
+        self._position.take(odometry.position, cause)
+        self._pose.take(pose_values(odometry), cause)
 
     @operation(name="getCurrentOdom")
     async def get_current_odom(self) -> None:

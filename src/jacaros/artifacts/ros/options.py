@@ -107,6 +107,18 @@ def bands(value: object) -> float | tuple[float, ...]:
     return not_negative(value)
 
 
+def yes_or_no(value: object) -> bool:
+    """``true`` or ``false``."""
+    if not isinstance(value, bool):
+        raise ValueError("true or false")
+    return value
+
+
+def watching(value: object) -> bool | float:
+    """``true``, ``false``, or a number of seconds."""
+    return value if isinstance(value, bool) else positive(value)
+
+
 def one_of(*choices: str) -> Reader:
     """One of some words."""
 

@@ -1,17 +1,23 @@
-"""The artifact that talks to ROS: topics and services under the robot's name, closed when it is disposed."""
+"""The artifact that talks to ROS: topics, services and actions under the robot's name, closed when it is disposed."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, ClassVar, Protocol, TypeVar
 
+from jacaros.artifacts.ros.acting import Conduct, GoalFailed, Pursuit, Suspending, Switch, missing_number
+from jacaros.artifacts.ros.calling import CallFailure, call
+from jacaros.artifacts.ros.connection import Connection
+from jacaros.artifacts.ros.faults import Faults
 from jacaros.artifacts.ros.listener import Listener
 from jacaros.artifacts.ros.missing import MissingTopic
-from jacaros.artifacts.ros.options import Reader, WrongOption, read_arguments, text
-from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
+from jacaros.artifacts.ros.options import Reader, WrongOption, read_arguments, text, watching
+from jacaros.artifacts.ros.reading import Outlet, Reading, ReadingPolicy, Values
 from jacaros.env.artifact import Artifact, internal_operation
-from jacaros.env.values import Atom
+from jacaros.env.errors import InvalidArtifact
+from jacaros.env.values import Structure
+from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Backend, Client, Publisher, Sample, Subscription
-from jacaros.ros.errors import CallTimedOut, RosError, ServiceError, ServiceUnavailable
+from jacaros.ros.errors import MessageMismatch, RosError
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.trace import Cause
 
@@ -39,6 +45,20 @@ class RosArtifact(Artifact):
 
     A subclass overrides `open` (not ``init``) and declares its options.
 
+    Options:
+        namespace(N): what stands before topics, as a robot's name does.
+        watch_connection(true): show `connected`; with a number of seconds instead of true, a topic also counts as
+            lost when no message came for so long.
+
+    Properties:
+        connected(Topic): somebody publishes the topic, as far as is known, and the graph can be reached; one for each
+            topic that the artifact listens to, with its absolute name as text.  Only with `watch_connection`.
+
+    Signals:
+        bad_message(Topic, Why): a message was wrong; told for the first, the tenth, the hundredth ... of a kind.  Why
+            is not_finite(What), wrong_frame(Frame), out_of_order(Seconds), clock_jumped(Seconds) or
+            stamp_off(Seconds).
+
     Attributes:
         known_options: options of the class with their readers; those of the parent classes count too.
         robot_in_properties: whether a robot's name is put before property names.
@@ -46,7 +66,7 @@ class RosArtifact(Artifact):
         options: the options it was made with.
     """
 
-    known_options: ClassVar[Mapping[str, Reader]] = {"namespace": text}
+    known_options: ClassVar[Mapping[str, Reader]] = {"namespace": text, "watch_connection": watching}
     robot_in_properties: ClassVar[bool] = False
 
     robot: str = ""
@@ -123,31 +143,139 @@ class RosArtifact(Artifact):
         """
         name = self.robot_topic(topic)
         listener = Listener(name, callback, partial(self._steps.setting.log_error, self.name))
-        made = self._kept(self.ros.subscription(name, type_name, listener, qos))
+        watch = self.options.get("watch_connection", False)
+        if watch is False:
+            made = self._kept(self.ros.subscription(name, type_name, listener, qos))
+        else:
+            made = self._watched(name, type_name, listener, qos, None if watch is True else float(str(watch)))
         self._kept(MissingTopic(self.ros, self.clock, made, type_name, self.log))
         return made
+
+    def _watched(
+        self, name: str, type_name: str, listener: Listener, qos: QoS, expire: float | None
+    ) -> Subscription:
+        """Listen, and show whether the topic is connected."""
+
+        def take(sample: Sample) -> None:
+            connection.hear(sample)
+            listener(sample)
+
+        made = self._kept(self.ros.subscription(name, type_name, take, qos))
+        changed = partial(self.start, self.show_connection, made.topic)
+        connection = self._kept(Connection(self.ros, self.clock, made, changed, expire))
+        return made
+
+    @internal_operation
+    def show_connection(self, topic: str, connected: bool) -> None:
+        """Have the property ``connected(Topic)``, or have it no more."""
+        if not connected:
+            self.remove_property("connected", topic)
+        else:
+            self.define_property("connected", topic)
+
+    def faults_of(self, topic: str) -> Faults:
+        """Count the bad messages of the robot's *topic*, and tell of them by log and signal."""
+        return self._faults(self.ros.resolve(self.robot_topic(topic)))
+
+    def _faults(self, topic: str) -> Faults:
+
+        def tell(why: Structure, text: str) -> None:
+            self.log(text)
+            self.start(self.tell_bad_message, topic, why)
+
+        return Faults(topic, tell)
+
+    @internal_operation
+    def tell_bad_message(self, topic: str, why: object) -> None:
+        """Signal ``bad_message(Topic, Why)``."""
+        self.signal("bad_message", topic, why)
 
     def client(self, service: str, type_name: str) -> Client:
         """Call the service until the artifact is disposed."""
         return self._kept(self.ros.client(service, type_name))
 
-    def reading(self, name: str, policy: ReadingPolicy) -> Reading:
+    def action_client(self, name: str, type_name: str) -> ActionClient:
+        """Send goals to the robot's action *name*, by `act`; they are cancelled when the artifact or the process ends.
+
+        Args:
+            name: below the robot's name, such as ``navigate_to_pose``.
+            type_name: such as ``nav2_msgs/action/NavigateToPose``.
+        """
+        client = self._kept(self.ros.action_client(self.robot_topic(name), type_name))
+        self.at_dispose(self.ros.add_exit_hook(client.close))
+        return client
+
+    def reading(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
         """Let the property *name* follow a sensor by *policy*; ends with the artifact.
 
         The callback of the sensor gives its values to `Reading.take`; an operation that refreshes the
-        property on request calls `refresh`.
+        property on request calls `refresh`.  A property that is not there yet, or no more, is defined by the next
+        values.
+
+        Args:
+            name: of the property.
+            policy: when it is updated.
+            initial: values before the first message, which are shown unless they would have to expire.
         """
+        if initial and policy.expire is None:
+            self.define_property(name, *initial)
+        coming = 0
+        faults: dict[str, Faults] = {}
 
         def deliver(values: Values, cause: Cause | None) -> None:
-            self.start(self.show_reading, name, values, cause=cause)
+            nonlocal coming
+            coming += 1
+            self.start(self.show_reading, name, values, arrived, cause=cause)
 
-        return self._kept(Reading(policy, self.clock, deliver))
+        def arrived() -> None:
+            nonlocal coming
+            coming = 0
+
+        def refuse(number: float, cause: Cause | None) -> None:
+            topic = cause.what if cause is not None else name
+            faults.setdefault(topic, self._faults(topic)).not_finite(name, number)
+
+        def behind() -> bool:
+            return coming > 0 or self.has_untaken(name)
+
+        outlet = Outlet(partial(self.start, self.withdraw_reading, name), refuse, behind)
+        return self._kept(Reading(policy, self.clock, deliver, outlet))
 
     @internal_operation
-    def show_reading(self, name: str, values: object) -> None:
+    def show_reading(self, name: str, values: object, arrived: object) -> None:
         """Give the property *name* new values, on behalf of a sensor."""
         assert isinstance(values, tuple)
-        self.update_property(name, *values)
+        assert callable(arrived)
+        arrived()
+        self._show_values(name, values)
+
+    @internal_operation
+    def withdraw_reading(self, name: str) -> None:
+        """Take the property *name* away: what it says has expired."""
+        if self.has_property(name):
+            self.remove_property(name)
+
+    def _show_values(self, name: str, values: Values) -> None:
+        if self.has_property(name):
+            self.update_property(name, *values)
+        else:
+            self.define_property(name, *values)
+
+    @internal_operation
+    def show_elements(self, name: str, elements: object) -> None:
+        """Have one property *name* for each of some tuples of values, and none of those before; see `view`.
+
+        An element that was shown before gives no event.
+        """
+        assert isinstance(elements, list)
+        wanted = dict.fromkeys(elements)
+        shown = [each.values for each in self.find_properties(name)]
+        for old in shown:
+            if old not in wanted:
+                self.remove_property(name, *old)
+        for new in wanted:
+            if new not in shown:
+                self.define_property(name, *new)
 
     async def newest(self, reading: Reading, missing: str) -> Values:
         """Give the newest values of a sensor to an operation; waits for its first message.
@@ -169,7 +297,7 @@ class RosArtifact(Artifact):
     async def refresh(self, name: str, reading: Reading, missing: str) -> None:
         """Give the property *name* the `newest` values, equal to the old ones or not."""
         await self.newest(reading, missing)
-        self.update_property(name, *reading.passed())
+        self._show_values(name, reading.passed())
 
     def at_dispose(self, closing: Callable[[], None]) -> None:
         """Have *closing* called when the artifact is disposed; the last given is called first."""
@@ -179,19 +307,90 @@ class RosArtifact(Artifact):
         self.at_dispose(connection.close)
         return connection
 
-    async def call(self, client: Client, timeout: float, **fields: object) -> Any:
+    async def call(
+        self, client: Client, timeout: float, /, *, must_succeed: bool = False, **fields: object
+    ) -> Any:
         """Call a service from an operation and give its response; a step boundary.
 
+        Args:
+            client: of the service.
+            timeout: seconds for waiting for the server and for the answer together.
+            must_succeed: take ``success: false`` in the response (as of ``std_srvs/srv/Trigger``) for a failure.
+            fields: of the request.
+
         Raises:
-            OperationFailed: ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or
-                ``service_failed(Name)``.
+            OperationFailed: ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``service_failed(Name)``,
+                ``service_refused(Name,Text)``, or ``wrong_request(Field)`` when the fields do not fit.
         """
-        name = client.name.lstrip("/")
         try:
-            return await self.step(client.call(fields, timeout))
-        except ServiceUnavailable as error:
-            self.fail(str(error), "service_unavailable", Atom(name))
-        except CallTimedOut as error:
-            self.fail(str(error), "service_timeout", timeout)
-        except ServiceError as error:
-            self.fail(str(error), "service_failed", Atom(name))
+            return await self.step(call(client, timeout, fields, must_succeed))
+        except CallFailure as failure:
+            self.fail(str(failure), failure.functor, *failure.arguments)
+        except MessageMismatch as error:
+            self.fail(str(error), "wrong_request", error.field)
+
+    async def act(
+        self,
+        client: ActionClient,
+        goal: Mapping[str, Any],
+        *,
+        timeout: float | None = None,
+        on_feedback: Callable[[Any], None] | None = None,
+        suspend: Suspending = "go_on",
+        pause: Switch | None = None,
+        resume: Switch | None = None,
+    ) -> Any:
+        """Pursue a goal of an action from an operation and give its result; a step boundary.
+
+        When the intention is dropped, the operation's time is up, or the artifact or the process ends, the goal is
+        cancelled; nobody waits for that.
+
+        Args:
+            client: of the action, made by `action_client`.
+            goal: fields of the goal.
+            timeout: seconds for all of it; None: no limit.  A server that is not there, or does not say whether it
+                accepts, is given up after 5 s anyway.
+            on_feedback: takes each feedback message.  An `internal_operation` of this artifact may change properties;
+                another function stands outside of all operations.
+            suspend: what happens while the intention is suspended: ``go_on``; ``cancel``, the goal is cancelled, and
+                sent again at ``.resume``; ``pause``, by *pause* and *resume*.  All but ``go_on`` need
+                ``@operation(pausable=True)``, and the time does not count.
+            pause, resume: pause the goal at its server and let it go on, such as
+                ``lambda: self.pauser.call({"data": True}, 2.0)``.  A goal that cannot be paused is cancelled, and sent
+                again at ``.resume``.
+
+        Raises:
+            OperationFailed: ``rejected``, ``aborted(Code,Text)``, ``canceled``, ``timeout(Seconds)`` or
+                ``server_lost``; ``wrong_goal(Field)`` when the fields do not fit or one is not a number (NaN).
+            InvalidArtifact: the operation is not pausable, or *pause* and *resume* are missing.
+        """
+        self._check_suspending(suspend, pause, resume)
+        missing = missing_number(goal)
+        if missing is not None:
+            self.fail(f"the goal's {missing} is not a number; nothing was sent", "wrong_goal", missing)
+        conduct = Conduct(timeout, self._feedback(on_feedback), suspend, pause, resume)
+        try:
+            return await self.step(Pursuit(client, goal, conduct, self.clock, self.current, self.log).run())
+        except GoalFailed as failed:
+            self.fail(str(failed), failed.functor, *failed.arguments)
+        except MessageMismatch as error:
+            self.fail(str(error), "wrong_goal", error.field)
+
+    def _check_suspending(self, suspend: Suspending, pause: Switch | None, resume: Switch | None) -> None:
+        name = self.current.request.operation
+        if suspend not in ("go_on", "cancel", "pause"):
+            raise InvalidArtifact(f"act(suspend={suspend!r}) in {name}: it is go_on, cancel or pause")
+        if suspend != "go_on" and not self.current.pausable:
+            raise InvalidArtifact(
+                f"act(suspend={suspend!r}) in {name} needs to be told of pauses: write @operation(pausable=True)"
+            )
+        if suspend == "pause" and (pause is None or resume is None):
+            raise InvalidArtifact(
+                f'act(suspend="pause") in {name} needs pause=... and resume=..., which ask the server for it; an action '
+                "itself can only be cancelled"
+            )
+
+    def _feedback(self, on_feedback: Callable[[Any], None] | None) -> Callable[[Any], None] | None:
+        if on_feedback is None or self._steps.interface.own(on_feedback, 1) is None:
+            return on_feedback
+        return partial(self.start, on_feedback)

@@ -15,7 +15,7 @@ class ArtTutorial(RosArtifact):
     A robot's name stands before topic and properties, not before the service: as in the thesis.
 
     Options:
-        mode, rate: see `ReadingPolicy`.
+        mode, rate, expire: see `ReadingPolicy`; `latest_only` is false here, as each message counts.
         service(Name): another name of the service.
         timeout(S): how long an addition may take (10 s).
 
@@ -33,9 +33,8 @@ class ArtTutorial(RosArtifact):
     def open(self) -> None:
         """Define the properties, listen, and look for the service without waiting for it."""
         name = self.robot_property("chatter")
-        self.define_property(name, "")
         self.define_property(self.robot_property("twoIntsSum"), 0)
-        self._chatter = self.reading(name, ReadingPolicy.from_options(self.options))
+        self._chatter = self.reading(name, ReadingPolicy.from_options(self.options, latest_only=False), "")
         self.subscription("chatter", "std_msgs/msg/String", self._hear)
         service = str(self.options.get("service", "/add_two_ints"))
         self._adder = self.client(service, "example_interfaces/srv/AddTwoInts")

@@ -132,7 +132,7 @@ class ArtCmdVelAndOdometry(ArtCmdVel):
     """`ArtCmdVel` that also shows odometry, on demand unless ``mode(verbose)`` is given.
 
     Options:
-        those of `ArtCmdVel`, and mode, rate and dead_band of `ReadingPolicy`.
+        those of `ArtCmdVel`, and those of `ReadingPolicy`.
 
     Properties:
         odom_cmd_vel(X, Y, Z): position in metres; 0, 0, 0 before the first message.
@@ -146,8 +146,7 @@ class ArtCmdVelAndOdometry(ArtCmdVel):
     def open(self) -> None:
         """Define the odometry property too."""
         name = self.robot_property(self.odometry_property)
-        self.define_property(name, 0, 0, 0)
-        self._position = self.reading(name, ReadingPolicy.from_options(self.options, on_demand=True))
+        self._position = self.reading(name, ReadingPolicy.from_options(self.options, on_demand=True), 0, 0, 0)
         super().open()
 
     def on_odometry(self, odometry: Odometry) -> None:

@@ -35,6 +35,7 @@ class WheeledArtifact(RosArtifact):
             default.
         odometry_timeout(S): how long a motion stands and waits for odometry before it fails (5 s).
         command_topic(T), odometry_topic(T): other topics.
+        odometry_frame(F): the only frame in which odometry is believed; that of the first message by default.
 
     Properties:
         moving(State): ``stopped``, ``driving``, ``turning``, ``waiting`` or ``paused``.
@@ -57,6 +58,7 @@ class WheeledArtifact(RosArtifact):
         "odometry_timeout": positive,
         "command_topic": text,
         "odometry_topic": text,
+        "odometry_frame": text,
     }
     robot_in_properties = True
     command_topic: ClassVar[str] = "cmd_vel"
@@ -72,10 +74,12 @@ class WheeledArtifact(RosArtifact):
         self._motions: dict[Motion, str] = {}
         self.define_property(self.robot_property("moving"), Atom("stopped"))
         self.lane = lane_of(self.ros, self.robot_prefix)
-        self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock, lambda values, cause: None)
-        self.odometer = Odometer(self.on_odometry)
+        self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock)
         self._commands = self.publisher(str(self.options.get("command_topic", self.command_topic)), TWIST)
         topic = str(self.options.get("odometry_topic", "odom"))
+        self.odometer = Odometer(
+            self.faults_of(topic), self.on_odometry, str(self.options.get("odometry_frame", ""))
+        )
         self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
         self._over = False
         self.at_dispose(self.ros.add_exit_hook(self._halt_for_good))

@@ -5,7 +5,7 @@ from typing import Any
 
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.setting import Setting
-from jacaros.env.observation import Observation, Observer, Signal
+from jacaros.env.observation import Observation, Observer, Signal, SlowObserver
 from jacaros.env.property import ObservableProperty, PropertyChanges, PropertyStore
 from jacaros.trace import Cause
 
@@ -61,6 +61,10 @@ class Publication:
         if observer in self._observers:
             del self._observers[observer]
             self._show(observer, removed=self.committed())
+
+    def has_untaken(self, name: str) -> bool:
+        """Whether an observer has still to take up what it was told about properties called *name*."""
+        return any(isinstance(each, SlowObserver) and each.has_untaken(name) for each in self._observers)
 
     def close(self) -> None:
         """Remove all observers."""

@@ -259,6 +259,10 @@ class _Task:
     def perceive(self, percepts: list[Percept]) -> None:
         """Nothing: it perceives by its session."""
 
+    def has_untaken(self, name: str) -> bool:
+        """Nothing waits: its session takes everything up at once."""
+        return False
+
     def complete(self, act_id: int, completion: Completion) -> None:
         """Nothing: it acts by its session."""
 

@@ -1,0 +1,341 @@
+"""One goal of an action as one step of a plan: sent, followed, suspended, given up.
+
+What ends it early is one of five reasons; a plan gets them as ``env_failure_reason(R)``:
+
+====================  ==============================================================================================
+R                     what happened
+====================  ==============================================================================================
+rejected              the server refused the goal; the robot has done nothing
+aborted(Code,Text)    the server gave up: the result's ``error_code`` (0 without one), and what the server says of it
+canceled              somebody else cancelled the goal
+timeout(S)            S seconds were too few; the goal is cancelled
+server_lost           nobody offers the action, or nobody does any more: whether the robot goes on is not known
+====================  ==============================================================================================
+"""
+
+import asyncio
+import math
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, Literal, TypeVar
+
+from jacaros.clock import Clock
+from jacaros.env.execution import OperationExecution
+from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
+from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServiceError
+
+T = TypeVar("T")
+
+Suspending = Literal["go_on", "cancel", "pause"]
+"""What becomes of a goal while its intention is suspended: it goes on; it is cancelled, and sent again at ``.resume``; or
+it is paused."""
+
+Switch = Callable[[], Awaitable[object] | None]
+"""Pauses a goal or lets it go on, such as by calling a service; it stands outside of all operations."""
+
+ACCEPTANCE = 5.0
+"""Seconds that a server has for being there and for accepting a goal."""
+
+ENDING = 5.0
+"""Seconds that a server has for answering a request to cancel, and as many for ending the goal after it agreed."""
+
+CODES = ("error_code", "error_code.val")
+"""Fields of results that say why a goal was aborted: of Nav2 and others, and of MoveIt."""
+
+TEXTS = ("error_msg", "error_string", "message")
+"""Fields of results that say it in words."""
+
+
+class GoalFailed(Exception):
+    """A goal did not succeed.
+
+    Attributes:
+        functor, arguments: the failure reason, such as ``aborted(203,"no path")``.
+    """
+
+    def __init__(self, message: str, functor: str, *arguments: object) -> None:
+        super().__init__(message)
+        self.functor, self.arguments = functor, arguments
+
+
+@dataclass(frozen=True, slots=True)
+class Conduct:
+    """How a goal is followed.
+
+    Attributes:
+        timeout: seconds that the goal may take in all; None: no limit.  Time in which it is cancelled or paused because
+            of a suspended intention does not count.
+        on_feedback: takes each feedback message, on the loop.
+        suspend: what a suspended intention means for the goal.
+        pause, resume: pause the goal at its server, and let it go on; for ``suspend="pause"``.
+    """
+
+    timeout: float | None = None
+    on_feedback: Callable[[Any], None] | None = None
+    suspend: Suspending = "go_on"
+    pause: Switch | None = None
+    resume: Switch | None = None
+
+
+class Pursuit:
+    """The life of one goal, from the request of an operation to the result.
+
+    Args:
+        client: of the action.
+        goal: fields of the goal.
+        conduct: how it is followed.
+        clock: measures the times.
+        execution: the operation; it tells of pauses.
+        log: takes a line about trouble that harms nobody.
+    """
+
+    def __init__(
+        self,
+        client: ActionClient,
+        goal: Mapping[str, Any],
+        conduct: Conduct,
+        clock: Clock,
+        execution: OperationExecution,
+        log: Callable[[str], None],
+    ) -> None:
+        self._client, self._goal, self._conduct = client, goal, conduct
+        self._clock, self._execution, self._log = clock, execution, log
+        self._used = self._share = 0.0
+        self._wake: asyncio.Future[None] | None = None
+        if conduct.suspend != "go_on":
+            execution.on_pause(self._on_pause)
+
+    async def run(self) -> Any:
+        """Pursue the goal to its end and give the result message.
+
+        Cancelling this cancels the goal, and waits for nobody.
+
+        Raises:
+            GoalFailed: with one of the reasons of this file.
+        """
+        try:
+            while True:
+                if self._conduct.suspend != "go_on":
+                    await self._execution.resumed()
+                outcome = await self._once()
+                if outcome is not None:
+                    return self._result(outcome)
+        except GoalRejected as error:
+            raise GoalFailed(str(error), "rejected") from None
+        except CallTimedOut as error:
+            raise GoalFailed(str(error), "timeout", _figure(self._share)) from None
+        except ServiceError as error:
+            raise GoalFailed(str(error), "server_lost") from None
+
+    def _on_pause(self) -> None:
+        if self._wake is not None and not self._wake.done():
+            self._wake.set_result(None)
+
+    @property
+    def _paused(self) -> bool:
+        return self._conduct.suspend != "go_on" and self._execution.paused
+
+    async def _once(self) -> Outcome | None:
+        """Send the goal and follow it; None when it was cancelled because the intention was suspended."""
+        handle = await self._send()
+        if handle is None:
+            return None
+        ending = asyncio.ensure_future(handle.outcome())
+        try:
+            return await self._follow(handle, ending)
+        except BaseException:
+            if not ending.done():
+                give_up(handle)
+            raise
+        finally:
+            _forget(ending)
+
+    async def _send(self) -> GoalHandle | None:
+        """Send the goal; None when the intention was suspended before the server accepted it, which cancels it."""
+        conduct = self._conduct
+        began, self._share = self._clock.now(), ACCEPTANCE
+        if conduct.timeout is not None:
+            self._share = min(ACCEPTANCE, conduct.timeout - self._used)
+        sending = asyncio.ensure_future(self._client.send(self._goal, conduct.on_feedback, self._share))
+        try:
+            while not sending.done():
+                if conduct.suspend == "cancel":
+                    await self._first_of(sending, None)
+                    if self._paused and not sending.done():
+                        sending.cancel()  # which cancels the goal, should the server accept it
+                        return None
+                else:
+                    await any_of(self._clock, (sending,), None)
+            self._used += max(0.0, self._clock.now() - began)
+            return sending.result()
+        except asyncio.CancelledError:
+            if sending.done() and not sending.cancelled() and sending.exception() is None:
+                give_up(sending.result())
+            raise
+        finally:
+            _forget(sending)
+
+    async def _follow(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> Outcome | None:
+        timeout = self._conduct.timeout
+        while not ending.done():
+            if self._paused:
+                if self._conduct.suspend == "pause" and await self._switch(self._conduct.pause, "paused"):
+                    await self._rest(ending)
+                elif await self._is_cancelled(handle, ending):
+                    return None
+                continue
+            began = self._clock.now()
+            await self._first_of(ending, None if timeout is None else timeout - self._used)
+            self._used += max(0.0, self._clock.now() - began)
+            if timeout is not None and self._used >= timeout - 1e-6 and not ending.done():
+                text = f"action {self._client.name} did not end within {timeout:g} s"
+                raise GoalFailed(text, "timeout", _figure(timeout))
+        return ending.result()
+
+    async def _rest(self, ending: "asyncio.Future[Outcome]") -> None:
+        """Wait for the end of the pause, or of the goal."""
+        resumed = asyncio.ensure_future(self._execution.resumed())
+        try:
+            await any_of(self._clock, (ending, resumed), None)
+        finally:
+            _forget(resumed)
+        if not ending.done() and not await self._switch(self._conduct.resume, "resumed"):
+            raise GoalFailed(f"the goal of {self._client.name} could not be resumed", "canceled")
+
+    async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> bool:
+        """Cancel the goal for a suspended intention; False when it ends otherwise, or goes on."""
+        try:
+            agreed = await handle.cancel(ENDING)
+        except CallTimedOut as error:
+            self._log(f"{error}; the goal may go on although its intention is suspended")
+            agreed = False
+        if not agreed:
+            await self._go_on(ending)
+            return False
+        await any_of(self._clock, (ending,), ENDING)
+        if not ending.done():
+            raise ServerLost(f"action {self._client.name} agreed to cancel a goal but did not end it")
+        return ending.result().status is GoalStatus.CANCELED
+
+    async def _go_on(self, ending: "asyncio.Future[Outcome]") -> None:
+        """Wait as if nothing had been asked: the server does not cancel."""
+        resumed = asyncio.ensure_future(self._execution.resumed())
+        try:
+            await any_of(self._clock, (ending, resumed), None)
+        finally:
+            _forget(resumed)
+
+    async def _switch(self, switch: Switch | None, what: str) -> bool:
+        """Pause the goal, or let it go on; False when that failed."""
+        assert switch is not None
+        try:
+            waiting = switch()
+            if waiting is not None:
+                await waiting
+        except Exception as error:  # whatever a user's code raises: the robot must not drive on because of it
+            self._log(f"the goal of {self._client.name} could not be {what}: {type(error).__name__}: {error}")
+            return False
+        return True
+
+    async def _first_of(self, future: "asyncio.Future[Any]", seconds: float | None) -> None:
+        """Wait for *future*, for a pause to begin, or for so many seconds."""
+        self._wake = asyncio.get_running_loop().create_future()
+        if self._paused:
+            self._wake.set_result(None)
+        await any_of(self._clock, (future, self._wake), seconds)
+        self._wake = None
+
+    def _result(self, outcome: Outcome) -> Any:
+        if outcome.status is GoalStatus.SUCCEEDED:
+            return outcome.result
+        if outcome.status is GoalStatus.CANCELED:
+            text = outcome.text or f"the goal of {self._client.name} was cancelled by somebody else"
+            raise GoalFailed(text, "canceled")
+        code, text = error_code(outcome.result), outcome.text or error_text(outcome.result)
+        told = f": {text}" if text else ""
+        number = f" with code {code}" if code else ""
+        raise GoalFailed(f"action {self._client.name} was aborted{number}{told}", "aborted", code, text)
+
+
+def error_code(result: Any) -> int:
+    """The number by which a result says what went wrong; 0 without one."""
+    for path in CODES:
+        value: Any = result
+        for name in path.split("."):
+            value = getattr(value, name, None)
+        if isinstance(value, int) and not isinstance(value, bool):
+            return value
+    return 0
+
+
+def error_text(result: Any) -> str:
+    """The words by which a result says what went wrong; empty without any."""
+    for name in TEXTS:
+        value = getattr(result, name, "")
+        if isinstance(value, str) and value:
+            return value
+    return ""
+
+
+def missing_number(fields: object, path: str = "") -> str | None:
+    """Path of the first field of a goal or request that is NaN; None when there is none."""
+    if isinstance(fields, float) and math.isnan(fields):
+        return path
+    if isinstance(fields, Mapping):
+        pairs = [(f"{path}.{name}" if path else str(name), each) for name, each in fields.items()]
+    elif isinstance(fields, list | tuple):
+        pairs = [(f"{path}[{index}]", each) for index, each in enumerate(fields)]
+    else:
+        return None
+    return next((found for where, each in pairs if (found := missing_number(each, where)) is not None), None)
+
+
+_cancelling: set["asyncio.Task[None]"] = set()
+"""Requests to cancel that nobody waits for; the loop itself would forget them."""
+
+
+def give_up(handle: GoalHandle) -> None:
+    """Have a goal cancelled without waiting for it."""
+
+    async def cancel() -> None:
+        with suppress(ServiceError):  # it has ended, or its server has: nobody is left to be told
+            await handle.cancel(ENDING)
+
+    task = asyncio.get_running_loop().create_task(cancel())
+    _cancelling.add(task)
+    task.add_done_callback(_cancelling.discard)
+
+
+async def any_of(clock: Clock, futures: tuple["asyncio.Future[Any]", ...], seconds: float | None) -> None:
+    """Wait until one of *futures* is done, at most *seconds* of the clock; None waits for ever."""
+    over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def wake(done: object = None) -> None:
+        if not over.done():
+            over.set_result(None)
+
+    timer = None if seconds is None else clock.call_later(max(0.0, seconds), wake)
+    for future in futures:
+        future.add_done_callback(wake)
+    try:
+        await over
+    finally:
+        if timer is not None:
+            timer.cancel()
+        for future in futures:
+            future.remove_done_callback(wake)
+
+
+def _forget(future: "asyncio.Future[T]") -> None:
+    """Give up what is still waited for; what was raised meanwhile is nobody's business."""
+    if future.done():
+        if not future.cancelled():
+            future.exception()
+    else:
+        future.cancel()
+
+
+def _figure(seconds: float) -> float | int:
+    """Seconds as programs write them: 5 and not 5.0."""
+    return int(seconds) if seconds == int(seconds) else seconds

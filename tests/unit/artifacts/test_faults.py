@@ -1,0 +1,355 @@
+"""Bad messages: told, not shown, and never acted on; and the connection of topics."""
+
+import math
+from typing import Any
+
+import pytest
+from robot_lab import STANDSTILL, Lab, Watcher, in_lab
+
+from jacaros.artifacts.ros.battery import ArtSimBattery
+from jacaros.artifacts.ros.faults import FAR, SILENCE, Faults
+from jacaros.artifacts.ros.laser import ArtBaseScan
+from jacaros.artifacts.ros.odometry import ArtOdometry
+from jacaros.artifacts.ros.tutorial import ArtTutorial
+from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.env import Atom, Structure
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+
+class Robot:
+    """A robot of which tests make odometry: it moves as it is told, with faults between."""
+
+    def __init__(self, lab: Lab) -> None:
+        self._lab = lab
+        self._publisher = lab.backend.publisher("/odom", ODOMETRY)
+
+    async def say(
+        self, x: float, stamp: float | None = 0.0, frame: str = "odom", **orientation: float
+    ) -> None:
+        """Publish a position; a stamp is told in seconds from now, None is none."""
+        header = {
+            "frame_id": frame,
+            "stamp": 0 if stamp is None else self._lab.clock.now() + stamp,
+        }
+        pose = {"pose": {"position": {"x": x}, "orientation": orientation}}
+        self._publisher.publish(self._publisher.message(header=header, pose=pose))
+        await self._lab.sleep(0.02)
+
+
+def whys(watcher: Watcher) -> list[str]:
+    """The reasons of all signals about bad messages."""
+    assert {name for name, _ in watcher.signals} <= {"bad_message"}
+    assert {arguments[0] for _, arguments in watcher.signals} <= {"/odom"}
+    return [str(arguments[1]).replace('"', "") for _, arguments in watcher.signals]
+
+
+def test_bad_messages_are_told_at_the_first_the_tenth_and_the_hundredth() -> None:
+    told: list[tuple[Structure, str]] = []
+    faults = Faults("/odom", lambda why, text: told.append((why, text)))
+    for number in range(250):
+        faults.not_finite("x", math.nan)
+        if number == 30:
+            faults.add(Structure("wrong_frame", ("map",)), "the frame is map")
+    assert [str(why) for why, _ in told] == [
+        'not_finite("x")',
+        'not_finite("x")',
+        'wrong_frame("map")',
+        'not_finite("x")',
+    ]
+    assert told[0][1] == "/odom: x is nan; the message is dropped"
+    assert told[1][1] == "/odom: x is nan; the message is dropped (10 times by now)"
+    assert faults.total == 251
+    assert faults.counts == {"not_finite": 250, "wrong_frame": 1}
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
+def test_a_number_that_is_none_is_told_and_not_shown(number: float) -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        await robot.say(1)
+        await robot.say(number)
+        await robot.say(2, w=number)
+        await robot.say(3)
+        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (3, 0, 0)]
+        assert all(math.isfinite(each) for values in watcher.values("pose") for each in values)
+        assert whys(watcher) == ["not_finite(pose.pose.position.x)"]
+        assert lab.logged == [f"[a0] /odom: pose.pose.position.x is {number}; the message is dropped"]
+
+    in_lab(body, None)
+
+
+def test_odometry_older_than_the_newest_is_dropped_and_the_same_again_is_no_news() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        await robot.say(1)
+        await robot.say(2)
+        await robot.say(1, stamp=-0.5)
+        await robot.say(2, stamp=-0.04)
+        await robot.say(3)
+        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)]
+        assert whys(watcher) == ["out_of_order(0.48)"]
+
+    in_lab(body, None)
+
+
+def test_a_clock_that_jumped_back_is_believed_after_a_few_messages() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        await robot.say(1)
+        for x in (2, 3, 4, 5):
+            await robot.say(x, stamp=-5)
+        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (4, 0, 0), (5, 0, 0)]
+        assert whys(watcher) == ["out_of_order(4.98)", "clock_jumped(4.94)"]
+
+    in_lab(body, None)
+
+
+def test_stragglers_between_good_messages_are_no_jump() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        for x in range(1, 9):
+            await robot.say(x)
+            await robot.say(-x, stamp=-1)
+        assert watcher.values("odom") == [(x, 0, 0) for x in range(9)]
+
+    in_lab(body, None)
+
+
+def test_a_stamp_far_off_our_clock_is_used_and_told() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        await robot.say(1, stamp=None)
+        await robot.say(2, stamp=-1000)
+        await robot.say(3, stamp=FAR - 1)
+        assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
+        assert whys(watcher) == ["stamp_off(-1000)"]
+        assert "use_sim_time" in lab.logged[0]
+
+    in_lab(body, None)
+
+
+def test_odometry_in_another_frame_is_dropped_until_the_first_source_is_silent() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        await robot.say(1)
+        await robot.say(50, frame="map")
+        await robot.say(2, frame="/odom")
+        await robot.say(3, frame="")
+        assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
+        assert whys(watcher) == ["wrong_frame(map)"]
+        await lab.sleep(SILENCE)
+        await robot.say(50, frame="map")
+        assert watcher.holds("odom") == [(50, 0, 0)]
+
+    in_lab(body, None)
+
+
+def test_a_frame_that_is_asked_for_is_the_only_one() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry, Structure("frame", (Atom("odom"),))))
+        await robot.say(50, frame="map")
+        await lab.sleep(SILENCE)
+        await robot.say(50, frame="map")
+        await robot.say(1, frame="odom")
+        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0)]
+
+    in_lab(body, None)
+
+
+def test_a_scan_without_a_range_and_a_battery_without_a_number_are_told() -> None:
+    async def body(lab: Lab) -> None:
+        scanner = lab.watch(await lab.make(ArtBaseScan))
+        battery = lab.watch(await lab.make(ArtSimBattery, Structure("source", (Atom("robot"),))))
+        scans = lab.backend.publisher("/scan", "sensor_msgs/msg/LaserScan")
+        scans.publish(scans.message(ranges=[1.0, math.inf, 1.0], range_max=math.inf))
+        charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
+        charges.publish(charges.message(percentage=math.nan))
+        await lab.sleep(0.1)
+        assert scanner.values("laserrange") == [(0, 0, 0, 0, 0)]
+        assert [(name, *map(str, told)) for name, told in scanner.signals] == [
+            ("bad_message", "/scan", 'not_finite("laserrange")')
+        ]
+        assert battery.holds("battery") == []
+        assert [(name, *map(str, told)) for name, told in battery.signals] == [
+            ("bad_message", "/battery_state", 'not_finite("percentage")')
+        ]
+
+    in_lab(body, None)
+
+
+def test_a_battery_that_says_nothing_any_more_is_unknown() -> None:
+    async def body(lab: Lab) -> None:
+        options = (Structure("source", (Atom("robot"),)), Structure("expire", (3,)))
+        artifact = await lab.make(ArtSimBattery, *options)
+        watcher = lab.watch(artifact)
+        charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
+        charges.publish(charges.message(percentage=0.8))
+        await lab.sleep(2.9)
+        assert watcher.holds("battery") == [(80,)]
+        await lab.sleep(0.2)
+        assert watcher.holds("battery") == watcher.holds("diagnostics") == []
+        charges.publish(charges.message(percentage=0.8))
+        await lab.sleep(0.1)
+        assert watcher.holds("battery") == [(80,)]
+
+    in_lab(body, None)
+
+
+# Motion.
+
+
+def feed(lab: Lab, until: float, fault: Any) -> None:
+    """Publish odometry of a robot that drives as it is commanded, whose messages *fault* may spoil."""
+    publisher = lab.backend.publisher("/odom", ODOMETRY)
+    speed = x = 0.0
+
+    def drive(sample: Any) -> None:
+        nonlocal speed
+        speed = sample.message.linear.x
+
+    lab.backend.subscription("/cmd_vel", "geometry_msgs/msg/Twist", drive)
+
+    def tick() -> None:
+        nonlocal x
+        x += 0.02 * speed
+        header = {"frame_id": "odom", "stamp": lab.clock.now()}
+        fields = {
+            "header": header,
+            "pose": {"pose": {"position": {"x": x}}},
+            "twist": {"twist": {"linear": {"x": speed}}},
+        }
+        message = publisher.message(**fields)
+        fault(message, lab.clock.elapsed)
+        publisher.publish(message)
+        if lab.clock.elapsed < until:
+            lab.clock.call_later(0.02, tick)
+
+    tick()
+
+
+def test_a_robot_that_loses_its_pose_stops_at_once_and_the_motion_fails_with_a_reason() -> None:
+    def fault(message: Any, now: float) -> None:
+        if now >= 2.0:
+            message.pose.pose.position.x = math.nan
+
+    async def body(lab: Lab) -> None:
+        lab.record()
+        feed(lab, 20, fault)
+        artifact = await lab.make(ArtCmdVel)
+        watcher = lab.watch(artifact)
+        failed = await lab.call(artifact, "moveForward", 5)
+        assert failed.reason == "no_odometry(5)"
+        assert failed.outcome is not None
+        assert "messages were bad" in str(failed.outcome.message)
+        assert any(linear > 0 for _, linear, _ in lab.commands)
+        assert all(command[1:] == STANDSTILL for command in lab.commands if command[0] > 2.1)
+        assert all(math.isfinite(number) for command in lab.commands for number in command)
+        assert "not_finite(pose.pose.position.x)" in whys(watcher)
+
+    in_lab(body, None)
+
+
+def test_a_few_bad_poses_only_slow_a_motion_down() -> None:
+    def fault(message: Any, now: float) -> None:
+        if 2.0 <= now < 2.5:
+            message.pose.pose.orientation.z = math.nan
+
+    async def body(lab: Lab) -> None:
+        feed(lab, 30, fault)
+        artifact = await lab.make(ArtCmdVel)
+        await lab.do(artifact, "moveForward", 2)
+
+    in_lab(body, None)
+
+
+def test_a_pose_from_another_frame_does_not_lead_a_motion_astray() -> None:
+    def fault(message: Any, now: float) -> None:
+        if 1.5 <= now < 1.9:
+            message.header.frame_id = "map"
+            message.pose.pose.position.x += 100.0
+
+    async def body(lab: Lab) -> None:
+        lab.record()
+        feed(lab, 30, fault)
+        artifact = await lab.make(ArtCmdVel)
+        await lab.do(artifact, "moveForward", 2)
+        assert all(linear >= -0.05 for _, linear, _ in lab.commands)
+
+    in_lab(body, None)
+
+
+# Connection.
+
+
+def test_a_topic_is_connected_while_somebody_publishes_it() -> None:
+    async def body(lab: Lab) -> None:
+        watcher = lab.watch(await lab.make(ArtTutorial, "r", Structure("watch_connection", (True,))))
+        assert watcher.holds("connected") == []
+        publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
+        await lab.sleep(1)
+        assert watcher.holds("connected") == [("/r/chatter",)]
+        publisher.close()
+        await lab.sleep(1)
+        assert watcher.holds("connected") == []
+        publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
+        publisher.publish(publisher.message(data="again"))
+        await lab.sleep(0.01)
+        assert watcher.holds("connected") == [("/r/chatter",)]
+        assert watcher.holds("r_chatter") == [("again",)]
+
+    in_lab(body, None)
+
+
+def test_a_topic_is_lost_with_the_graph_and_found_again_with_it() -> None:
+    async def body(lab: Lab) -> None:
+        lab.backend.publisher("/odom", ODOMETRY)
+        watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (True,))))
+        assert watcher.holds("connected") == [("/odom",)]
+        backend: Any = lab.backend
+        backend.set_connected(False)
+        assert watcher.holds("connected") == []
+        backend.set_connected(True)
+        assert watcher.holds("connected") == [("/odom",)]
+
+    in_lab(body, None)
+
+
+def test_a_silent_publisher_is_lost_where_messages_are_expected() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
+        await lab.sleep(1)
+        assert watcher.holds("connected") == []
+        await robot.say(1)
+        assert watcher.holds("connected") == [("/odom",)]
+        await lab.sleep(2.6)
+        assert watcher.holds("connected") == []
+        await robot.say(1)
+        assert watcher.holds("connected") == [("/odom",)]
+
+    in_lab(body, None)
+
+
+def test_without_the_option_nothing_is_said_of_connections_and_a_disposed_artifact_looks_no_more() -> None:
+    async def body(lab: Lab) -> None:
+        lab.backend.publisher("/odom", ODOMETRY)
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        await lab.sleep(1)
+        assert watcher.holds("connected") == []
+        artifact = await lab.make(ArtOdometry, Structure("watch_connection", (True,)))
+        await lab.sleep(1)
+        lab.workspace.dispose_artifact(artifact)
+        backend: Any = lab.backend
+        backend.set_connected(False)
+        await lab.sleep(2)
+        assert [line for line in lab.logged if "connected" in line] == []
+
+    in_lab(body, None)
