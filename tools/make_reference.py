@@ -8,6 +8,7 @@ import inspect
 import math
 import re
 import sys
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -35,6 +36,29 @@ event.
   message of a burst is late at most, never lost.
 * `dead_band(D)`: tell a value only when a number in it differs by more than D from the one told before; a list has one
   figure for each number. Equal values are never told twice.
+* `latest_only(true)`: while an agent has still to take up the value before, nothing is told, and then the newest is: an
+  agent that is slower than its sensor reacts to what is now. So it is by default where a value is a state; `latest_only(false)`
+  tells all.
+* `expire(S)`: the property goes when no message came for S seconds, and comes back with the next one. Then there is none
+  before the first message either.
+
+A value with NaN or an infinite number in it is never told, see [bad messages](#bad-messages).
+"""
+BAD_MESSAGES = """## Bad messages
+
+Robot artifacts do not believe all that they are sent. They tell of a bad message in the log and by the signal
+`bad_message(Topic,Why)`: of the first of a kind, the tenth, the hundredth and so on.
+
+| Why | what is wrong | the message is |
+|---|---|---|
+| `not_finite(What)` | a number is NaN or infinite; What is its field, or the property | dropped |
+| `wrong_frame(Frame)` | it is given in another frame than the messages before, or than the option `frame` wants | dropped |
+| `out_of_order(S)` | its stamp is S seconds older than that of a message before | dropped |
+| `clock_jumped(S)` | all stamps are S seconds older than before: the sender's clock was set back | used |
+| `stamp_off(S)` | its stamp is S seconds (10 or more) off our clock, minus: in the past | used |
+
+A motion stops the robot at once when odometry is no number any more, and fails with `no_odometry(S)` if that lasts. A beam
+of a laser without an echo is no bad message, whatever the driver writes for it.
 """
 LINKS = {
     "ReadingPolicy": "[reading sensors](#reading-sensors)",
@@ -178,6 +202,7 @@ def artifacts() -> Iterator[str]:
         "folder, `jacaros describe NAME` tells the same of its own artifacts.\n"
     )
     yield READING
+    yield BAD_MESSAGES
     yield "## All artifacts for robots\n"
     yield from _documentation(RosArtifact)
     yield "## All artifacts that drive\n"
@@ -225,7 +250,7 @@ def _documentation(artifact_type: type[Artifact]) -> Iterator[str]:
 def _entries(text: str) -> Iterator[str]:
     """The entries of a section: lines that are indented further belong to the entry before."""
     entries: list[str] = []
-    for line in inspect.cleandoc(text).splitlines():
+    for line in textwrap.dedent(text).splitlines():
         if line.startswith(" ") and entries:
             entries[-1] += " " + line.strip()
         else:

@@ -67,7 +67,8 @@ def test_bad_messages_are_told_at_the_first_the_tenth_and_the_hundredth() -> Non
 def test_a_number_that_is_none_is_told_and_not_shown(number: float) -> None:
     async def body(lab: Lab) -> None:
         robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry))
+        artifact = await lab.make(ArtOdometry)
+        watcher = lab.watch(artifact)
         await robot.say(1)
         await robot.say(number)
         await robot.say(2, w=number)
@@ -75,7 +76,9 @@ def test_a_number_that_is_none_is_told_and_not_shown(number: float) -> None:
         assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (3, 0, 0)]
         assert all(math.isfinite(each) for values in watcher.values("pose") for each in values)
         assert whys(watcher) == ["not_finite(pose.pose.position.x)"]
-        assert lab.logged == [f"[a0] /odom: pose.pose.position.x is {number}; the message is dropped"]
+        assert lab.logged == [
+            f"[{artifact.name}] /odom: pose.pose.position.x is {number}; the message is dropped"
+        ]
 
     in_lab(body, None)
 

@@ -172,7 +172,9 @@ def test_another_topic_is_an_option_and_an_unknown_option_is_refused() -> None:
         assert watcher.holds("odom") == [(-1, -1, 0)]
         with pytest.raises(OperationFailed) as refused:
             await lab.make(ArtOdometry, Structure("speed", (1,)))
-        assert "dead_band, expire, frame, latest_only, mode, namespace, rate, topic, watch_connection" in str(refused.value)
+        assert "dead_band, expire, frame, latest_only, mode, namespace, rate, topic, watch_connection" in str(
+            refused.value
+        )
         with pytest.raises(OperationFailed, match="robot 1"):
             await lab.make(ArtOdometry, "robot 1")
         assert lab.logged == []

@@ -8,7 +8,7 @@ R                             what happened
 service_unavailable(Name)     nobody offers the service
 service_timeout(S)            the server is there, but did not answer within S seconds
 service_failed(Name)          the server failed, or the connection to it broke
-service_refused(Name,Text)    it answered ``success: false``, where the operation takes that for a failure
+refused(Text)                 it answered ``success: false``, where the operation takes that for a failure
 ============================  ======================================================================================
 """
 
@@ -61,7 +61,7 @@ async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_s
     if must_succeed and not succeeded(client, response):
         text = next((str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), "")
         told = f": {text}" if text else ""
-        raise CallFailure(f"service {client.name} refused{told}", "service_refused", name, text)
+        raise CallFailure(f"service {client.name} refused{told}", "refused", text)
     return response
 
 

@@ -56,8 +56,8 @@ class RosArtifact(Artifact):
 
     Signals:
         bad_message(Topic, Why): a message was wrong; told for the first, the tenth, the hundredth ... of a kind.  Why
-            is not_finite(What), wrong_frame(Frame), out_of_order(Seconds), clock_jumped(Seconds) or
-            stamp_off(Seconds).
+            is ``not_finite(What)``, ``wrong_frame(Frame)``, ``out_of_order(Seconds)``, ``clock_jumped(Seconds)`` or
+            ``stamp_off(Seconds)``.
 
     Attributes:
         known_options: options of the class with their readers; those of the parent classes count too.
@@ -320,14 +320,14 @@ class RosArtifact(Artifact):
 
         Raises:
             OperationFailed: ``service_unavailable(Name)``, ``service_timeout(Seconds)``, ``service_failed(Name)``,
-                ``service_refused(Name,Text)``, or ``wrong_request(Field)`` when the fields do not fit.
+                ``refused(Text)``, or ``wrong_value(Field)`` when the fields do not fit.
         """
         try:
             return await self.step(call(client, timeout, fields, must_succeed))
         except CallFailure as failure:
             self.fail(str(failure), failure.functor, *failure.arguments)
         except MessageMismatch as error:
-            self.fail(str(error), "wrong_request", error.field)
+            self.fail(str(error), "wrong_value", error.field)
 
     async def act(
         self,
@@ -361,20 +361,20 @@ class RosArtifact(Artifact):
 
         Raises:
             OperationFailed: ``rejected``, ``aborted(Code,Text)``, ``canceled``, ``timeout(Seconds)`` or
-                ``server_lost``; ``wrong_goal(Field)`` when the fields do not fit or one is not a number (NaN).
+                ``server_lost``; ``wrong_value(Field)`` when the fields do not fit or one is not a number (NaN).
             InvalidArtifact: the operation is not pausable, or *pause* and *resume* are missing.
         """
         self._check_suspending(suspend, pause, resume)
         missing = missing_number(goal)
         if missing is not None:
-            self.fail(f"the goal's {missing} is not a number; nothing was sent", "wrong_goal", missing)
+            self.fail(f"the goal's {missing} is not a number; nothing was sent", "wrong_value", missing)
         conduct = Conduct(timeout, self._feedback(on_feedback), suspend, pause, resume)
         try:
             return await self.step(Pursuit(client, goal, conduct, self.clock, self.current, self.log).run())
         except GoalFailed as failed:
             self.fail(str(failed), failed.functor, *failed.arguments)
         except MessageMismatch as error:
-            self.fail(str(error), "wrong_goal", error.field)
+            self.fail(str(error), "wrong_value", error.field)
 
     def _check_suspending(self, suspend: Suspending, pause: Switch | None, resume: Switch | None) -> None:
         name = self.current.request.operation
