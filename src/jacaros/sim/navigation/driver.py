@@ -1,0 +1,149 @@
+"""Driving along a route: pure pursuit for a round robot that can turn on the spot.  Numbers in, a command out."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from jacaros.sim.description import RobotLimits
+from jacaros.sim.motion import clamp
+from jacaros.sim.navigation.placement import Placement, Point, distance
+from jacaros.sim.navigation.planner import Circle, Planner
+from jacaros.sim.navigation.route import Route
+
+TURN_IN_PLACE = 0.8
+"""Tangent of the bearing above which the robot turns on the spot before it drives."""
+_DRIVE_AGAIN = 0.15
+KEEP_OFF = 0.12
+"""Metres that the robot keeps from other robots."""
+_SLOWEST = 0.04
+_LOOK_AHEAD = 0.2
+_LOOK_AHEAD_TIME = 0.4
+_PREDICTED = 0.5
+_SKIN = 0.012
+"""Metres to a wall (beside the radius) below which the robot does not come nearer."""
+
+
+class Command(NamedTuple):
+    """What to tell the wheels: m/s and rad/s."""
+
+    speed: float
+    turn_rate: float
+
+
+STOP = Command(0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How fast a robot drives by itself: m/s, rad/s, m/s2."""
+
+    speed: float
+    turn_rate: float
+    braking: float
+
+    @classmethod
+    def within(cls, limits: RobotLimits, speed: float) -> "Pace":
+        """The pace of a robot with *limits* that should drive no faster than *speed*."""
+        return cls(min(speed, limits.speed), min(1.5, limits.turn_rate), 0.5 * limits.acceleration)
+
+
+class Driver:
+    """Drives one route.
+
+    Args:
+        planner: knows where walls are.
+        pace: how fast to drive.
+    """
+
+    def __init__(self, planner: Planner, pace: Pace) -> None:
+        self.planner, self.pace = planner, pace
+        self._turning = False
+        self._speed = 0.0
+
+    def command(self, pose: Placement, route: Route, others: Sequence[Circle] = ()) -> Command:
+        """The command for now; *route* must know how far the robot is (`Route.advance`)."""
+        here = (pose.x, pose.y)
+        target, ahead = self._target(here, route)
+        forward, left = pose.local(*target)
+        if self._must_turn(forward, left):
+            self._speed = 0.0
+            return Command(0.0, self._turn(forward, left))
+        apart2 = forward * forward + left * left
+        curvature = 2.0 * left / apart2 if apart2 > 1e-6 else 0.0
+        speed = min(self.pace.speed, self._for_end(route), self._for_others(pose, others), 0.1 + ahead)
+        if speed <= 0.0:
+            self._speed = 0.0
+            return STOP
+        if abs(curvature) * speed > self.pace.turn_rate:
+            speed = self.pace.turn_rate / abs(curvature)
+        speed = self._for_walls(pose, speed, curvature)
+        self._speed = speed
+        return Command(speed, clamp(speed * curvature, self.pace.turn_rate))
+
+    def heading(self, pose: Placement, wanted: Placement, tolerance: float) -> Command | None:
+        """The command that turns to the heading of *wanted*; None when it is reached to *tolerance* radians."""
+        forward = pose.cosine * wanted.cosine + pose.sine * wanted.sine
+        left = pose.cosine * wanted.sine - pose.sine * wanted.cosine
+        if forward > 0.0 and abs(left) <= tolerance:
+            return None
+        return Command(0.0, self._turn(forward, left))
+
+    def _target(self, here: Point, route: Route) -> tuple[Point, float]:
+        """The point to drive to, and how far ahead it is: no further than where the straight way is free."""
+        ahead = _LOOK_AHEAD + _LOOK_AHEAD_TIME * self._speed
+        while ahead > 0.06:
+            target = route.point(route.done + ahead)
+            if self.planner.free(here, target):
+                return target, ahead
+            ahead *= 0.6
+        return route.point(route.done + 0.06), 0.06
+
+    def _must_turn(self, forward: float, left: float) -> bool:
+        limit = _DRIVE_AGAIN if self._turning else TURN_IN_PLACE
+        self._turning = forward <= 0.0 or abs(left) > limit * forward
+        return self._turning
+
+    def _turn(self, forward: float, left: float) -> float:
+        length = math.sqrt(forward * forward + left * left)
+        off = 1.5 if forward <= 0.0 or length == 0.0 else abs(left) / length
+        rate = min(self.pace.turn_rate, 2.5 * off + 0.05)
+        return rate if left >= 0.0 else -rate
+
+    def _for_end(self, route: Route) -> float:
+        return max(_SLOWEST, math.sqrt(2.0 * self.pace.braking * max(0.0, route.remaining)) - 0.05)
+
+    def _for_others(self, pose: Placement, others: Sequence[Circle]) -> float:
+        """Slower the nearer another robot is in front; 0 at `KEEP_OFF`."""
+        speed = self.pace.speed
+        for x, y, radius in others:
+            forward, left = pose.local(x, y)
+            reach = radius + self.planner.radius
+            if forward > 0.0 and abs(left) < reach + KEEP_OFF:
+                gap = math.sqrt(forward * forward + left * left) - reach - KEEP_OFF
+                speed = min(speed, max(0.0, 0.8 * gap))
+        return speed
+
+    def _for_walls(self, pose: Placement, speed: float, curvature: float) -> float:
+        """As fast as the next half second does not come too near to a wall."""
+        grid, least = self.planner.grid, self.planner.radius + _SKIN
+        now = grid.clearance_at(pose.x, pose.y)
+        for share in (1.0, 0.5, 0.25):
+            reach = speed * share * _PREDICTED
+            # The middle of the arc to first order: the arc is short.
+            half = 0.5 * reach * reach * curvature
+            x, y = pose.point(reach, half)
+            then = grid.clearance_at(x, y)
+            if then >= least or then >= now:
+                return speed * share
+        return 0.0
+
+
+def in_the_way(route: Route, others: Sequence[Circle], radius: float, ahead: float) -> bool:
+    """Whether one of *others* stands on the next *ahead* metres of a robot's way."""
+    if not others:
+        return False
+    points = route.samples(ahead)
+    return any(
+        distance(point, (x, y)) < radius + other + KEEP_OFF for point in points for x, y, other in others
+    )

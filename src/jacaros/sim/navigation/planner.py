@@ -1,0 +1,184 @@
+"""Planning: from a pose to a goal around walls, and around what else stands there now."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from jacaros.sim.navigation.grid import Grid
+from jacaros.sim.navigation.placement import Point, distance
+from jacaros.sim.navigation.search import cheapest_path
+
+START_OUTSIDE_MAP = 203
+GOAL_OUTSIDE_MAP = 204
+START_OCCUPIED = 205
+GOAL_OCCUPIED = 206
+NO_VALID_PATH = 208
+"""Codes of Nav2's ``ComputePathToPose``; its navigator hands them on as the result of ``NavigateToPose``."""
+
+MARGIN = 0.06
+"""Metres that a planned way keeps from walls at the least, beside the robot's radius."""
+COMFORT = 0.25
+"""Metres from walls beyond which a way is not any better."""
+GOAL_MARGIN = 0.03
+"""A goal may be so near to a wall (metres beside the radius); the last bit is driven slowly."""
+_ESCAPE = 0.5
+_DISLIKE = 3.0
+
+Circle = tuple[float, float, float]
+"""An obstacle: centre and radius, in metres."""
+
+
+class PlanFailure(Exception):
+    """There is no way: one of Nav2's codes, and why in words."""
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code, self.text = code, text
+
+
+class Planner:
+    """Plans for robots of one size on one map.
+
+    Args:
+        grid: the map.
+        radius: of the robot, in metres.
+    """
+
+    def __init__(self, grid: Grid, radius: float) -> None:
+        self.grid, self.radius = grid, radius
+        self.weights = [self._weight(clearance) for clearance in grid.clearance]
+
+    def _weight(self, clearance: float) -> float:
+        room = clearance - self.radius
+        if room < MARGIN:
+            return 0.0
+        if room >= COMFORT:
+            return 1.0
+        nearness = (COMFORT - room) / (COMFORT - MARGIN)
+        return 1.0 + _DISLIKE * nearness * nearness
+
+    def plan(self, start: Point, goal: Point, obstacles: Iterable[Circle] = ()) -> list[Point]:
+        """Find a way as few straight pieces, from *start* to *goal*, both included.
+
+        Raises:
+            PlanFailure: there is none.
+        """
+        weights = self._around(obstacles)
+        start_cell = self._start(start, weights)
+        goal_cell = self._goal(goal, weights)
+        cells = cheapest_path(weights, self.grid.width, start_cell, goal_cell)
+        if cells is None:
+            raise PlanFailure(NO_VALID_PATH, f"there is no way from {_told(start)} to {_told(goal)}")
+        points = [start, *map(self.grid.centre, cells[1:-1] if len(cells) > 2 else cells[1:]), goal]
+        if self.grid.cell(*goal) != goal_cell:
+            points.insert(-1, self.grid.centre(goal_cell))
+        if self.grid.cell(*start) != start_cell:
+            points.insert(1, self.grid.centre(start_cell))
+        return _distinct(self._straighten(points, weights))
+
+    def free(self, a: Point, b: Point) -> bool:
+        """Whether the straight way keeps clear of walls."""
+        return self._line_cost(a, b, self.weights) < math.inf
+
+    def _around(self, obstacles: Iterable[Circle]) -> Sequence[float]:
+        """The weights, with the obstacles stamped in."""
+        weights: Sequence[float] = self.weights
+        for x, y, radius in obstacles:
+            if weights is self.weights:
+                weights = list(self.weights)
+            _stamp(weights, self.grid, x, y, radius + self.radius + MARGIN)  # type: ignore[arg-type]
+        return weights
+
+    def _start(self, start: Point, weights: Sequence[float]) -> int:
+        cell = self.grid.cell(*start)
+        if cell is None:
+            raise PlanFailure(START_OUTSIDE_MAP, f"the robot is outside of the map, at {_told(start)}")
+        free = self._nearest_free(start, weights, _ESCAPE)
+        if free is None:
+            raise PlanFailure(START_OCCUPIED, f"the robot is hemmed in at {_told(start)}")
+        return free
+
+    def _goal(self, goal: Point, weights: Sequence[float]) -> int:
+        if self.grid.cell(*goal) is None:
+            raise PlanFailure(GOAL_OUTSIDE_MAP, f"the goal {_told(goal)} is outside of the map")
+        if self.grid.clearance_at(*goal) < self.radius + GOAL_MARGIN:
+            raise PlanFailure(GOAL_OCCUPIED, f"the goal {_told(goal)} is too near to a wall or inside of one")
+        free = self._nearest_free(goal, weights, MARGIN + 2.0 * self.grid.resolution)
+        if free is None:
+            raise PlanFailure(NO_VALID_PATH, f"something stands at the goal {_told(goal)}")
+        return free
+
+    def _nearest_free(self, point: Point, weights: Sequence[float], reach: float) -> int | None:
+        """The nearest cell, at most *reach* metres away, where the robot may be."""
+        cell = self.grid.cell(*point)
+        assert cell is not None
+        if weights[cell]:
+            return cell
+        steps = math.ceil(reach / self.grid.resolution)
+        best, best_apart = None, reach
+        row, column = divmod(cell, self.grid.width)
+        for other_row in range(max(0, row - steps), min(self.grid.height, row + steps + 1)):
+            for other_column in range(max(0, column - steps), min(self.grid.width, column + steps + 1)):
+                other = other_row * self.grid.width + other_column
+                if weights[other]:
+                    apart = distance(point, self.grid.centre(other))
+                    if apart < best_apart:
+                        best, best_apart = other, apart
+        return best
+
+    def _straighten(self, points: list[Point], weights: Sequence[float]) -> list[Point]:
+        """Leave out points between which the straight way is no worse."""
+        costs = [0.0]
+        for before, after in zip(points, points[1:], strict=False):
+            cost = self._line_cost(before, after, weights)
+            costs.append(costs[-1] + (cost if cost < math.inf else distance(before, after) * (1.0 + _DISLIKE)))
+        kept, here = [points[0]], 0
+        while here < len(points) - 1:
+            there, misses = here + 1, 0
+            for candidate in range(here + 2, len(points)):
+                cost = self._line_cost(points[here], points[candidate], weights)
+                if cost <= costs[candidate] - costs[here] + 1e-9:
+                    there, misses = candidate, 0
+                else:
+                    misses += 1
+                    if misses > 10:
+                        break
+            kept.append(points[there])
+            here = there
+        return kept
+
+    def _line_cost(self, a: Point, b: Point, weights: Sequence[float]) -> float:
+        """What the straight way costs, in metres of plain floor; infinite where it is blocked."""
+        length = distance(a, b)
+        pieces = max(1, math.ceil(length / (0.5 * self.grid.resolution)))
+        dx, dy = (b[0] - a[0]) / pieces, (b[1] - a[1]) / pieces
+        total = 0.0
+        for piece in range(pieces + 1):
+            cell = self.grid.cell(a[0] + piece * dx, a[1] + piece * dy)
+            weight = weights[cell] if cell is not None else 0.0
+            if not weight:
+                return math.inf
+            total += weight
+        return total * length / (pieces + 1)
+
+
+def _stamp(weights: list[float], grid: Grid, x: float, y: float, radius: float) -> None:
+    steps = math.ceil(radius / grid.resolution) + 1
+    column = math.floor((x - grid.x_min) / grid.resolution) + 1
+    row = math.floor((y - grid.y_min) / grid.resolution) + 1
+    for other_row in range(max(0, row - steps), min(grid.height, row + steps + 1)):
+        for other_column in range(max(0, column - steps), min(grid.width, column + steps + 1)):
+            cell = other_row * grid.width + other_column
+            if weights[cell] and distance((x, y), grid.centre(cell)) < radius:
+                weights[cell] = 0.0
+
+
+def _distinct(points: list[Point]) -> list[Point]:
+    kept = points[:1]
+    for point in points[1:]:
+        if distance(kept[-1], point) > 1e-6:
+            kept.append(point)
+    return kept
+
+
+def _told(point: Point) -> str:
+    return f"({point[0]:.2f}, {point[1]:.2f})"
