@@ -130,6 +130,14 @@ class RobotLimits:
 
 
 @dataclass(frozen=True, slots=True)
+class NavigationSettings:
+    """Whether the robot offers navigation and docking, and how fast it drives by itself (m/s)."""
+
+    enabled: bool = True
+    speed: float = 0.4
+
+
+@dataclass(frozen=True, slots=True)
 class RobotDescription:
     """One robot: its name, the namespace of its topics ("" for none), where it starts and how it is made."""
 
@@ -141,6 +149,7 @@ class RobotDescription:
     battery: BatterySettings = BatterySettings()
     odometry: OdometrySettings = OdometrySettings()
     laser: LaserSettings = LaserSettings()
+    navigation: NavigationSettings = NavigationSettings()
 
 
 @dataclass(frozen=True, slots=True)

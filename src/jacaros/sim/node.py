@@ -4,6 +4,9 @@ import math
 
 from jacaros.clock import Clock, Timer
 from jacaros.ros.backend import Backend
+from jacaros.sim.map_server import MapServer
+from jacaros.sim.navigation.grid import Grid
+from jacaros.sim.navigation.robot import RobotNavigation
 from jacaros.sim.robot_node import TICKS_PER_SECOND, RobotNode
 from jacaros.sim.world import World
 from jacaros.sim.world_time import WorldTime
@@ -22,6 +25,9 @@ class SimNode:
         self.world, self.backend, self.clock = world, backend, clock
         self.time = WorldTime(world, clock)
         self.robots: list[RobotNode] = []
+        self.navigation: list[RobotNavigation] = []
+        self._map: MapServer | None = None
+        self._grid: Grid | None = None
         self._timer: Timer | None = None
         self._ticks = 0
 
@@ -33,8 +39,21 @@ class SimNode:
         """
         self.time = WorldTime(self.world, self.clock)
         self.robots = [RobotNode(self.time, robot, self.backend) for robot in self.world.robots.values()]
+        self.navigation = [
+            RobotNavigation(self.time, robot.robot, robot.localisation, self.backend, self.grid)
+            for robot in self.robots
+            if robot.robot.description.navigation.enabled
+        ]
+        prefixes = [robot.prefix for robot in self.robots]
+        self._map = MapServer(self.backend, prefixes, self.grid, self.time.now)
         self._ticks = 0
         self._wait_for_tick()
+
+    def grid(self) -> Grid:
+        """The map of the world, made when it is first wanted."""
+        if self._grid is None:
+            self._grid = Grid(self.world.description)
+        return self._grid
 
     def _wait_for_tick(self) -> None:
         period = 1.0 / TICKS_PER_SECOND
@@ -52,6 +71,8 @@ class SimNode:
         self.time.catch_up()
         for robot in self.robots:
             robot.publish()
+        if self._map is not None:
+            self._map.publish()
 
     def stop(self) -> None:
         """Stop the world where it is; its topics stay."""
@@ -63,6 +84,10 @@ class SimNode:
     def close(self) -> None:
         """Stop the world where it is and leave its topics."""
         self.stop()
+        for navigation in self.navigation:
+            navigation.close()
         for robot in self.robots:
             robot.close()
-        self.robots = []
+        if self._map is not None:
+            self._map.close()
+        self.robots, self.navigation, self._map = [], [], None

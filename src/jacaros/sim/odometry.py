@@ -18,18 +18,22 @@ class Odometry:
 
     Attributes:
         x, y, yaw: the estimated pose (metres, radians).
+        rolled, turned: metres and radians that the wheels have made in all, with their signs.
     """
 
-    __slots__ = ("_draw", "settings", "x", "y", "yaw")
+    __slots__ = ("_draw", "rolled", "settings", "turned", "x", "y", "yaw")
 
     def __init__(self, settings: OdometrySettings, start: Pose, seed: str) -> None:
         self.settings = settings
         self.x, self.y, self.yaw = (0.0, 0.0, 0.0) if settings.from_start else start
+        self.rolled = self.turned = 0.0
         self._draw = random.Random(seed).random
 
     def step(self, distance: float, turn: float) -> None:
         """Take note of *distance* metres and *turn* radians that the wheels made in one step."""
         settings = self.settings
+        self.rolled += distance
+        self.turned += turn
         if settings.noisy:
             way, angle = abs(distance), abs(turn)
             distance += self._error(settings.per_metre, way)

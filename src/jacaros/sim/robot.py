@@ -28,7 +28,7 @@ class Robot:
         x, y, yaw: the true pose (metres, radians); speed, turn_rate: of the base (m/s, rad/s).
         odometry: where it believes to be.  odometer: metres truly driven.
         battery: its battery.  dock: the dock it stands in, or None.
-        touching: names of what it touches: ``wall`` or other robots.
+        touching: names of what it touches: ``wall`` or other robots.  contacts: on which side, by those names.
     """
 
     def __init__(
@@ -43,6 +43,7 @@ class Robot:
         self.battery = Battery(description.battery)
         self.dock: Dock | None = None
         self.touching: frozenset[str] = frozenset()
+        self.contacts: dict[str, str] = {}
         self._silence = math.inf
         self._touched: dict[str, str] = {}
         self._tell = tell
@@ -87,7 +88,7 @@ class Robot:
         self._touched = {}
         if not self.moving:
             if WALL in self.touching:
-                self._touched[WALL] = ""
+                self._touched[WALL] = self.contacts.get(WALL, "")
             self.battery.step(dt, 0.0, 0.0, self.dock is not None)
             return
         self._watch_commands(dt)
@@ -170,6 +171,7 @@ class Robot:
                 else:
                     self._tell(self, "collision", {"with": other, "side": side})
         self.touching = frozenset(self._touched)
+        self.contacts = self._touched
 
     def settle_dock(self, docks: tuple[Dock, ...]) -> None:
         """End of a step: in a dock or not?  Passing through one is not docking."""

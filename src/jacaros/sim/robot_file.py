@@ -14,6 +14,7 @@ Every key may be left out; these are the defaults, but for the errors of odometr
                  noise_per_metre: 0.02, noise_degrees_per_turn: 2, noise_degrees_per_metre: 1}
       laser: {enabled: true, beams_per_turn: 360, field_degrees: 360, range_min: 0.1, range_max: 10,
               noise: 0.01, publish: on demand}    # or always
+      navigation: {enabled: true, speed: 0.4}    # or true, or false
 """
 
 import math
@@ -22,6 +23,7 @@ import re
 from jacaros.sim.description import (
     BatterySettings,
     LaserSettings,
+    NavigationSettings,
     OdometrySettings,
     Pose,
     RobotDescription,
@@ -35,7 +37,9 @@ _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 
 def read_robot(node: Node) -> RobotDescription:
     """Read one robot; what is not said is a TurtleBot at the origin."""
-    entries = node.mapping("name", "namespace", "pose", "radius", "limits", "battery", "odometry", "laser")
+    entries = node.mapping(
+        "name", "namespace", "pose", "radius", "limits", "battery", "odometry", "laser", "navigation"
+    )
     return RobotDescription(
         name=entries["name"].text() if "name" in entries else "turtlebot",
         namespace=_namespace(entries.get("namespace")),
@@ -45,6 +49,7 @@ def read_robot(node: Node) -> RobotDescription:
         battery=_battery(entries.get("battery")),
         odometry=_odometry(entries.get("odometry")),
         laser=_laser(entries.get("laser")),
+        navigation=_navigation(entries.get("navigation")),
     )
 
 
@@ -149,4 +154,14 @@ def _laser(node: Node | None) -> LaserSettings:
         range_max=section.number("range_max", usual.range_max, 0.1),
         noise=section.number("noise", usual.noise, 0.0, 1.0),
         always=publish is not None and publish.choice("on demand", "always") == "always",
+    )
+
+
+def _navigation(node: Node | None) -> NavigationSettings:
+    if node is not None and not isinstance(node.value, dict):
+        return NavigationSettings(enabled=node.truth())
+    usual = NavigationSettings()
+    section = _Section(node, "enabled", "speed")
+    return NavigationSettings(
+        enabled=section.truth("enabled", usual.enabled), speed=section.number("speed", usual.speed, 0.05, 5.0)
     )

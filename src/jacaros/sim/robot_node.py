@@ -1,4 +1,4 @@
-"""One robot of the world as it is seen on a ROS graph: its topics, and nothing else.
+"""One robot of the world as it is seen on a ROS graph: its topics.
 
 =========================================== ============================= ==========================
 topic (below the robot's namespace)         type                          direction and rate
@@ -6,19 +6,22 @@ topic (below the robot's namespace)         type                          direct
 ``/odom``                                   ``nav_msgs/msg/Odometry``     out, 20 Hz
 ``/battery_state``                          ``sensor_msgs/msg/BatteryState`` out, 1 Hz and on changes
 ``/scan``                                   ``sensor_msgs/msg/LaserScan`` out, 5 Hz when subscribed
-``/tf`` (never below a namespace)           ``tf2_msgs/msg/TFMessage``    out, 20 Hz when subscribed
 ``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
 ``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose
 =========================================== ============================= ==========================
+
+Bumpers and the dock are in `jacaros.sim.robot_contacts`, transforms in `jacaros.sim.robot_transforms`, and what the robot
+can be asked to do by itself in `jacaros.sim.navigation`.
 """
 
 from typing import Any
 
-from jacaros.ros.backend import TRANSFORMS, Backend, Publisher, Sample, Subscription
-from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.message import constant, stamp
-from jacaros.ros.qos import QoS
+from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot import Robot
+from jacaros.sim.robot_contacts import RobotContacts
+from jacaros.sim.robot_transforms import RobotTransforms
 from jacaros.sim.trigonometry import sine_cosine
 from jacaros.sim.world_time import WorldTime
 
@@ -39,7 +42,7 @@ class RobotNode:
     def __init__(self, time: WorldTime, robot: Robot, backend: Backend) -> None:
         self.time, self.robot, self.backend = time, robot, backend
         namespace = robot.description.namespace
-        self._prefix = f"/{namespace}" if namespace else ""
+        self.prefix = f"/{namespace}" if namespace else ""
         self._frame_prefix = f"{namespace}/" if namespace else ""
         self._ticks = 0
         self._charging: tuple[bool, bool] | None = None
@@ -47,28 +50,21 @@ class RobotNode:
         self._odometry = self._publisher("/odom", "nav_msgs/msg/Odometry")
         self._battery = self._publisher("/battery_state", "sensor_msgs/msg/BatteryState")
         self._scan = self._publisher("/scan", "sensor_msgs/msg/LaserScan") if self._laser_on else None
-        self._transforms = self._transform_publisher()
+        self.localisation = Localisation(robot)
+        self._transforms = RobotTransforms(time, robot, self.localisation, backend)
+        self._contacts = RobotContacts(time, robot, backend, self.prefix, self._frame_prefix)
         self._subscriptions = self._subscribe()
 
     def _publisher(self, topic: str, type_name: str) -> Publisher:
         # Reliable on purpose: it serves subscriptions that ask for reliable and those that do not.
-        return self.backend.publisher(self._prefix + topic, type_name)
-
-    def _transform_publisher(self) -> Publisher | None:
-        if TRANSFORMS not in self.backend.capabilities:
-            return None
-        # Not `tf_broadcast`, which cannot tell whether anybody listens.
-        try:
-            return self.backend.publisher("/tf", "tf2_msgs/msg/TFMessage", QoS(depth=100))
-        except UnknownInterface:  # tf2_msgs is not everywhere where ROS 2 is
-            return None
+        return self.backend.publisher(self.prefix + topic, type_name)
 
     def _subscribe(self) -> list[Subscription]:
         twist, text = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
         return [
-            self.backend.subscription(self._prefix + "/cmd_vel", twist, self._command),
-            self.backend.subscription(self._prefix + "/cmd_vel_mux/input/navi", twist, self._command),
-            self.backend.subscription(self._prefix + "/cleaning/task", text, self._task),
+            self.backend.subscription(self.prefix + "/cmd_vel", twist, self._command),
+            self.backend.subscription(self.prefix + "/cmd_vel_mux/input/navi", twist, self._command),
+            self.backend.subscription(self.prefix + "/cleaning/task", text, self._task),
         ]
 
     def _command(self, sample: Sample) -> None:
@@ -83,6 +79,8 @@ class RobotNode:
     def publish(self) -> None:
         """Publish what is due at this tick of 20 Hz; the world has caught up."""
         self._publish_odometry()
+        self._transforms.publish()
+        self._contacts.publish(self._ticks)
         battery = self.robot.battery
         charging = (battery.charging, self.robot.dock is not None)
         if self._ticks % _TICKS_PER_BATTERY == 0 or charging != self._charging:
@@ -102,26 +100,17 @@ class RobotNode:
     # messages from keywords, and the world's own steps are cheaper than those would be.
 
     def _publish_odometry(self) -> None:
+        if not self._odometry.subscription_count:
+            return
         robot, odometry = self.robot, self.robot.odometry
-        sine, cosine = sine_cosine(0.5 * odometry.yaw)
-        child = self._frame_prefix + "base_footprint"
-        if self._odometry.subscription_count:
-            message = self._odometry.message()
-            self._head(message.header, "odom")
-            message.child_frame_id = child
-            pose, twist = message.pose.pose, message.twist.twist
-            pose.position.x, pose.position.y = odometry.x, odometry.y
-            pose.orientation.z, pose.orientation.w = sine, cosine
-            twist.linear.x, twist.angular.z = robot.speed, robot.turn_rate
-            self._odometry.publish(message)
-        if self._transforms is not None and self._transforms.subscription_count:
-            moved = self.backend.message("geometry_msgs/msg/TransformStamped")
-            self._head(moved.header, "odom")
-            moved.child_frame_id = child
-            place, rotation = moved.transform.translation, moved.transform.rotation
-            place.x, place.y = odometry.x, odometry.y
-            rotation.z, rotation.w = sine, cosine
-            self._transforms.publish(self._transforms.message(transforms=[moved]))
+        message = self._odometry.message()
+        self._head(message.header, "odom")
+        message.child_frame_id = self._frame_prefix + "base_footprint"
+        pose, twist = message.pose.pose, message.twist.twist
+        pose.position.x, pose.position.y = odometry.x, odometry.y
+        pose.orientation.z, pose.orientation.w = sine_cosine(0.5 * odometry.yaw)
+        twist.linear.x, twist.angular.z = robot.speed, robot.turn_rate
+        self._odometry.publish(message)
 
     def _publish_battery(self) -> None:
         battery = self.robot.battery
@@ -153,6 +142,8 @@ class RobotNode:
         """Leave all topics."""
         for subscription in self._subscriptions:
             subscription.close()
-        for publisher in (self._odometry, self._battery, self._scan, self._transforms):
+        for publisher in (self._odometry, self._battery, self._scan):
             if publisher is not None:
                 publisher.close()
+        self._transforms.close()
+        self._contacts.close()

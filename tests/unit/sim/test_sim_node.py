@@ -167,8 +167,8 @@ def test_transforms_come_only_for_those_who_listen() -> None:
 
     done = in_world("empty", body)
     assert len(done.received) == pytest.approx(20, abs=1)
-    [transform] = done.received[0].transforms
-    assert (transform.header.frame_id, transform.child_frame_id) == ("odom", "base_footprint")
+    frames = [(each.header.frame_id, each.child_frame_id) for each in done.received[0].transforms]
+    assert frames == [("odom", "base_footprint"), ("map", "odom")]
 
 
 def test_two_robots_are_told_apart_by_their_namespaces() -> None:

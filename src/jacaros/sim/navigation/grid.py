@@ -48,7 +48,8 @@ class Grid:
         dx, dy = bx - ax, by - ay
         length2 = dx * dx + dy * dy
         columns = range(
-            max(1, self._column(min(ax, bx) - REACH)), min(self.width - 2, self._column(max(ax, bx) + REACH)) + 1
+            max(1, self._column(min(ax, bx) - REACH)),
+            min(self.width - 2, self._column(max(ax, bx) + REACH)) + 1,
         )
         rows = range(
             max(1, self._row(min(ay, by) - REACH)), min(self.height - 2, self._row(max(ay, by) + REACH)) + 1

@@ -1,18 +1,20 @@
 """Planning: from a pose to a goal around walls, and around what else stands there now."""
 
+import itertools
 import math
 from collections.abc import Iterable, Sequence
 
+from jacaros.sim.navigation.failure import (
+    GOAL_OCCUPIED,
+    GOAL_OUTSIDE_MAP,
+    NO_VALID_PATH,
+    START_OCCUPIED,
+    START_OUTSIDE_MAP,
+    NavigationFailure,
+)
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.placement import Point, distance
 from jacaros.sim.navigation.search import cheapest_path
-
-START_OUTSIDE_MAP = 203
-GOAL_OUTSIDE_MAP = 204
-START_OCCUPIED = 205
-GOAL_OCCUPIED = 206
-NO_VALID_PATH = 208
-"""Codes of Nav2's ``ComputePathToPose``; its navigator hands them on as the result of ``NavigateToPose``."""
 
 MARGIN = 0.06
 """Metres that a planned way keeps from walls at the least, beside the robot's radius."""
@@ -25,14 +27,6 @@ _DISLIKE = 3.0
 
 Circle = tuple[float, float, float]
 """An obstacle: centre and radius, in metres."""
-
-
-class PlanFailure(Exception):
-    """There is no way: one of Nav2's codes, and why in words."""
-
-    def __init__(self, code: int, text: str) -> None:
-        super().__init__(text)
-        self.code, self.text = code, text
 
 
 class Planner:
@@ -60,14 +54,14 @@ class Planner:
         """Find a way as few straight pieces, from *start* to *goal*, both included.
 
         Raises:
-            PlanFailure: there is none.
+            NavigationFailure: there is none.
         """
         weights = self._around(obstacles)
         start_cell = self._start(start, weights)
         goal_cell = self._goal(goal, weights)
         cells = cheapest_path(weights, self.grid.width, start_cell, goal_cell)
         if cells is None:
-            raise PlanFailure(NO_VALID_PATH, f"there is no way from {_told(start)} to {_told(goal)}")
+            raise NavigationFailure(NO_VALID_PATH, f"there is no way from {told(start)} to {told(goal)}")
         points = [start, *map(self.grid.centre, cells[1:-1] if len(cells) > 2 else cells[1:]), goal]
         if self.grid.cell(*goal) != goal_cell:
             points.insert(-1, self.grid.centre(goal_cell))
@@ -91,20 +85,22 @@ class Planner:
     def _start(self, start: Point, weights: Sequence[float]) -> int:
         cell = self.grid.cell(*start)
         if cell is None:
-            raise PlanFailure(START_OUTSIDE_MAP, f"the robot is outside of the map, at {_told(start)}")
+            raise NavigationFailure(START_OUTSIDE_MAP, f"the robot is outside of the map, at {told(start)}")
         free = self._nearest_free(start, weights, _ESCAPE)
         if free is None:
-            raise PlanFailure(START_OCCUPIED, f"the robot is hemmed in at {_told(start)}")
+            raise NavigationFailure(START_OCCUPIED, f"the robot is hemmed in at {told(start)}")
         return free
 
     def _goal(self, goal: Point, weights: Sequence[float]) -> int:
         if self.grid.cell(*goal) is None:
-            raise PlanFailure(GOAL_OUTSIDE_MAP, f"the goal {_told(goal)} is outside of the map")
+            raise NavigationFailure(GOAL_OUTSIDE_MAP, f"the goal {told(goal)} is outside of the map")
         if self.grid.clearance_at(*goal) < self.radius + GOAL_MARGIN:
-            raise PlanFailure(GOAL_OCCUPIED, f"the goal {_told(goal)} is too near to a wall or inside of one")
+            raise NavigationFailure(
+                GOAL_OCCUPIED, f"the goal {told(goal)} is too near to a wall or inside of one"
+            )
         free = self._nearest_free(goal, weights, MARGIN + 2.0 * self.grid.resolution)
         if free is None:
-            raise PlanFailure(NO_VALID_PATH, f"something stands at the goal {_told(goal)}")
+            raise NavigationFailure(NO_VALID_PATH, f"something stands at the goal {told(goal)}")
         return free
 
     def _nearest_free(self, point: Point, weights: Sequence[float], reach: float) -> int | None:
@@ -128,9 +124,11 @@ class Planner:
     def _straighten(self, points: list[Point], weights: Sequence[float]) -> list[Point]:
         """Leave out points between which the straight way is no worse."""
         costs = [0.0]
-        for before, after in zip(points, points[1:], strict=False):
+        for before, after in itertools.pairwise(points):
             cost = self._line_cost(before, after, weights)
-            costs.append(costs[-1] + (cost if cost < math.inf else distance(before, after) * (1.0 + _DISLIKE)))
+            costs.append(
+                costs[-1] + (cost if cost < math.inf else distance(before, after) * (1.0 + _DISLIKE))
+            )
         kept, here = [points[0]], 0
         while here < len(points) - 1:
             there, misses = here + 1, 0
@@ -180,5 +178,5 @@ def _distinct(points: list[Point]) -> list[Point]:
     return kept
 
 
-def _told(point: Point) -> str:
+def told(point: Point) -> str:
     return f"({point[0]:.2f}, {point[1]:.2f})"

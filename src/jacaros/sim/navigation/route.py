@@ -1,5 +1,6 @@
 """A way of straight pieces, and how far along it a robot is."""
 
+import itertools
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -19,7 +20,7 @@ class Route:
     def __init__(self, points: Sequence[Point]) -> None:
         self.points = list(points)
         self._at = [0.0]
-        for before, after in zip(self.points, self.points[1:], strict=False):
+        for before, after in itertools.pairwise(self.points):
             self._at.append(self._at[-1] + distance(before, after))
         self.length = self._at[-1]
         self.done = 0.0
@@ -41,6 +42,8 @@ class Route:
                 break
             (ax, ay), (bx, by) = self.points[index], self.points[index + 1]
             dx, dy = bx - ax, by - ay
+            if dx == 0.0 and dy == 0.0:
+                continue
             share = ((place[0] - ax) * dx + (place[1] - ay) * dy) / (dx * dx + dy * dy)
             share = 0.0 if share < 0.0 else 1.0 if share > 1.0 else share
             apart = distance(place, (ax + share * dx, ay + share * dy))

@@ -1,0 +1,153 @@
+"""Docking actions: Nav2's, those of the TurtleBot 4 (Create 3) with its short motions, and that of the Kobuki."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from jacaros.sim.navigation.docking import FAILED_TO_STAGE, Docking
+from jacaros.sim.navigation.failure import NavigationFailure
+from jacaros.sim.navigation.frames import ODOMETRY, Frames, FrameUnknown, fault_of, fill_in
+from jacaros.sim.navigation.offers import Goal, Offers
+from jacaros.sim.navigation.placement import Placement
+
+_DOCK_AT = 0.5
+"""Metres that a dock may be off the pose that a goal names."""
+
+
+class DockServers:
+    """Offers docking of one robot.
+
+    Args:
+        docking: docks it.
+        frames: its frames.
+        offers: its action servers.
+    """
+
+    def __init__(self, docking: Docking, frames: Frames, offers: Offers) -> None:
+        self.docking, self.frames, self.offers = docking, frames, offers
+        self._navigator = docking.navigator
+        self._backend = offers.backend
+
+    def offer_nav2(self) -> None:
+        """``/dock_robot`` and ``/undock_robot``."""
+        self.offers.action(
+            "/dock_robot",
+            "nav2_msgs/action/DockRobot",
+            self._dock_robot,
+            lambda goal: None if goal.use_dock_id else fault_of(goal.dock_pose),
+        )
+        self.offers.action("/undock_robot", "nav2_msgs/action/UndockRobot", self._undock_robot)
+
+    def offer_create3(self) -> None:
+        """``/dock``, ``/undock``, ``/drive_distance`` and ``/rotate_angle``."""
+        self.offers.action("/dock", "irobot_create_msgs/action/Dock", self._dock)
+        self.offers.action("/undock", "irobot_create_msgs/action/Undock", self._undock)
+        self.offers.action("/drive_distance", "irobot_create_msgs/action/DriveDistance", self._drive_distance)
+        self.offers.action("/rotate_angle", "irobot_create_msgs/action/RotateAngle", self._rotate_angle)
+
+    def offer_kobuki(self) -> None:
+        """``/dock_drive_action``."""
+        self.offers.action("/dock_drive_action", "kobuki_msgs/action/AutoDocking", self._auto_docking)
+
+    async def _dock_robot(self, goal: Goal) -> Mapping[str, Any]:
+        clock = self._navigator.time.clock
+        began = clock.now()
+
+        def tell(state: int) -> None:
+            goal.feedback(state=state, docking_time=clock.now() - began)
+
+        request = goal.request
+        try:
+            if request.use_dock_id:
+                dock = self.docking.dock_called(request.dock_id)
+            else:
+                dock = self.docking.dock_near(await self._place(request.dock_pose), _DOCK_AT)
+            limit = request.max_staging_time or math.inf
+            await self.docking.dock(dock, request.navigate_to_staging_pose, tell, limit)
+        except NavigationFailure as failure:
+            goal.abort(failure.text, success=False, error_code=failure.code)
+        return {"success": True}
+
+    async def _place(self, stamped: Any) -> Placement:
+        self._navigator.pose()
+        try:
+            return await self.frames.on_map(stamped)
+        except FrameUnknown as problem:
+            raise NavigationFailure(FAILED_TO_STAGE, str(problem)) from None
+
+    async def _undock_robot(self, goal: Goal) -> Mapping[str, Any]:
+        try:
+            await self.docking.undock(goal.request.max_undocking_time or math.inf)
+        except NavigationFailure as failure:
+            goal.abort(failure.text, success=False, error_code=failure.code)
+        return {"success": True}
+
+    async def _dock(self, goal: Goal) -> Mapping[str, Any]:
+        dock = self.docking.visible_dock()
+        goal.feedback(sees_dock=dock is not None)
+        if dock is None:
+            goal.abort("no dock in sight", is_docked=False)
+        try:
+            await self.docking.dock(dock, True, lambda state: goal.feedback(sees_dock=True))
+        except NavigationFailure as failure:
+            goal.abort(failure.text, is_docked=self.docking.docked)
+        return {"is_docked": self.docking.docked}
+
+    async def _undock(self, goal: Goal) -> Mapping[str, Any]:
+        was_docked = self.docking.docked
+        try:
+            await self.docking.undock()
+        except NavigationFailure as failure:
+            goal.abort(failure.text, is_docked=self.docking.docked)
+        if was_docked:
+            await self.docking.turn_away()
+        return {"is_docked": self.docking.docked}
+
+    async def _auto_docking(self, goal: Goal) -> Mapping[str, Any]:
+        dock = self.docking.visible_dock()
+        if dock is None:
+            goal.abort("no dock in sight", text="no dock in sight")
+        try:
+            await self.docking.dock(
+                dock, True, lambda state: goal.feedback(state=_KOBUKI.get(state, "SCAN"), text=dock.name)
+            )
+        except NavigationFailure as failure:
+            goal.abort(failure.text, text=failure.text)
+        return {"text": f"docked in {dock.name}"}
+
+    async def _drive_distance(self, goal: Goal) -> Mapping[str, Any]:
+        request = goal.request
+        speed = min(max(request.max_translation_speed, 0.02), self._navigator.robot.description.limits.speed)
+        with self._navigator.wheels.held() as hold:
+            made = await self._navigator.straight(
+                hold, request.distance, speed, lambda left: goal.feedback(remaining_travel_distance=left)
+            )
+        pose = self._pose()
+        if abs(made) < abs(request.distance) - 0.02:
+            goal.abort(f"something is in the way after {abs(made):.2f} m", pose=pose)
+        return {"pose": pose}
+
+    async def _rotate_angle(self, goal: Goal) -> Mapping[str, Any]:
+        request = goal.request
+        rate = min(max(request.max_rotation_speed, 0.05), self._navigator.robot.description.limits.turn_rate)
+        with self._navigator.wheels.held() as hold:
+            made = await self._navigator.rotate(
+                hold, request.angle, rate, lambda left: goal.feedback(remaining_angle_travel=left)
+            )
+        pose = self._pose()
+        if abs(made) < abs(request.angle) - 0.05:
+            goal.abort(f"the robot does not turn any further after {abs(made):.2f} rad", pose=pose)
+        return {"pose": pose}
+
+    def _pose(self) -> Any:
+        odometry = self._navigator.robot.odometry
+        return fill_in(
+            self._backend.message("geometry_msgs/msg/PoseStamped"),
+            Placement.at(odometry.x, odometry.y, odometry.yaw),
+            self.frames.prefix + ODOMETRY,
+            self._navigator.time.now(),
+        )
+
+
+_KOBUKI = {1: "GET_STREAM", 2: "SCAN", 3: "ALIGNED", 4: "DOCKED_IN"}
+"""States of the Kobuki's docking that are nearest to Nav2's."""

@@ -1,0 +1,164 @@
+"""Driving into docks and out of them."""
+
+import math
+from collections.abc import Callable
+
+from jacaros.sim.description import Dock
+from jacaros.sim.navigation.driver import STOP
+from jacaros.sim.navigation.failure import NavigationFailure
+from jacaros.sim.navigation.navigator import Navigator
+from jacaros.sim.navigation.placement import Placement, distance
+from jacaros.sim.navigation.planner import GOAL_MARGIN
+from jacaros.sim.navigation.sight import hidden
+from jacaros.sim.navigation.trip import go
+from jacaros.sim.navigation.wheels import PERIOD
+
+STAGING = 0.5
+"""Metres before the dock where the robot lines up."""
+DOCK_NOT_IN_DB, DOCK_NOT_VALID, FAILED_TO_STAGE, FAILED_TO_CONTROL, FAILED_TO_CHARGE = 901, 902, 903, 905, 906
+DOCKING_TIMEOUT = 907
+"""Error codes of Nav2's ``DockRobot`` and ``UndockRobot``."""
+NAV_TO_STAGING_POSE, INITIAL_PERCEPTION, CONTROLLING, WAIT_FOR_CHARGE = 1, 2, 3, 4
+"""States of its feedback."""
+SEEN_FROM = 2.0
+"""Metres from which a robot sees a dock."""
+_CHARGES_WITHIN = 2.0
+_UNDOCKED = 0.12
+_BACK_SPEED = 0.2
+
+TellState = Callable[[int], None]
+
+
+class Docking:
+    """Docks and undocks one robot.
+
+    Args:
+        navigator: drives it.
+    """
+
+    def __init__(self, navigator: Navigator) -> None:
+        self.navigator = navigator
+
+    @property
+    def docked(self) -> bool:
+        """Whether the charging contacts touch a dock."""
+        self.navigator.time.catch_up()
+        return self.navigator.robot.dock is not None
+
+    def dock_called(self, name: str) -> Dock:
+        """The dock of that name.
+
+        Raises:
+            NavigationFailure: there is none.
+        """
+        docks = self.navigator.docks()
+        for dock in docks:
+            if dock.name == name:
+                return dock
+        known = ", ".join(dock.name for dock in docks) or "none"
+        raise NavigationFailure(DOCK_NOT_IN_DB, f"there is no dock '{name}'; the docks are: {known}")
+
+    def dock_near(self, place: Placement, within: float) -> Dock:
+        """The nearest dock, at most *within* metres from a place.
+
+        Raises:
+            NavigationFailure: there is none.
+        """
+
+        def apart(dock: Dock) -> float:
+            return distance((place.x, place.y), (dock.pose.x, dock.pose.y))
+
+        near = [dock for dock in self.navigator.docks() if apart(dock) <= within]
+        if not near:
+            raise NavigationFailure(DOCK_NOT_VALID, f"no dock stands at ({place.x:.2f}, {place.y:.2f})")
+        return min(near, key=apart)
+
+    def visible_dock(self) -> Dock | None:
+        """The nearest dock that the robot sees from where it is."""
+        self.navigator.time.catch_up()
+        robot, seen = self.navigator.robot, []
+        for dock in self.navigator.docks():
+            apart = distance((robot.x, robot.y), (dock.pose.x, dock.pose.y))
+            if apart <= SEEN_FROM and not hidden(
+                self.navigator.time.world.description.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
+            ):
+                seen.append((apart, dock))
+        return min(seen, key=lambda pair: pair[0])[1] if seen else None
+
+    async def dock(self, dock: Dock, stage: bool, tell: TellState, limit: float = math.inf) -> None:
+        """Drive to before the dock (with *stage*, in at most *limit* seconds), into it, and wait for current.
+
+        Raises:
+            NavigationFailure: with the codes of this file.
+            Overtaken: another goal has the wheels.
+        """
+        robot = self.navigator.robot
+        if self.docked and robot.dock is dock:
+            return
+        if stage:
+            tell(NAV_TO_STAGING_POSE)
+            await self._part(FAILED_TO_STAGE, self._staging_pose(dock), limit)
+        tell(INITIAL_PERCEPTION)
+        tell(CONTROLLING)
+        await self._part(FAILED_TO_CONTROL, self._berth(dock))
+        tell(WAIT_FOR_CHARGE)
+        with self.navigator.wheels.held() as hold:
+            for _ in range(round(_CHARGES_WITHIN / PERIOD)):
+                if self.docked:
+                    return
+                await hold.drive(STOP)
+        raise NavigationFailure(FAILED_TO_CHARGE, f"dock '{dock.name}' gives no current")
+
+    async def undock(self, limit: float = math.inf) -> None:
+        """Leave the dock, backwards if there is room, else forwards, in at most *limit* seconds.
+
+        Raises:
+            NavigationFailure: there is no room.
+            Overtaken: another goal has the wheels.
+        """
+        dock = self.navigator.robot.dock
+        if not self.docked or dock is None:
+            return
+        clock = self.navigator.time.clock
+        over = clock.now() + limit
+        with self.navigator.wheels.held() as hold:
+            for sign in (-1.0, 1.0):
+                await self.navigator.straight(hold, sign * STAGING, _BACK_SPEED, limit=over - clock.now())
+                pose = self.navigator.pose()
+                if distance((pose.x, pose.y), (dock.pose.x, dock.pose.y)) > dock.radius + _UNDOCKED:
+                    return
+        if clock.now() >= over:
+            raise NavigationFailure(DOCKING_TIMEOUT, f"not out of dock '{dock.name}' after {limit:g} s")
+        raise NavigationFailure(FAILED_TO_CONTROL, f"there is no room to leave dock '{dock.name}'")
+
+    async def turn_away(self) -> None:
+        """Turn round, as a Create 3 does at the end of undocking."""
+        with self.navigator.wheels.held() as hold:
+            await self.navigator.rotate(hold, math.pi, 1.0)
+
+    async def _part(self, code: int, place: Placement | None, limit: float = math.inf) -> None:
+        if place is None:
+            return
+        try:
+            await go(self.navigator, [place], lambda progress: None, limit)
+        except NavigationFailure as failure:
+            raise NavigationFailure(code, failure.text) from None
+
+    def _staging_pose(self, dock: Dock) -> Placement | None:
+        """Before the dock, looking at it; None where there is no room for that."""
+        berth = Placement.at(*dock.pose)
+        place = Placement(*berth.point(-STAGING, 0.0), berth.cosine, berth.sine)
+        return place if self._room(place) else None
+
+    def _berth(self, dock: Dock) -> Placement:
+        """Where to stand in the dock: as near to its middle as walls allow."""
+        berth = Placement.at(*dock.pose)
+        for step in range(math.floor(0.8 * dock.radius / 0.02) + 1):
+            place = Placement(*berth.point(-0.02 * step, 0.0), berth.cosine, berth.sine)
+            if self._room(place):
+                return place
+        return berth
+
+    def _room(self, place: Placement) -> bool:
+        planner = self.navigator.planner
+        return planner.grid.clearance_at(place.x, place.y) >= planner.radius + GOAL_MARGIN

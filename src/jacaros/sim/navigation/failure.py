@@ -1,0 +1,27 @@
+"""Why a robot did not get where it should, in Nav2's numbers."""
+
+FAILED_TO_MAKE_PROGRESS = 105
+"""Nav2's ``FollowPath``: the robot does not get any further."""
+START_OUTSIDE_MAP = 203
+GOAL_OUTSIDE_MAP = 204
+START_OCCUPIED = 205
+GOAL_OCCUPIED = 206
+NO_VALID_PATH = 208
+"""203 to 208 are codes of Nav2's ``ComputePathToPose``; Nav2's navigator hands the codes of its parts on as its own."""
+TF_ERROR = 9002
+TIMEOUT = 9003
+"""Nav2's ``NavigateToPose``; ``NavigateThroughPoses`` has the same ones plus 100."""
+THROUGH_POSES = 100
+
+
+class NavigationFailure(Exception):
+    """The goal cannot be reached.
+
+    Attributes:
+        code: one of the numbers above.
+        text: why, in words.
+    """
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code, self.text = code, text

@@ -1,0 +1,90 @@
+"""The frames of one robot: their names, and goals given in any of them.
+
+The tree is that of REP 105: ``map``, ``odom``, ``base_footprint``, ``base_link``, ``base_scan``.  Frames of a robot with
+a namespace have it in front (``robot_1/odom``), and its ``robot_1/map`` lies on the ``map`` that all robots share.
+"""
+
+import math
+from typing import Any
+
+from jacaros.ros.backend import Backend
+from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
+from jacaros.ros.message import stamp
+from jacaros.sim.navigation.localisation import Localisation
+from jacaros.sim.navigation.placement import Placement
+
+MAP, ODOMETRY, FOOTPRINT, BASE, SCAN = "map", "odom", "base_footprint", "base_link", "base_scan"
+_PATIENCE = 1.0
+
+
+class FrameUnknown(Exception):
+    """A pose is given in a frame that tf does not know."""
+
+
+class Frames:
+    """The frames of one robot.
+
+    Args:
+        backend: the graph, whose tf knows other frames.
+        namespace: of the robot, or "".
+        localisation: where it believes to be.
+    """
+
+    def __init__(self, backend: Backend, namespace: str, localisation: Localisation) -> None:
+        self._backend = backend
+        self.prefix = f"{namespace}/" if namespace else ""
+        self.localisation = localisation
+
+    async def on_map(self, stamped: Any) -> Placement:
+        """A ``geometry_msgs/msg/PoseStamped`` as a place on the map; its stamp does not count, as in Nav2's planner.
+
+        Raises:
+            FrameUnknown: its frame is not known.
+        """
+        pose = pose_of(stamped.pose)
+        frame = stamped.header.frame_id.strip("/")
+        own = frame.removeprefix(self.prefix)
+        if own == MAP:
+            return pose
+        if own == ODOMETRY:
+            return self.localisation.map_to_odom.then(pose)
+        if own in (FOOTPRINT, BASE, SCAN):
+            return self.localisation.pose().then(pose)
+        return (await self._from_tf(frame)).then(pose)
+
+    async def _from_tf(self, frame: str) -> Placement:
+        if not frame:
+            raise FrameUnknown(f"the pose names no frame; write '{MAP}' into header.frame_id")
+        try:
+            found = await self._backend.tf_wait(MAP, frame, timeout=_PATIENCE)
+        except (TransformUnavailable, CapabilityMissing) as problem:
+            raise FrameUnknown(f"frame '{frame}' is not known: {problem}") from None
+        x, y, _ = found.translation
+        return Placement.from_quaternion(x, y, found.rotation)
+
+
+def pose_of(pose: Any) -> Placement:
+    """A ``geometry_msgs/msg/Pose`` in the plane."""
+    place, rotation = pose.position, pose.orientation
+    return Placement.from_quaternion(place.x, place.y, (rotation.x, rotation.y, rotation.z, rotation.w))
+
+
+def fault_of(stamped: Any) -> str | None:
+    """What is wrong with a ``geometry_msgs/msg/PoseStamped`` as a goal, or None."""
+    place, rotation = stamped.pose.position, stamped.pose.orientation
+    turn = (rotation.x, rotation.y, rotation.z, rotation.w)
+    if not all(math.isfinite(value) for value in (place.x, place.y, *turn)):
+        return "the goal pose has numbers that are not finite"
+    if sum(value * value for value in turn) < 1e-6:
+        return "the orientation of the goal is no rotation: all of it is 0; write w: 1 for straight ahead"
+    return None
+
+
+def fill_in(stamped: Any, place: Placement, frame: str, time: float) -> Any:
+    """Write a place into a ``geometry_msgs/msg/PoseStamped``; gives the message."""
+    stamp(stamped.header.stamp, time)
+    stamped.header.frame_id = frame
+    pose = stamped.pose
+    pose.position.x, pose.position.y = place.x, place.y
+    pose.orientation.z, pose.orientation.w = place.quaternion()
+    return stamped

@@ -1,0 +1,181 @@
+"""Nav2's navigation actions and move_base's, all by the same navigator.
+
+Names, fields and error codes are those of Nav2 (Jazzy; ``error_msg`` of Kilted) and of ROS 1's move_base.
+"""
+
+import asyncio
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jacaros.ros.backend import Backend, Sample, Subscription
+from jacaros.sim.navigation.failure import TF_ERROR, THROUGH_POSES, TIMEOUT, NavigationFailure
+from jacaros.sim.navigation.frames import MAP, Frames, FrameUnknown, fault_of, fill_in
+from jacaros.sim.navigation.navigator import Navigator
+from jacaros.sim.navigation.offers import Goal, Offers
+from jacaros.sim.navigation.placement import Placement
+from jacaros.sim.navigation.trip import Progress, go
+from jacaros.sim.navigation.wheels import Overtaken
+
+POSE = "geometry_msgs/msg/PoseStamped"
+NO_VALID_WAYPOINTS = 602
+
+
+class NavigationServers:
+    """Offers navigation of one robot.
+
+    Args:
+        navigator: drives it.
+        frames: its frames.
+        offers: its action servers.
+    """
+
+    def __init__(self, navigator: Navigator, frames: Frames, offers: Offers) -> None:
+        self.navigator, self.frames, self.offers = navigator, frames, offers
+        self._backend: Backend = offers.backend
+        self._subscriptions: list[Subscription] = []
+        self._simple: asyncio.Task[None] | None = None
+
+    def offer_nav2(self) -> None:
+        """``/navigate_to_pose``, ``/navigate_through_poses``, ``/follow_waypoints`` and the topic ``/goal_pose``."""
+        self.offers.action(
+            "/navigate_to_pose",
+            "nav2_msgs/action/NavigateToPose",
+            self._to_pose,
+            lambda goal: fault_of(goal.pose),
+        )
+        self.offers.action(
+            "/navigate_through_poses",
+            "nav2_msgs/action/NavigateThroughPoses",
+            self._through_poses,
+            _poses_fault,
+        )
+        self.offers.action(
+            "/follow_waypoints", "nav2_msgs/action/FollowWaypoints", self._waypoints, _poses_fault
+        )
+        self._hear("/goal_pose")
+
+    def offer_move_base(self) -> None:
+        """``/move_base`` and the topic ``/move_base_simple/goal``."""
+        self.offers.action(
+            "/move_base",
+            "move_base_msgs/action/MoveBase",
+            self._move_base,
+            lambda goal: fault_of(goal.target_pose),
+        )
+        self._hear("/move_base_simple/goal")
+
+    def close(self) -> None:
+        """Leave the topics; the actions are closed with their offers."""
+        for subscription in self._subscriptions:
+            subscription.close()
+        if self._simple is not None:
+            self._simple.cancel()
+
+    def _hear(self, topic: str) -> None:
+        name = self.offers.prefix + topic
+        self._subscriptions.append(self._backend.subscription(name, POSE, self._simple_goal))
+
+    async def _to_pose(self, goal: Goal) -> Mapping[str, Any]:
+        await self._go(goal, [goal.request.pose], lambda progress: goal.feedback(**self._feedback(progress)))
+        return {}
+
+    async def _through_poses(self, goal: Goal) -> Mapping[str, Any]:
+        def tell(progress: Progress) -> None:
+            goal.feedback(**self._feedback(progress), number_of_poses_remaining=progress.poses_left)
+
+        await self._go(goal, _poses(goal.request), tell, THROUGH_POSES)
+        return {}
+
+    async def _move_base(self, goal: Goal) -> Mapping[str, Any]:
+        def tell(progress: Progress) -> None:
+            goal.feedback(base_position=self._stamped(progress.pose))
+
+        await self._go(goal, [goal.request.target_pose], tell)
+        return {}
+
+    async def _waypoints(self, goal: Goal) -> Mapping[str, Any]:
+        """Stop at each waypoint; one that cannot be reached is missed, and the next one tried."""
+        poses = _poses(goal.request)
+        if not poses:
+            goal.abort("there are no waypoints", error_code=NO_VALID_WAYPOINTS)
+        missed = []
+        for turn in range(goal.request.number_of_loops + 1):
+            for index in range(goal.request.goal_index if turn == 0 else 0, len(poses)):
+                goal.feedback(current_waypoint=index)
+                try:
+                    await self._drive([poses[index]], lambda progress: None)
+                except NavigationFailure as failure:
+                    missed.append(self._missed(index, poses[index], failure))
+        return {"missed_waypoints": missed}
+
+    def _missed(self, index: int, pose: Any, failure: NavigationFailure) -> Any:
+        type_name = "nav2_msgs/msg/MissedWaypoint"
+        fields = {"index": index, "goal": pose, "error_code": failure.code, "error_msg": failure.text}
+        known = self._backend.fields(type_name)
+        return self._backend.message(
+            type_name, **{name: value for name, value in fields.items() if name in known}
+        )
+
+    async def _go(
+        self, goal: Goal, poses: list[Any], tell: Callable[[Progress], None], shift: int = 0
+    ) -> None:
+        try:
+            await self._drive(poses, tell)
+        except NavigationFailure as failure:
+            code = failure.code + (shift if failure.code in (TF_ERROR, TIMEOUT) else 0)
+            goal.abort(failure.text, error_code=code)
+
+    async def _drive(self, poses: list[Any], tell: Callable[[Progress], None]) -> None:
+        self.navigator.pose()  # localises
+        try:
+            places = [await self.frames.on_map(pose) for pose in poses]
+        except FrameUnknown as problem:
+            raise NavigationFailure(TF_ERROR, str(problem)) from None
+        if places:
+            await go(self.navigator, places, tell)
+
+    def _stamped(self, place: Placement) -> Any:
+        return fill_in(
+            self._backend.message(POSE), place, self.frames.prefix + MAP, self.navigator.time.now()
+        )
+
+    def _feedback(self, progress: Progress) -> dict[str, Any]:
+        speed = self.navigator.pace.speed
+        return {
+            "current_pose": self._stamped(progress.pose),
+            "navigation_time": progress.time,
+            "estimated_time_remaining": progress.remaining / speed,
+            "number_of_recoveries": progress.recoveries,
+            "distance_remaining": progress.remaining,
+        }
+
+    def _simple_goal(self, sample: Sample) -> None:
+        """A goal without an action: nobody is told how it goes."""
+        if fault_of(sample.message) is not None:
+            self._backend.rosout("error", f"goal on {sample.topic}: {fault_of(sample.message)}")
+            return
+        if self._simple is not None:
+            self._simple.cancel()
+        self._simple = asyncio.get_running_loop().create_task(self._drive_simply(sample.message))
+
+    async def _drive_simply(self, pose: Any) -> None:
+        try:
+            await self._drive([pose], lambda progress: None)
+        except NavigationFailure as failure:
+            self._backend.rosout("error", f"the goal pose is not reached: {failure.text}")
+        except Overtaken:
+            return
+
+
+def _poses(request: Any) -> list[Any]:
+    """The poses of a goal: a plain list, or ``nav_msgs/msg/Goals`` since Kilted."""
+    return list(getattr(request.poses, "goals", request.poses))
+
+
+def _poses_fault(request: Any) -> str | None:
+    poses = _poses(request)
+    for index, pose in enumerate(poses):
+        fault = fault_of(pose)
+        if fault is not None:
+            return f"pose {index}: {fault}"
+    return None

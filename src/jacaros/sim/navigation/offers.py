@@ -1,0 +1,81 @@
+"""Offering actions of a robot: those whose types are known here, with results that fit whatever release is installed."""
+
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any, NoReturn
+
+from jacaros.ros.action import Abort, Accept, ActionPolicy, ActionServer, ServerGoal
+from jacaros.ros.backend import ACTIONS, Backend
+from jacaros.ros.errors import RosError, UnknownInterface
+from jacaros.ros.names import result_type
+from jacaros.sim.navigation.wheels import OVERTAKEN, Overtaken
+
+Execute = Callable[["Goal"], Awaitable[Mapping[str, Any]]]
+
+
+class Goal:
+    """A goal of one of the robot's actions, under way.
+
+    Attributes:
+        request: the goal message.
+        feedback: tells the client how far it is, by fields.
+    """
+
+    def __init__(self, backend: Backend, type_name: str, served: ServerGoal) -> None:
+        self._backend, self._type_name = backend, type_name
+        self.request = served.request
+        self.feedback = served.feedback
+
+    def abort(self, why: str, /, **result: Any) -> NoReturn:
+        """End the goal as aborted: why, in words, and fields of the result."""
+        raise Abort(why, self.result({**result, "error_msg": why}))
+
+    def result(self, fields: Mapping[str, Any]) -> dict[str, Any]:
+        """Leave out what the installed release of the action does not have (``error_msg`` came with Kilted)."""
+        known = self._backend.fields(result_type(self._type_name))
+        return {name: value for name, value in fields.items() if name in known}
+
+
+class Offers:
+    """The action servers of one robot.
+
+    Args:
+        backend: the graph.
+        prefix: of the robot's names, "" or "/robot_1".
+    """
+
+    def __init__(self, backend: Backend, prefix: str) -> None:
+        self.backend, self.prefix = backend, prefix
+        self._servers: list[ActionServer] = []
+
+    def action(self, name: str, type_name: str, execute: Execute, accept: Accept | None = None) -> None:
+        """Offer an action whose newer goals take over from older ones; where its type is unknown, say so and go on."""
+        if ACTIONS not in self.backend.capabilities:
+            return
+
+        async def carry_out(served: ServerGoal) -> Any:
+            goal = Goal(self.backend, type_name, served)
+            try:
+                return goal.result(await execute(goal))
+            except Overtaken:
+                goal.abort(OVERTAKEN)
+
+        policy = ActionPolicy(accept=accept, preempt=True)
+        try:
+            server = self.backend.action_server(self.prefix + name, type_name, carry_out, policy)
+        except UnknownInterface:
+            self.left_out(f"action {self.prefix}{name}", type_name)
+            return
+        self._servers.append(server)
+
+    def left_out(self, what: str, type_name: str) -> None:
+        """Write one line about something that cannot be offered here."""
+        try:
+            self.backend.rosout("warn", f"{what} is not offered: {type_name} is not known here")
+        except RosError:
+            return
+
+    def close(self) -> None:
+        """Offer nothing any more; goals under way are aborted."""
+        for server in self._servers:
+            server.close()
+        self._servers.clear()

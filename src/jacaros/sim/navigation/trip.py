@@ -1,0 +1,229 @@
+"""Getting a robot to poses on the map: plan, drive, wait for others or go round them, give up with a reason."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from jacaros.sim.navigation.driver import STOP, in_the_way
+from jacaros.sim.navigation.failure import (
+    FAILED_TO_MAKE_PROGRESS,
+    NO_VALID_PATH,
+    TIMEOUT,
+    NavigationFailure,
+)
+from jacaros.sim.navigation.navigator import Navigator
+from jacaros.sim.navigation.placement import Placement, Point, distance
+from jacaros.sim.navigation.planner import Circle, told
+from jacaros.sim.navigation.route import Route
+from jacaros.sim.navigation.wheels import PERIOD, Hold
+
+TOLERANCE = 0.05
+"""Metres from the goal at which the robot has arrived."""
+YAW_TOLERANCE = 0.05
+"""The same for its heading, in radians."""
+PATIENCE = 4.0
+"""Seconds without getting anywhere before something else is tried."""
+MOST_RECOVERIES = 3
+"""After so many tries in a row the goal is given up."""
+_MOVED = 0.25
+_AWAY = 0.6
+_LOST = 0.35
+_ROOM = 0.1
+_KEEP_RIGHT = 0.1
+_BACK = 0.2
+_LEAST_ALLOWANCE = 30.0
+_FEEDBACK_EVERY = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a goal is: the believed pose, seconds since it began, metres and poses that are left, recoveries so far."""
+
+    pose: Placement
+    time: float
+    remaining: float
+    poses_left: int
+    recoveries: int
+
+
+Tell = Callable[[Progress], None]
+
+
+async def go(navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit: float = math.inf) -> None:
+    """Drive through all of *goals* and come to stand at the last one, with its heading.
+
+    Args:
+        navigator: the robot.
+        goals: poses on the map.
+        tell: told of progress a few times a second.
+        limit: seconds after which the goal is given up; it is anyhow after a time that goes with the way's length.
+
+    Raises:
+        NavigationFailure: it cannot be done.
+        Overtaken: another goal has the wheels.
+    """
+    with navigator.wheels.held() as hold:
+        await Trip(navigator, goals, tell, limit).run(hold)
+
+
+class Trip:
+    """Drives a robot through poses.
+
+    Args:
+        navigator: the robot.
+        goals: the poses, on the map.
+        tell: told of progress a few times a second.
+        limit: seconds it may take.
+    """
+
+    def __init__(
+        self, navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit: float = math.inf
+    ) -> None:
+        self.navigator, self.goals, self._tell = navigator, list(goals), tell
+        self._clock = navigator.time.clock
+        self._began = self._clock.now()
+        self._pose = navigator.pose()
+        self._others: list[Circle] = []
+        self._recoveries = self._in_a_row = self._cycles = 0
+        self._stuck_at: Point = (math.inf, math.inf)
+        self._mark = (self._pose.x, self._pose.y)
+        self._marked = self._planned = self._began
+        self._look()
+        self._drive_along(self._first_way())
+        self._allowance = min(limit, _LEAST_ALLOWANCE + 4.0 * self._route.length / navigator.pace.speed)
+
+    async def run(self, hold: Hold) -> None:
+        """Drive to the end; see `go`."""
+        while not self._arrived():
+            self._check()
+            if self._clock.now() - self._marked > PATIENCE:
+                await self._recover(hold)
+            await hold.drive(self._driver.command(self._pose, self._route, self._others))
+            self._look()
+            self._follow()
+        await self._turn(hold)
+
+    async def _turn(self, hold: Hold) -> None:
+        """Turn to the heading of the last goal."""
+        self._marked = self._clock.now()
+        while (command := self._driver.heading(self._pose, self.goals[-1], YAW_TOLERANCE)) is not None:
+            self._check()
+            if (
+                self._clock.now() - self._marked
+                > 2.0 * PATIENCE + 2.0 * math.pi / self.navigator.pace.turn_rate
+            ):
+                raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, "the robot does not get to its heading")
+            await hold.drive(command)
+            self._look()
+        self._report()
+
+    def _look(self) -> None:
+        self._pose = self.navigator.pose()
+        self._others = self.navigator.others(self._pose)
+
+    def _arrived(self) -> bool:
+        last = self.goals[-1]
+        apart = distance((self._pose.x, self._pose.y), (last.x, last.y))
+        near_end = len(self._vias) == 0 and self._route.remaining < 2.0 * TOLERANCE
+        return near_end and apart <= TOLERANCE
+
+    def _check(self) -> None:
+        if self.navigator.robot.battery.empty:
+            raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, "the battery is empty")
+        if self._clock.now() - self._began > self._allowance:
+            raise NavigationFailure(TIMEOUT, f"not there after {self._allowance:g} s")
+
+    def _follow(self) -> None:
+        """Note where on the way the robot is, and plan anew when the way is not good any more."""
+        here = (self._pose.x, self._pose.y)
+        beside = self._route.advance(here)
+        while self._vias and self._route.done >= self._vias[0] - TOLERANCE:
+            del self._vias[0], self.goals[0]
+        if distance(here, self._mark) > _MOVED:
+            self._mark, self._marked = here, self._clock.now()
+            if distance(here, self._stuck_at) > _AWAY:
+                self._in_a_row = 0
+        radius = self.navigator.robot.description.radius
+        blocked = in_the_way(self._route, self._others, radius, 1.5)
+        if beside > _LOST or (blocked and self._clock.now() - self._planned >= 1.0):
+            self._plan_again()
+        self._cycles += 1
+        if self._cycles % _FEEDBACK_EVERY == 0:
+            self._report()
+
+    def _report(self) -> None:
+        self._tell(
+            Progress(
+                self._pose,
+                self._clock.now() - self._began,
+                self._route.remaining,
+                len(self.goals),
+                self._recoveries,
+            )
+        )
+
+    def _first_way(self) -> list[Point]:
+        try:
+            return self._way(self._others)
+        except NavigationFailure:
+            # Others may be gone when the robot comes there; walls will not.
+            return self._way(())
+
+    def _plan_again(self) -> None:
+        """Find a way round whoever stands there; without one the old way stays."""
+        self._planned = self._clock.now()
+        try:
+            way = self._way(self._others)
+        except NavigationFailure:
+            return
+        self._drive_along(way)
+
+    def _way(self, others: Sequence[Circle]) -> list[Point]:
+        """The way through all goals that are left; `_vias` are set to match."""
+        planner, pose = self.navigator.planner, self._pose
+        obstacles = []
+        for x, y, radius in others:
+            # A little to the left of where it is: who meets passes on the right.
+            forward, left = pose.local(x, y)
+            shift = _KEEP_RIGHT if forward > 0.0 else 0.0
+            obstacles.append((*pose.point(forward, left + shift), radius + _ROOM))
+        points, vias = [(pose.x, pose.y)], []
+        for goal in self.goals:
+            piece = planner.plan(points[-1], (goal.x, goal.y), obstacles)
+            points += piece[1:]
+            vias.append(Route(points).length)
+        self._vias = vias[:-1]
+        return points
+
+    def _drive_along(self, points: list[Point]) -> None:
+        if len(points) < 2:  # the robot stands there already
+            points = [points[0], points[0]]
+        self._route = Route(points)
+        self._driver = self.navigator.driver()
+
+    async def _recover(self, hold: Hold) -> None:
+        """Try something else: step back if there is room, wait a moment, plan anew."""
+        if self._in_a_row >= MOST_RECOVERIES:
+            self._give_up()
+        self._recoveries += 1
+        self._in_a_row += 1
+        self._stuck_at = (self._pose.x, self._pose.y)
+        if self.navigator.free_at(self._pose, -_BACK, self._others):
+            await self.navigator.straight(hold, -_BACK, 0.15)
+        else:
+            for _ in range(round(1.0 / PERIOD)):
+                await hold.drive(STOP)
+        self._look()
+        self._plan_again()
+        self._mark, self._marked = (self._pose.x, self._pose.y), self._clock.now()
+
+    def _give_up(self) -> None:
+        here = told((self._pose.x, self._pose.y))
+        radius = self.navigator.robot.description.radius
+        for x, y, other in self._others:
+            if in_the_way(self._route, [(x, y, other)], radius, self._route.remaining):
+                raise NavigationFailure(
+                    NO_VALID_PATH,
+                    f"another robot stands in the way at {told((x, y))}, and there is no way round",
+                )
+        raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, f"the robot does not get any further at {here}")

@@ -1,0 +1,81 @@
+"""The wheels of a robot that drives by itself: commands on ``/cmd_vel``, one driver at a time."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from jacaros.clock import Clock
+from jacaros.ros.backend import Backend, Publisher
+from jacaros.sim.navigation.driver import STOP, Command
+
+PERIOD = 0.1
+"""Seconds between two commands."""
+OVERTAKEN = "a newer goal took the robot over"
+
+
+class Overtaken(Exception):
+    """Somebody else drives the robot now."""
+
+
+class Hold:
+    """The right to drive, until somebody takes it."""
+
+    def __init__(self, wheels: "Wheels") -> None:
+        self._wheels = wheels
+
+    async def drive(self, command: Command) -> None:
+        """Send a command and wait until the next one is due.
+
+        Raises:
+            Overtaken: a newer goal drives the robot.
+        """
+        if self._wheels.holder is not self:
+            raise Overtaken(OVERTAKEN)
+        self._wheels.send(command)
+        await self._wheels.clock.sleep(PERIOD)
+        if self._wheels.holder is not self:
+            raise Overtaken(OVERTAKEN)
+
+
+class Wheels:
+    """Commands the base of one robot, as any other node would.
+
+    Args:
+        backend: the graph.
+        topic: of the commands.
+        clock: paces them.
+    """
+
+    def __init__(self, backend: Backend, topic: str, clock: Clock) -> None:
+        self.clock = clock
+        self.holder: Hold | None = None
+        self._backend, self._topic = backend, topic
+        self._publisher: Publisher | None = None
+
+    @contextmanager
+    def held(self) -> Iterator[Hold]:
+        """Take the wheels from whoever has them; in the end the robot is stopped, unless somebody took them."""
+        self.holder = hold = Hold(self)
+        try:
+            yield hold
+        finally:
+            if self.holder is hold:
+                self.holder = None
+                self.send(STOP)
+
+    def send(self, command: Command) -> None:
+        """Publish a command."""
+        if self._publisher is None:  # not before anybody wants to drive
+            self._publisher = self._backend.publisher(self._topic, "geometry_msgs/msg/Twist")
+        message = self._publisher.message()
+        message.linear.x, message.angular.z = command
+        self._publisher.publish(message)
+
+    def close(self) -> None:
+        """Stop the robot if it is being driven, and leave the topic."""
+        if self._publisher is None:
+            return
+        if self.holder is not None:
+            self.holder = None
+            self.send(STOP)
+        self._publisher.close()
+        self._publisher = None

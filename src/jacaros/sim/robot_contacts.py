@@ -1,0 +1,144 @@
+"""What a robot tells of its bumpers and its dock, in the messages of the robots that have them.
+
+=================================== ================================================= ===================
+topic (below the namespace)         type                                              like a
+=================================== ================================================= ===================
+``/hazard_detection``               ``irobot_create_msgs/msg/HazardDetectionVector``  TurtleBot 4, 10 Hz
+``/dock_status``                    ``irobot_create_msgs/msg/DockStatus``             TurtleBot 4, 2 Hz
+``/sensor_state``                   ``turtlebot3_msgs/msg/SensorState``               TurtleBot 3, 20 Hz
+``/mobile_base/events/bumper``      ``kobuki_msgs/msg/BumperEvent``                   TurtleBot 2, on changes
+=================================== ================================================= ===================
+
+Nothing is computed unless somebody listens.
+"""
+
+import math
+from typing import Any
+
+from jacaros.ros.backend import Backend, Publisher
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.message import constant, stamp
+from jacaros.sim.navigation.sight import hidden
+from jacaros.sim.robot import Robot
+from jacaros.sim.world_time import WorldTime
+
+_TICKS_PER_HAZARD = 2
+_TICKS_PER_DOCK = 10
+_DOCK_SEEN_FROM = 2.0
+_WHEEL_RADIUS = 0.033
+_TICKS_PER_TURN = 4096
+_HALF_TRACK = 0.08
+_BUMPERS = {"left": "bump_left", "front": "bump_front_center", "right": "bump_right"}
+"""Frames of the Create 3's bumper; it has none at the back."""
+_KOBUKI = {"left": "LEFT", "front": "CENTER", "right": "RIGHT"}
+
+
+class RobotContacts:
+    """The bumper and dock topics of one robot.
+
+    Args:
+        time: the world, on a clock.
+        robot: which of its robots.
+        backend: the graph; it is started already.
+        prefix: of the robot's topics.
+        frame_prefix: of its frames.
+    """
+
+    def __init__(
+        self, time: WorldTime, robot: Robot, backend: Backend, prefix: str, frame_prefix: str
+    ) -> None:
+        self._time, self._robot, self._backend = time, robot, backend
+        self._prefix, self._frame_prefix = prefix, frame_prefix
+        self._hazards = self._join("/hazard_detection", "irobot_create_msgs/msg/HazardDetectionVector")
+        self._dock = self._join("/dock_status", "irobot_create_msgs/msg/DockStatus")
+        self._state = self._join("/sensor_state", "turtlebot3_msgs/msg/SensorState")
+        self._bumper = self._join("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent")
+        self._pressed: frozenset[str] = frozenset()
+        self._docked: bool | None = None
+
+    def _join(self, topic: str, type_name: str) -> Publisher | None:
+        try:
+            return self._backend.publisher(self._prefix + topic, type_name)
+        except UnknownInterface:  # not a robot of this kind
+            return None
+
+    def publish(self, ticks: int) -> None:
+        """Publish what is due at this tick of 20 Hz."""
+        pressed = frozenset(self._robot.contacts.values()) - {""}
+        if _wanted(self._hazards) and (ticks % _TICKS_PER_HAZARD == 0 or pressed != self._pressed):
+            self._publish_hazards(self._hazards, pressed)
+        if _wanted(self._state):
+            self._publish_state(self._state, pressed)
+        if pressed != self._pressed:
+            if _wanted(self._bumper):
+                self._publish_bumpers(self._bumper, pressed)
+            self._pressed = pressed
+        docked = self._robot.dock is not None
+        if _wanted(self._dock) and (ticks % _TICKS_PER_DOCK == 0 or docked != self._docked):
+            self._publish_dock(self._dock, docked)
+        self._docked = docked
+
+    def _publish_hazards(self, publisher: Any, pressed: frozenset[str]) -> None:
+        detections = []
+        for side in sorted(pressed & _BUMPERS.keys()):
+            hazard = self._backend.message("irobot_create_msgs/msg/HazardDetection")
+            self._head(hazard.header, _BUMPERS[side])
+            hazard.type = constant(hazard, "BUMP")
+            detections.append(hazard)
+        message = publisher.message(detections=detections)
+        self._head(message.header, "base_link")
+        publisher.publish(message)
+
+    def _publish_dock(self, publisher: Any, docked: bool) -> None:
+        message = publisher.message(is_docked=docked, dock_visible=docked or self._sees_dock())
+        self._head(message.header, "base_link")
+        publisher.publish(message)
+
+    def _sees_dock(self) -> bool:
+        robot, world = self._robot, self._time.world.description
+        for dock in world.docks:
+            dx, dy = dock.pose.x - robot.x, dock.pose.y - robot.y
+            if dx * dx + dy * dy <= _DOCK_SEEN_FROM * _DOCK_SEEN_FROM and not hidden(
+                world.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
+            ):
+                return True
+        return False
+
+    def _publish_state(self, publisher: Any, pressed: frozenset[str]) -> None:
+        message = publisher.message()
+        self._head(message.header, "base_link")
+        forward = bool(pressed - {"back"})
+        message.bumper = forward * constant(message, "BUMPER_FORWARD")
+        message.bumper += ("back" in pressed) * constant(message, "BUMPER_BACKWARD")
+        message.battery = self._robot.battery.voltage
+        message.torque = True
+        odometry = self._robot.odometry
+        per_metre = _TICKS_PER_TURN / (2.0 * math.pi * _WHEEL_RADIUS)
+        message.left_encoder = _int32((odometry.rolled - odometry.turned * _HALF_TRACK) * per_metre)
+        message.right_encoder = _int32((odometry.rolled + odometry.turned * _HALF_TRACK) * per_metre)
+        publisher.publish(message)
+
+    def _publish_bumpers(self, publisher: Any, pressed: frozenset[str]) -> None:
+        for side in sorted((pressed ^ self._pressed) & _KOBUKI.keys()):
+            message = publisher.message()
+            message.bumper = constant(message, _KOBUKI[side])
+            message.state = constant(message, "PRESSED" if side in pressed else "RELEASED")
+            publisher.publish(message)
+
+    def _head(self, header: Any, frame: str) -> None:
+        stamp(header.stamp, self._time.now())
+        header.frame_id = self._frame_prefix + frame
+
+    def close(self) -> None:
+        """Leave the topics."""
+        for publisher in (self._hazards, self._dock, self._state, self._bumper):
+            if publisher is not None:
+                publisher.close()
+
+
+def _wanted(publisher: Publisher | None) -> bool:
+    return publisher is not None and publisher.subscription_count > 0
+
+
+def _int32(value: float) -> int:
+    return (math.floor(value) + 0x80000000) % 0x100000000 - 0x80000000

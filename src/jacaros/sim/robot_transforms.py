@@ -1,0 +1,92 @@
+"""The tf tree of one robot: map, odometry, base and laser."""
+
+from typing import Any
+
+from jacaros.ros.backend import TRANSFORMS, Backend, Publisher
+from jacaros.ros.errors import RosError, UnknownInterface
+from jacaros.ros.message import stamp
+from jacaros.ros.qos import QoS
+from jacaros.sim.navigation.frames import BASE, FOOTPRINT, MAP, ODOMETRY, SCAN
+from jacaros.sim.navigation.localisation import Localisation
+from jacaros.sim.navigation.placement import Placement
+from jacaros.sim.robot import Robot
+from jacaros.sim.world_time import WorldTime
+
+_TRANSFORM = "geometry_msgs/msg/TransformStamped"
+_HERE = Placement(0.0, 0.0)
+
+
+class RobotTransforms:
+    """Publishes one robot's frames when somebody listens.
+
+    ``map`` to ``odom`` and ``odom`` to ``base_footprint`` go to ``/tf``, twenty times a second; ``base_footprint`` to
+    ``base_link`` to ``base_scan``, all at the same place, and the robot's own ``map`` if it has a namespace, to
+    ``/tf_static``, once.
+
+    Args:
+        time: the world, on a clock.
+        robot: which of its robots.
+        localisation: where it believes to be.
+        backend: the graph; it is started already.
+    """
+
+    def __init__(self, time: WorldTime, robot: Robot, localisation: Localisation, backend: Backend) -> None:
+        self._time, self._robot, self._localisation, self._backend = time, robot, localisation, backend
+        namespace = robot.description.namespace
+        self._prefix = f"{namespace}/" if namespace else ""
+        self._publisher = self._join()
+        self._static_is_out = False
+        if backend.name != "memory":
+            # On other graphs it is not known who listens to /tf_static alone.
+            self._publish_static()
+
+    def _join(self) -> Publisher | None:
+        if TRANSFORMS not in self._backend.capabilities:
+            return None
+        # Not `tf_broadcast`, which cannot tell whether anybody listens.
+        try:
+            return self._backend.publisher("/tf", "tf2_msgs/msg/TFMessage", QoS(depth=100))
+        except UnknownInterface:  # tf2_msgs is not everywhere where ROS 2 is
+            return None
+
+    def publish(self) -> None:
+        """Publish where the robot believes to be."""
+        publisher = self._publisher
+        if publisher is None or not publisher.subscription_count:
+            return
+        self._publish_static()
+        self._localisation.update(self._time.world.time)
+        odometry = self._robot.odometry
+        moved = self._transform(ODOMETRY, FOOTPRINT, Placement.at(odometry.x, odometry.y, odometry.yaw))
+        corrected = self._transform(MAP, ODOMETRY, self._localisation.map_to_odom)
+        publisher.publish(publisher.message(transforms=[moved, corrected]))
+
+    def _publish_static(self) -> None:
+        if self._static_is_out or self._publisher is None:
+            return
+        self._static_is_out = True
+        pairs = [(FOOTPRINT, BASE), (BASE, SCAN)]
+        try:
+            for parent, child in pairs:
+                self._backend.tf_broadcast(self._transform(parent, child, _HERE), static=True)
+            if self._prefix:
+                own_map = self._transform("", MAP, _HERE)
+                own_map.header.frame_id = MAP
+                self._backend.tf_broadcast(own_map, static=True)
+        except RosError:  # the type is there, as the publisher's was
+            return
+
+    def _transform(self, parent: str, child: str, place: Placement) -> Any:
+        message = self._backend.message(_TRANSFORM)
+        stamp(message.header.stamp, self._time.now())
+        message.header.frame_id = self._prefix + parent
+        message.child_frame_id = self._prefix + child
+        translation, rotation = message.transform.translation, message.transform.rotation
+        translation.x, translation.y = place.x, place.y
+        rotation.z, rotation.w = place.quaternion()
+        return message
+
+    def close(self) -> None:
+        """Leave the topic."""
+        if self._publisher is not None:
+            self._publisher.close()
