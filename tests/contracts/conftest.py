@@ -9,6 +9,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs, not a package
 
+from expected import NOT_YET
 from graphs import InMemory, InProcesses
 from masters import Master
 from presence import is_wanted, need, ros2_environment
@@ -30,6 +31,19 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Make the marker `only` known."""
     config.addinivalue_line("markers", "only(kinds): run a contract test on these kinds of graph alone")
+    config.addinivalue_line(
+        "markers", "needs(words): skip while a backend does not have these yet (expected.py)"
+    )
+
+
+@pytest.fixture(autouse=True)
+def _has_what_is_needed(request: pytest.FixtureRequest) -> None:
+    """Skip what a backend is still to learn."""
+    if "graph" in request.fixturenames:
+        kind = request.getfixturevalue("graph").kind
+        needed = {word for marker in request.node.iter_markers("needs") for word in marker.args}
+        if needed & NOT_YET.get(kind, set()):
+            pytest.skip(f"{kind} DOES NOT HAVE YET: {', '.join(sorted(needed & NOT_YET[kind]))}")
 
 
 @pytest.fixture(scope="session")

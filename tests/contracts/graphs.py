@@ -59,7 +59,11 @@ class InMemory:
             made.start()
         return made
 
-    def wait_until(self, condition: Callable[[], object], what: str) -> None:
+    def kill(self, made: Any) -> None:
+        """End a peer without a word to the others."""
+        self.shared.vanish(made.node_name())
+
+    def wait_until(self, condition: Callable[[], object], what: str, patience: float = PATIENCE) -> None:
         for _ in range(1000):
             if condition():
                 return
@@ -156,7 +160,10 @@ class ProcessPeer:
                 break
         if "error" in answer:
             known = getattr(jacaros.ros.errors, answer["error"], None)
-            raise (known or AssertionError)(answer["text"] if known else f"{answer}")
+            problem = (known or AssertionError)(answer["text"] if known else f"{answer}")
+            if answer["reason"] is not None:
+                problem.reason = answer["reason"]
+            raise problem
         return answer["result"]
 
     def _read(self) -> None:
@@ -214,10 +221,15 @@ class InProcesses:
             made.start()
         return made
 
-    def wait_until(self, condition: Callable[[], object], what: str) -> None:
-        deadline = time.monotonic() + PATIENCE
+    def kill(self, made: ProcessPeer) -> None:
+        """End a peer without a word to the others."""
+        made.signal(signal.SIGKILL)
+        made.wait()
+
+    def wait_until(self, condition: Callable[[], object], what: str, patience: float = PATIENCE) -> None:
+        deadline = time.monotonic() + patience
         while not condition():
-            assert time.monotonic() < deadline, f"not within {PATIENCE} s: {what}"
+            assert time.monotonic() < deadline, f"not within {patience} s: {what}"
             time.sleep(0.01)
 
     def pass_time(self, seconds: float) -> None:

@@ -16,8 +16,11 @@ import time
 from collections import defaultdict
 from typing import Any
 
+from peer_actions import ActionCommands
+from peer_graph import GraphCommands
+
 from jacaros.clock import Clock, WallClock, run
-from jacaros.ros.backend import Sample
+from jacaros.ros.backend import Sample, TopicEvent
 from jacaros.ros.handoff import post
 from jacaros.ros.message import plain
 from jacaros.ros.open import open_backend
@@ -26,16 +29,19 @@ from jacaros.ros.qos import QoS
 ADD = "example_interfaces/srv/AddTwoInts"
 
 
-class Peer:
+class Peer(ActionCommands, GraphCommands):
     """A node and what it has seen.  Every method without underscore is a command; all values are JSON."""
 
     def __init__(self, kind: str, clock: Clock, name: str, namespace: str = "", **options: Any) -> None:
+        ActionCommands.__init__(self)
+        GraphCommands.__init__(self)
         self._clock = clock
         self._lines: list[str] = []
         self._backend = open_backend(kind, clock, name, namespace, log=self._log, **options)
         self._connection: list[bool] = []
         self._backend.on_connection(self._connection.append)
         self._received: dict[str, list[Sample]] = defaultdict(list)
+        self._events: dict[str, list[TopicEvent]] = defaultdict(list)
         self._threads: set[str] = set()
         self._publishers: dict[str, Any] = {}
         self._subscriptions: dict[str, Any] = {}
@@ -106,16 +112,23 @@ class Peer:
     def unadvertise(self, topic: str) -> None:
         self._publishers.pop(topic).close()
 
-    def subscribe(self, topic: str, type_name: str, key: str | None = None, **qos: Any) -> str:
+    def subscribe(
+        self, topic: str, type_name: str, key: str | None = None, events: bool = False, **qos: Any
+    ) -> str:
+        """Receive messages; with *events* also trouble, which goes to the log otherwise."""
         seen = self._received[key or topic]
 
         def receive(sample: Sample) -> None:
             self._threads.add(threading.current_thread().name)
             seen.append(sample)
 
-        subscription = self._backend.subscription(topic, type_name, receive, QoS(**qos))
+        on_event = self._events[key or topic].append if events else None
+        subscription = self._backend.subscription(topic, type_name, receive, QoS(**qos), on_event)
         self._subscriptions[key or topic] = subscription
         return subscription.topic
+
+    def events(self, topic: str) -> list[list[str]]:
+        return [[str(event.trouble), event.text] for event in self._events[topic]]
 
     def publisher_count(self, topic: str) -> int:
         return self._subscriptions[topic].publisher_count
@@ -283,7 +296,12 @@ async def do(peer: Peer, command: dict[str, Any]) -> None:
             result = await result
         reply({"id": command["id"], "result": result})
     except Exception as problem:
-        reply({"id": command["id"], "error": type(problem).__name__, "text": str(problem)})
+        error = {
+            "error": type(problem).__name__,
+            "text": str(problem),
+            "reason": getattr(problem, "reason", None),
+        }
+        reply({"id": command["id"], **error})
 
 
 def reply(answer: dict[str, Any]) -> None:

@@ -5,7 +5,6 @@ Everything here happens on the loop.
 """
 
 import asyncio
-import contextlib
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -63,6 +62,7 @@ class PendingGoal:
         self.goal_id = goal_id
         self.on_feedback = on_feedback
         self.acceptance: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self.accepted = False
         self.abandoned = False
         self.end: Outcome | ServiceError | None = None
         self._sender = sender
@@ -220,8 +220,9 @@ class GoalSender:
         """The server has accepted a goal."""
         self._sign()
         pending = self._goals.get(goal_id)
-        if pending is None:
+        if pending is None or pending.accepted:
             return
+        pending.accepted = True
         if pending.abandoned:
             self.wire.cancel_goal(goal_id)
             self._forget(goal_id)
@@ -304,10 +305,8 @@ class GoalSender:
     def _abandon(self, pending: PendingGoal) -> None:
         """Nobody wants the goal any more: cancel it now if it was accepted, else when it is."""
         pending.abandoned = True
-        accepted = pending.acceptance.done() and not pending.acceptance.cancelled()
-        if pending.end is None and accepted and pending.acceptance.exception() is None:
-            with contextlib.suppress(ServiceError):
-                self.wire.cancel_goal(pending.goal_id)
+        if pending.accepted and pending.end is None:
+            self.wire.cancel_goal(pending.goal_id)
             self._forget(pending.goal_id)
 
     def _finish(self, goal_id: str, end: Outcome | ServiceError) -> None:

@@ -16,7 +16,7 @@ from jacaros.ros.fields import FieldType
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
-from jacaros.ros.parameter import Parameters
+from jacaros.ros.parameter import Parameters, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.rosout import RosoutWriter
 from jacaros.ros.tf import TransformBroadcaster, TransformListener
@@ -40,6 +40,7 @@ class NodeSettings:
         remap: names to use in place of others.
         log: takes one line about the connection: waiting, missing, found, lost.
         interface_paths: folders with further definitions (``memory`` and, for services, ``ros1``).
+        parameters: values of parameters of our node from outside; they take the place of declared defaults.
     """
 
     clock: Clock
@@ -48,6 +49,7 @@ class NodeSettings:
     remap: Mapping[str, str] = field(default_factory=dict)
     log: Callable[[str], None] = to_stderr
     interface_paths: Sequence[Path] = ()
+    parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
 
 
 class Node:

@@ -8,7 +8,7 @@ import pytest
 from jacaros.clock import VIRTUAL_EPOCH, VirtualClock, run
 from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.backends.memory import MemoryGraph
-from jacaros.ros.errors import CallFailed, CallTimedOut, MessageMismatch
+from jacaros.ros.errors import CallFailed, CallTimedOut
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
 
@@ -110,16 +110,25 @@ def test_closing_in_a_callback_stops_what_waits() -> None:
     play(scene)
 
 
-def test_a_topic_has_one_type() -> None:
+def test_nodes_that_take_a_topic_for_different_things_both_say_so() -> None:
     async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        publisher = node.publisher("/a", "std_msgs/msg/Int32")
-        with pytest.raises(MessageMismatch, match="/a carries std_msgs/msg/Int32, not std_msgs/msg/String"):
-            node.subscription("/a", "std_msgs/msg/String", print)
-        assert nodes.graph.topics() == {"/a": "std_msgs/msg/Int32"}
-        publisher.close()
-        node.subscription("/a", "std_msgs/msg/String", print)
-        assert nodes.graph.topics() == {"/a": "std_msgs/msg/String"}
+        one, two = await nodes.open("one"), await nodes.open("two")
+        publisher = one.publisher("/a", "std_msgs/msg/Int32")
+        got: list[Sample] = []
+        subscription = two.subscription("/a", "std_msgs/msg/String", got.append)
+        publisher.publish(publisher.message(data=1))
+        await nodes.clock.sleep(0)
+        assert (got, publisher.subscription_count, subscription.publisher_count) == ([], 0, 0)
+        assert nodes.log == [
+            (
+                "topic /a: /two takes it for std_msgs/msg/String and gets nothing of what is published here as "
+                "std_msgs/msg/Int32"
+            ),
+            (
+                "topic /a: /one publishes std_msgs/msg/Int32, not std_msgs/msg/String; write std_msgs/msg/Int32 here to "
+                "receive it"
+            ),
+        ]
 
     play(scene)
 
@@ -130,7 +139,10 @@ def test_an_incompatible_wish_is_reported() -> None:
         node.publisher("/a", "std_msgs/msg/Int32", QoS(reliability="best_effort"))
         node.subscription("/a", "std_msgs/msg/Int32", print)
         assert nodes.log == [
-            "topic /a: not connected, because the subscription asks for reliable, the publisher offers best_effort"
+            (
+                "topic /a: not connected, because the subscription asks for reliable, the publisher offers best_effort; "
+                "ask for no more than is offered"
+            )
         ]
 
     play(scene)

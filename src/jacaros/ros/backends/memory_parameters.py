@@ -1,0 +1,54 @@
+"""Parameters of `jacaros.ros.backends.memory`: as on ROS 2, every node keeps its own."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from jacaros.ros.backends.memory_services import come
+from jacaros.ros.errors import CapabilityMissing
+from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter_store import DeclaredParameters
+
+if TYPE_CHECKING:
+    from jacaros.ros.backends.memory import MemoryBackend
+
+
+class MemoryParameters:
+    """The parameters of a node, seen from another or from itself."""
+
+    def __init__(self, asker: "MemoryBackend", node: str) -> None:
+        self.node = node
+        self._asker = asker
+
+    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+        """Declare a parameter of our own node."""
+        if self.node != self._asker.node_name:
+            raise CapabilityMissing(
+                f"only {self.node} itself can declare its parameters; {self._asker.node_name} can get and set them"
+            )
+        return self._asker.declared.declare(name, declaration)
+
+    async def names(self, timeout: float | None = None) -> list[str]:
+        """Names of the node's parameters."""
+        return (await self._store(timeout)).names()
+
+    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
+        """Give a parameter's value."""
+        return (await self._store(timeout)).get(name)
+
+    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
+        """Change a parameter."""
+        (await self._store(timeout)).set(name, value)
+
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Have *callback* called with what changed."""
+        return self._asker.graph.listen_to_parameters(self.node, callback)
+
+    async def _store(self, timeout: float | None) -> DeclaredParameters:
+        if self.node == self._asker.node_name:
+            return self._asker.declared
+        graph = self._asker.graph
+        node = graph.node(self.node)
+        while node is None:
+            await come(self._asker, f"node {self.node}", f"parameters of node {self.node}", timeout)
+            node = graph.node(self.node)
+        return node.declared

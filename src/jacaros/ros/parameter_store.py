@@ -1,0 +1,136 @@
+"""The declared parameters of one node, with ROS 2's rules: what has a type keeps it, ranges and refusals count."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jacaros.ros.errors import ParameterRefused, ParameterUnknown
+from jacaros.ros.parameter import Declaration, ParameterValue
+
+_NAMES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "text", bytes: "bytes"}
+
+
+class DeclaredParameters:
+    """What a node has declared, and the values.
+
+    Args:
+        node: its absolute name, for texts.
+        given: values from outside (launch file, command line) that take the place of defaults.
+        changed: is told of every declaration and change, after it.
+        log: takes one line about a judgement that failed.
+    """
+
+    def __init__(
+        self,
+        node: str,
+        given: Mapping[str, ParameterValue],
+        changed: Callable[[Mapping[str, ParameterValue]], None],
+        log: Callable[[str], None],
+    ) -> None:
+        self._node = node
+        self._given = given
+        self._changed = changed
+        self._log = log
+        self._declarations: dict[str, Declaration] = {}
+        self._values: dict[str, ParameterValue] = {}
+
+    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+        """Declare a parameter and give its value; see `Parameters.declare`."""
+        if name in self._declarations:
+            raise ParameterRefused(f"parameter {name} of {self._node} is declared already")
+        if not name:
+            raise ParameterRefused(f"a parameter of {self._node} has no name")
+        value = checked_value(self._given.get(name, declaration.default))
+        for candidate in (checked_value(declaration.default), value):
+            self._require(name, declaration, candidate)
+        self._declarations[name] = declaration
+        self._values[name] = value
+        self._changed({name: value})
+        return value
+
+    def names(self) -> list[str]:
+        """Names of all, sorted."""
+        return sorted(self._values)
+
+    def get(self, name: str) -> ParameterValue:
+        """Give a value; raises `ParameterUnknown`."""
+        if name not in self._values:
+            raise ParameterUnknown(self._unknown(name))
+        return self._values[name]
+
+    def set(self, name: str, value: ParameterValue) -> None:
+        """Change a value; raises `ParameterUnknown` or `ParameterRefused`."""
+        declaration = self._declarations.get(name)
+        if declaration is None:
+            raise ParameterUnknown(self._unknown(name))
+        if declaration.read_only:
+            raise ParameterRefused(f"parameter {name} of {self._node} is read-only")
+        taken = checked_value(value)
+        self._require(name, declaration, taken)
+        self._values[name] = taken
+        self._changed({name: taken})
+
+    def _require(self, name: str, declaration: Declaration, value: ParameterValue) -> None:
+        what = f"parameter {name} of {self._node}"
+        wanted, given = kind_of(declaration.default), kind_of(value)
+        if wanted != given and not (given == "empty list" and wanted.startswith("list")):
+            raise ParameterRefused(f"{what} is of type {wanted}; {value!r} is of type {given}")
+        low, high = declaration.minimum, declaration.maximum
+        if isinstance(value, int | float) and (
+            (low is not None and value < low) or (high is not None and value > high)
+        ):
+            raise ParameterRefused(f"{what} is {_range(low, high)}, not {value!r}")
+        reason = self._judged(declaration, value)
+        if reason is not None:
+            raise ParameterRefused(f"{what} cannot be {value!r}: {reason}")
+
+    def _judged(self, declaration: Declaration, value: ParameterValue) -> str | None:
+        if declaration.accept is None:
+            return None
+        try:
+            return declaration.accept(value)
+        except Exception as problem:  # the node lives on, and who asked learns of it
+            reason = f"{type(problem).__name__}: {problem}"
+            self._log(f"judging a parameter of {self._node} failed: {reason}")
+            return reason
+
+    def _unknown(self, name: str) -> str:
+        known = f"it has {', '.join(self.names())}" if self._values else "it has none"
+        return f"node {self._node} has no parameter {name}; {known}"
+
+
+def checked_value(value: Any) -> ParameterValue:
+    """Give *value* as something that a parameter can hold, in plain types.
+
+    Raises:
+        ParameterRefused: it cannot be held; the text tells what can.
+    """
+    if isinstance(value, list | tuple):
+        elements = [checked_value(element) for element in value]
+        kinds = {type(element) for element in elements}
+        if len(kinds) <= 1 and kinds <= {bool, int, float, str}:
+            return elements  # type: ignore[return-value]  # of one kind each
+    elif isinstance(value, str):
+        return str.__str__(value)  # subclasses, such as atoms of the agents' language, become plain texts
+    elif isinstance(value, bytes | bytearray):
+        return bytes(value)
+    elif isinstance(value, bool | int) or (isinstance(value, float) and not math.isnan(value)):
+        return value
+    raise ParameterRefused(
+        f"a parameter holds a bool, a number, a text, bytes, or a list of bools, ints, floats or texts; not {value!r}"
+    )
+
+
+def kind_of(value: ParameterValue) -> str:
+    """Name the type of a value: ``bool``, ``int``, ``float``, ``text``, ``bytes``, ``list of int``…, ``empty list``."""
+    if isinstance(value, list):
+        return f"list of {_NAMES[type(value[0])]}" if value else "empty list"
+    return _NAMES[type(value)]
+
+
+def _range(low: float | None, high: float | None) -> str:
+    if low is None:
+        return f"at most {high:g}"
+    if high is None:
+        return f"at least {low:g}"
+    return f"from {low:g} to {high:g}"

@@ -1,0 +1,227 @@
+"""Contract: parameters."""
+
+from typing import Any
+
+import pytest
+
+from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServiceError
+
+Pair = tuple[Any, Any]
+pytestmark = pytest.mark.needs("parameters")
+
+
+def having(peer: Any, name: str, value: Any) -> str:
+    """Give *peer* a parameter, in the way of its middleware; gives the name that is right there."""
+    if "declared parameters" in peer.capabilities():
+        assert peer.declare(name, value) == value
+    else:
+        peer.set_parameter(name, value)
+    return name
+
+
+@pytest.fixture
+def name(request: pytest.FixtureRequest) -> str:
+    """The name of a parameter that belongs to this test."""
+    return str(request.node.originalname)
+
+
+@pytest.mark.parametrize(
+    ("kind", "first", "second"),
+    [
+        ("bool", True, False),
+        ("int", 3, -4),
+        ("float", 0.5, 1e-3),
+        ("text", "schön", ""),
+        ("ints", [1, 2], [3]),
+        ("floats", [0.5, 1.5], [2.5]),
+        ("texts", ["a", "b"], ["c"]),
+        ("bools", [True, False], [True]),
+    ],
+)
+def test_a_parameter_is_read_and_changed_by_others(
+    graph: Any, pair: Pair, name: str, kind: str, first: Any, second: Any
+) -> None:
+    left, right = pair
+    having(right, f"{name}_{kind}", first)
+    node = right.node_name()
+    assert left.get_parameter(f"{name}_{kind}", node, timeout=20) == first
+    left.set_parameter(f"{name}_{kind}", second, node, timeout=20)
+    assert right.get_parameter(f"{name}_{kind}", timeout=20) == second
+    assert type(left.get_parameter(f"{name}_{kind}", node, timeout=20)) is type(second)
+
+
+def test_a_node_reads_and_changes_its_own(graph: Any, pair: Pair, name: str) -> None:
+    left, _ = pair
+    having(left, name, 1)
+    left.set_parameter(name, 2, timeout=20)
+    assert left.get_parameter(name, timeout=20) == 2
+    assert left.parameter_node() == left.node_name()
+
+
+def test_names_are_told(graph: Any, pair: Pair, name: str) -> None:
+    left, right = pair
+    for ending in ("b", "a"):
+        having(right, f"{name}_{ending}", 1)
+    names = left.parameter_names(right.node_name(), timeout=20)
+    assert [n for n in names if n.startswith(name)] == [f"{name}_a", f"{name}_b"]
+    assert f"{name}_a" not in left.parameter_names(timeout=20)
+
+
+def test_an_unknown_parameter_is_told(graph: Any, pair: Pair, name: str) -> None:
+    left, right = pair
+    with pytest.raises(ParameterUnknown, match=f"{right.node_name()}.*{name}"):
+        left.get_parameter(name, right.node_name(), timeout=20)
+    with pytest.raises(ParameterUnknown, match=name):
+        left.get_parameter(name, timeout=20)
+
+
+def test_a_parameter_that_was_not_declared_cannot_be_set(graph: Any, pair: Pair, name: str) -> None:
+    left, right = pair
+    if "declared parameters" in left.capabilities():
+        with pytest.raises(ParameterUnknown, match=name):
+            left.set_parameter(name, 1, right.node_name(), timeout=20)
+    else:
+        left.set_parameter(name, 1, right.node_name(), timeout=20)
+        assert right.get_parameter(name, timeout=20) == 1
+
+
+def test_values_that_no_parameter_holds_are_refused(graph: Any, pair: Pair, name: str) -> None:
+    left, _ = pair
+    having(left, name, 1)
+    for value in (None, {"a": 1}, [1, "a"], [[1]]):
+        with pytest.raises(ParameterRefused):
+            left.set_parameter(name, value, timeout=20)
+    assert left.get_parameter(name, timeout=20) == 1
+
+
+def test_declaring_is_for_where_parameters_are_declared(graph: Any, pair: Pair, name: str) -> None:
+    left, right = pair
+    if "declared parameters" not in left.capabilities():
+        with pytest.raises(CapabilityMissing, match="declare"):
+            left.declare(name, 1)
+        return
+    assert left.declare(name, 1) == 1
+    with pytest.raises(ParameterRefused, match="declared already"):
+        left.declare(name, 2)
+    with pytest.raises(CapabilityMissing, match="itself"):
+        left.declare(name, 1, node=right.node_name())
+
+
+def declaring(pair: Pair, name: str, default: Any, **more: Any) -> tuple[Any, str] | None:
+    """Let the right peer declare a parameter; None, after a look at the refusal, where that cannot be."""
+    left, right = pair
+    if "declared parameters" in right.capabilities():
+        assert right.declare(name, default, **more) == default
+        return left, right.node_name()
+    with pytest.raises(CapabilityMissing, match="declare"):
+        right.declare(name, default, **more)
+    return None
+
+
+def test_a_parameter_keeps_its_type(graph: Any, pair: Pair, name: str) -> None:
+    if (declared := declaring(pair, name, 1)) is not None:
+        left, node = declared
+        with pytest.raises(ParameterRefused, match=name):
+            left.set_parameter(name, "one", node, timeout=20)
+        assert left.get_parameter(name, node, timeout=20) == 1
+
+
+def test_a_parameter_stays_in_its_range(graph: Any, pair: Pair, name: str) -> None:
+    if (declared := declaring(pair, name, 0.5, minimum=0.0, maximum=1.0)) is not None:
+        left, node = declared
+        left.set_parameter(name, 1.0, node, timeout=20)
+        for value in (1.5, -0.5):
+            with pytest.raises(ParameterRefused, match=name):
+                left.set_parameter(name, value, node, timeout=20)
+        assert left.get_parameter(name, node, timeout=20) == 1.0
+
+
+def test_a_range_may_be_open(graph: Any, pair: Pair, name: str) -> None:
+    if (declared := declaring(pair, name, 5, minimum=1)) is not None:
+        left, node = declared
+        left.set_parameter(name, 1_000_000, node, timeout=20)
+        with pytest.raises(ParameterRefused, match=name):
+            left.set_parameter(name, 0, node, timeout=20)
+
+
+def test_a_read_only_parameter_is_not_changed(graph: Any, pair: Pair, name: str) -> None:
+    if (declared := declaring(pair, name, "fixed", read_only=True)) is not None:
+        left, node = declared
+        with pytest.raises(ParameterRefused, match="read-only"):
+            left.set_parameter(name, "loose", node, timeout=20)
+        with pytest.raises(ParameterRefused, match="read-only"):
+            pair[1].set_parameter(name, "loose", timeout=20)
+        assert left.get_parameter(name, node, timeout=20) == "fixed"
+
+
+def test_a_node_may_refuse_a_value(graph: Any, pair: Pair, name: str) -> None:
+    if (declared := declaring(pair, name, 2, only_even=True)) is not None:
+        left, node = declared
+        with pytest.raises(ParameterRefused, match="it is odd"):
+            left.set_parameter(name, 3, node, timeout=20)
+        left.set_parameter(name, 4, node, timeout=20)
+        assert left.get_parameter(name, node, timeout=20) == 4
+
+
+def test_a_default_that_breaks_its_declaration_is_refused(graph: Any, pair: Pair, name: str) -> None:
+    _, right = pair
+    error = ParameterRefused if "declared parameters" in right.capabilities() else CapabilityMissing
+    with pytest.raises(error):
+        right.declare(name, 7, minimum=0, maximum=5)
+
+
+def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
+    left, right = pair
+    if "parameter events" not in left.capabilities():
+        with pytest.raises(CapabilityMissing, match="change"):
+            left.watch_parameters(name, right.node_name())
+        return
+    having(right, name, 1)
+    left.watch_parameters(name, right.node_name())
+
+    def told(value: int) -> bool:
+        return {name: value} in left.parameter_changes(name)
+
+    def change_is_told() -> bool:
+        left.set_parameter(name, 2, right.node_name(), timeout=20)
+        return told(2)
+
+    graph.wait_until(change_is_told, "a change by another node is told")
+    right.set_parameter(name, 3, timeout=20)
+    graph.wait_until(lambda: told(3), "a change by the node itself is told")
+    having(right, name + "_new", 7)
+    graph.wait_until(lambda: {name + "_new": 7} in left.parameter_changes(name), "a declaration is told")
+    left.unwatch_parameters(name)
+    before = len(left.parameter_changes(name))
+    left.set_parameter(name, 4, right.node_name(), timeout=20)
+    graph.pass_time(0.3)
+    assert len(left.parameter_changes(name)) == before
+
+
+def test_only_the_changes_of_the_node_are_told(graph: Any, pair: Pair, name: str) -> None:
+    left, right = pair
+    if "parameter events" not in left.capabilities():
+        with pytest.raises(CapabilityMissing, match="change"):
+            left.watch_parameters(name)
+        return
+    having(left, name, 1)
+    having(right, name, 1)
+    right.watch_parameters(name)
+
+    def own_change_is_told() -> bool:
+        left.set_parameter(name, 2, timeout=20)
+        right.set_parameter(name, 5, timeout=20)
+        return {name: 5} in right.parameter_changes(name)
+
+    graph.wait_until(own_change_is_told, "its own change is told")
+    assert {name: 2} not in right.parameter_changes(name)
+
+
+def test_a_node_that_is_not_there_cannot_be_asked(graph: Any, pair: Pair, name: str) -> None:
+    left, _ = pair
+    if graph.kind == "ros1":  # the master keeps the parameters, whether there is such a node or not
+        with pytest.raises(ParameterUnknown, match=name):
+            left.get_parameter(name, "/nobody", timeout=2)
+    else:
+        with pytest.raises((ServiceError, ParameterUnknown), match="nobody"):
+            left.get_parameter(name, "/nobody", timeout=0.5)

@@ -1,0 +1,119 @@
+"""Contract: transforms are sent, heard, looked up and awaited."""
+
+import math
+from typing import Any
+
+import pytest
+
+from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
+
+Pair = tuple[Any, Any]
+pytestmark = [pytest.mark.needs("listening", "transforms")]
+HALF = math.sqrt(0.5)
+
+
+@pytest.fixture
+def frame(request: pytest.FixtureRequest) -> str:
+    """The beginning of names of frames that belong to this test."""
+    return str(request.node.originalname)
+
+
+def hearing(graph: Any, pair: Pair, frame: str) -> Pair:
+    """Let the right peer listen until it hears the left one."""
+    left, right = pair
+    right.listen_to_transforms()
+
+    def heard() -> bool:
+        left.send_transform(f"{frame}_root", f"{frame}_probe", 1.0, stamp=1.0)
+        try:
+            right.look_up(f"{frame}_root", f"{frame}_probe")
+        except TransformUnavailable:
+            return False
+        return True
+
+    graph.wait_until(heard, "transforms arrive")
+    return left, right
+
+
+def test_transforms_are_a_capability(graph: Any, pair: Pair) -> None:
+    left, _ = pair
+    if "transforms" in left.capabilities():
+        left.listen_to_transforms()
+        left.send_transform("capable_root", "capable", 1.0)
+        return
+    with pytest.raises(CapabilityMissing, match="tf2_msgs"):
+        left.send_transform("root", "child", 1.0)
+    with pytest.raises(CapabilityMissing, match="tf2_msgs"):
+        left.look_up("root", "child")
+
+
+def test_a_way_over_several_frames_and_nodes_is_found(graph: Any, pair: Pair, frame: str) -> None:
+    left, right = hearing(graph, pair, frame)
+    base, laser, world = f"{frame}_base", f"{frame}_laser", f"{frame}_world"
+    left.send_transform(world, base, 2.0, HALF, HALF, stamp=5.0)  # turned by 90 degrees
+    right.send_transform(base, laser, 0.5, static=True)
+    found = right.wait_for_transform(world, laser, timeout=20)
+    assert found["x"] == pytest.approx(2.0)
+    assert found["y"] == pytest.approx(0.5)
+    assert found["yaw"] == pytest.approx(math.pi / 2)
+    assert found["stamp"] == pytest.approx(5.0)
+    back = right.look_up(laser, world)
+    assert (back["x"], back["y"]) == (pytest.approx(-0.5), pytest.approx(2.0))
+
+
+def test_static_transforms_of_several_nodes_reach_late_listeners(graph: Any, pair: Pair, frame: str) -> None:
+    left, right = pair
+    left.send_transform(f"{frame}_base", f"{frame}_laser", 0.5, static=True)
+    right.send_transform(f"{frame}_base", f"{frame}_camera", 0.25, static=True)
+    late = graph.peer("late_listener")
+    found = late.wait_for_transform(f"{frame}_camera", f"{frame}_laser", timeout=20)
+    assert (found["x"], found["stamp"]) == (pytest.approx(0.25), 0.0)
+
+
+def test_between_two_times_it_is_interpolated(graph: Any, pair: Pair, frame: str) -> None:
+    left, right = hearing(graph, pair, frame)
+    for stamp in (10.0, 11.0):
+        left.send_transform(f"{frame}_odom", f"{frame}_base", stamp, stamp=stamp)
+    found = right.wait_for_transform(f"{frame}_odom", f"{frame}_base", 10.25, timeout=20)
+    assert (found["x"], found["stamp"]) == (pytest.approx(10.25), pytest.approx(10.25))
+
+
+@pytest.mark.parametrize(("stamp", "reason"), [(9.0, "too_old"), (12.0, "too_new")])
+def test_a_time_that_is_not_known_is_refused(
+    graph: Any, pair: Pair, frame: str, stamp: float, reason: str
+) -> None:
+    left, right = hearing(graph, pair, frame)
+    for moment in (10.0, 11.0):
+        left.send_transform(f"{frame}_odom", f"{frame}_base", moment, stamp=moment)
+    right.wait_for_transform(f"{frame}_odom", f"{frame}_base", 11.0, timeout=20)
+    with pytest.raises(TransformUnavailable, match="known from 10") as caught:
+        right.look_up(f"{frame}_odom", f"{frame}_base", stamp)
+    assert caught.value.reason == reason
+
+
+def test_what_is_missing_is_told(graph: Any, pair: Pair, frame: str) -> None:
+    left, right = hearing(graph, pair, frame)
+    with pytest.raises(TransformUnavailable, match=f"{frame}_nowhere") as caught:
+        right.look_up(f"{frame}_root", f"{frame}_nowhere")
+    assert caught.value.reason == "unknown_frame"
+    left.send_transform(f"{frame}_other_root", f"{frame}_other", 1.0, static=True)
+    right.wait_for_transform(f"{frame}_other_root", f"{frame}_other", timeout=20)
+    with pytest.raises(TransformUnavailable, match="not connected") as caught:
+        right.look_up(f"{frame}_root", f"{frame}_other")
+    assert caught.value.reason == "not_connected"
+
+
+def test_a_transform_that_comes_late_is_awaited(graph: Any, pair: Pair, frame: str) -> None:
+    left, right = hearing(graph, pair, frame)
+    right.begin_wait_for_transform(frame, f"{frame}_odom", f"{frame}_base", 20.5, timeout=25)
+    for stamp in (20.0, 21.0):
+        graph.pass_time(0.05)
+        left.send_transform(f"{frame}_odom", f"{frame}_base", stamp, stamp=stamp)
+    assert right.end_wait_for_transform(frame)["x"] == pytest.approx(20.5)
+
+
+def test_waiting_ends_with_the_reason(graph: Any, pair: Pair, frame: str) -> None:
+    _, right = pair
+    with pytest.raises(TransformUnavailable, match=rf"{frame}_nowhere.*waited 0\.2 s") as caught:
+        right.wait_for_transform(f"{frame}_root", f"{frame}_nowhere", timeout=0.2)
+    assert caught.value.reason == "unknown_frame"
