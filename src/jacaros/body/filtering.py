@@ -114,6 +114,7 @@ class FilteredObserver:
 
     def __init__(self, observer: Observer, wanted: Filter) -> None:
         self._observer, self._filter = observer, wanted
+        self._slow = observer if isinstance(observer, SlowObserver) else None
         self._shown: dict[int, ObservableProperty] = {}
         self._begun = wanted.from_the_beginning
 
@@ -124,7 +125,7 @@ class FilteredObserver:
 
     def has_untaken(self, name: str) -> bool:
         """Whether the other observer has still to take something up."""
-        return isinstance(self._observer, SlowObserver) and self._observer.has_untaken(name)
+        return self._slow is not None and self._slow.has_untaken(name)
 
     def observe(self, observation: Observation) -> None:
         """Hand on what passes."""

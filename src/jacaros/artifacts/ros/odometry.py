@@ -47,9 +47,8 @@ class ArtOdometry(RosArtifact):
         self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
 
     def _take(self, odometry: Odometry) -> None:
-        cause = odometry.sample.cause
-        self._position.take(odometry.position, cause)
-        self._pose.take(pose_values(odometry), cause)
+        position, pose = (self._position, odometry.position), (self._pose, pose_values(odometry))
+        self.take_together(odometry.sample.cause, position, pose)
 
     @operation(name="getCurrentOdom")
     async def get_current_odom(self) -> None:

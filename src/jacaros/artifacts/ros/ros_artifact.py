@@ -71,6 +71,7 @@ class RosArtifact(Artifact):
 
     robot: str = ""
     options: Mapping[str, object] = {}
+    _together: "list[tuple[str, Values, Callable[[], None]]] | None" = None
 
     def init(self, *arguments: object) -> None:
         """Read robot name and options, then `open`.
@@ -225,7 +226,10 @@ class RosArtifact(Artifact):
         def deliver(values: Values, cause: Cause | None) -> None:
             nonlocal coming
             coming += 1
-            self.start(self.show_reading, name, values, arrived, cause=cause)
+            if self._together is None:
+                self.start(self.show_readings, [(name, values, arrived)], cause=cause)
+            else:
+                self._together.append((name, values, arrived))
 
         def arrived() -> None:
             nonlocal coming
@@ -241,13 +245,24 @@ class RosArtifact(Artifact):
         outlet = Outlet(partial(self.start, self.withdraw_reading, name), refuse, behind)
         return self._kept(Reading(policy, self.clock, deliver, outlet))
 
+    def take_together(self, cause: Cause | None, *taken: tuple[Reading, Values]) -> None:
+        """Give several readings the values of one message; what they pass on becomes known in one step."""
+        shown = self._together = []
+        try:
+            for reading, values in taken:
+                reading.take(values, cause)
+        finally:
+            self._together = None
+        if shown:
+            self.start(self.show_readings, shown, cause=cause)
+
     @internal_operation
-    def show_reading(self, name: str, values: object, arrived: object) -> None:
-        """Give the property *name* new values, on behalf of a sensor."""
-        assert isinstance(values, tuple)
-        assert callable(arrived)
-        arrived()
-        self._show_values(name, values)
+    def show_readings(self, shown: object) -> None:
+        """Give properties new values, on behalf of a sensor: name, values, and what is called when they are known."""
+        assert isinstance(shown, list)
+        for name, values, arrived in shown:
+            arrived()
+            self._show_values(name, values)
 
     @internal_operation
     def withdraw_reading(self, name: str) -> None:

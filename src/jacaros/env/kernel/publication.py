@@ -23,12 +23,13 @@ class Publication:
         observers: who focuses the artifact, in the order of focusing.
     """
 
-    __slots__ = ("_artifact", "_frozen", "_observers", "_setting", "_telling", "properties")
+    __slots__ = ("_artifact", "_frozen", "_observers", "_setting", "_slow", "_telling", "properties")
 
     def __init__(self, artifact: ArtifactId, setting: Setting) -> None:
         self._artifact, self._setting = artifact, setting
         self.properties = PropertyStore()
         self._observers: dict[Observer, None] = {}
+        self._slow: tuple[SlowObserver, ...] = ()
         self._frozen: tuple[ObservableProperty, ...] | None = None
         self._telling: _Telling = _NOBODY
 
@@ -53,6 +54,7 @@ class Publication:
         """Let *observer* receive what is published, beginning with all properties; once is enough."""
         if observer not in self._observers:
             self._observers[observer] = None
+            self._note_slow()
             self._show(observer, added=self.committed())
 
     def remove(self, observer: Observer) -> None:
@@ -60,11 +62,16 @@ class Publication:
         self._tell()
         if observer in self._observers:
             del self._observers[observer]
+            self._note_slow()
             self._show(observer, removed=self.committed())
 
     def has_untaken(self, name: str) -> bool:
         """Whether an observer has still to take up what it was told about properties called *name*."""
-        return any(isinstance(each, SlowObserver) and each.has_untaken(name) for each in self._observers)
+        return any(observer.has_untaken(name) for observer in self._slow)
+
+    def _note_slow(self) -> None:
+        # Asking an object for a protocol costs more than a whole step, and sensors ask with every message.
+        self._slow = tuple(each for each in self._observers if isinstance(each, SlowObserver))
 
     def close(self) -> None:
         """Remove all observers."""
