@@ -1,0 +1,249 @@
+"""``jacaros ros map``: a first mapping file for things of the graph, to go on with by hand."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from jacaros.cli.graph.joining import Joined, NothingThere
+from jacaros.cli.graph.kinds import Kind, Thing
+from jacaros.cli.graph.listening import root
+from jacaros.cli.graph.suggestions import (
+    TWISTS,
+    Entry,
+    acting,
+    calling,
+    looking,
+    plain_name,
+    property_of,
+    publishing,
+)
+from jacaros.cli.graph.usual import robot_of, robots
+from jacaros.errors import UsageError
+
+_SECTIONS = ("properties", "signals", "frames", "operations")
+_NAMES = {
+    "navigate_to_pose": "navigate_to",
+    "move_base": "navigate_to",
+    "dock_robot": "dock",
+    "undock_robot": "undock",
+    "cmd_vel": "drive",
+    "battery_state": "battery",
+    "amcl_pose": "amcl_pose",
+}
+"""Words that read better in a plan."""
+_COMMENT_AT = 41
+"""Column of comments."""
+_BODIES = ("base_link", "base_footprint")
+
+
+@dataclass
+class _Artifact:
+    name: str
+    namespace: str
+    entries: list[Entry] = field(default_factory=list)
+
+    def add(self, entries: Iterable[Entry]) -> None:
+        self.entries.extend(entries)
+
+    def free_name(self, ros_name: str) -> str:
+        """A name that no entry has yet: the last part of the ROS name, with parts in front, or with a number."""
+        taken = {entry.name for entry in self.entries}
+        parts = [part for part in ros_name.split("/") if part]
+        for count in range(1, len(parts) + 1):
+            wanted = plain_name("_".join(parts[-count:]))
+            name = _NAMES.get(wanted, wanted)
+            if name not in taken:
+                return name
+        number = 2
+        while f"{name}{number}" in taken:
+            number += 1
+        return f"{name}{number}"
+
+    def relative(self, name: str) -> str:
+        """A ROS name as the file writes it."""
+        inside = f"/{self.namespace}/" if self.namespace else "/"
+        return name.removeprefix(inside) if name.startswith(inside) else name
+
+
+def lines_for(joined: Joined, thing: Thing) -> list[str]:
+    """What a mapping file would say of one thing."""
+    artifact = _Artifact("robot", robot_of(thing.name, robots(joined.contents)))
+    _add(joined, artifact, thing)
+    return [*_namespace(artifact), *_body(artifact)]
+
+
+def mapping_for(
+    joined: Joined, things: Sequence[Thing], frames: dict[str, str], file: str, options: str
+) -> str:
+    """The text of a mapping file for things of the graph.
+
+    Args:
+        joined: the graph.
+        things: topics, services and actions.
+        frames: what `listening.frames` found; empty to leave frames out.
+        file: name of the file, for the comments.
+        options: options for the commands in the comments, such as ``--ros ros2``.
+
+    Raises:
+        UsageError: a node or a type is among them.
+        UnknownInterface: a type has no definition here.
+    """
+    artifacts = _artifacts(joined, things)
+    for artifact in artifacts:
+        for thing in things:
+            if _home(joined, artifacts, thing) is artifact:
+                _add(joined, artifact, thing)
+        artifact.add(_frame(artifact, frames))
+    return "\n".join(_file(artifacts, file, options)) + "\n"
+
+
+def _artifacts(joined: Joined, things: Sequence[Thing]) -> list[_Artifact]:
+    """One artifact, or one for each robot and one for what belongs to none of them."""
+    spaces = robots(joined.contents)
+    used = sorted({robot_of(thing.name, spaces) for thing in things})
+    named = [space for space in used if space]
+    if len(named) <= 1:
+        return [_Artifact("robot", named[0] if named else "")]
+    return [_Artifact(plain_name(space) if space else "common", space) for space in used]
+
+
+def _home(joined: Joined, artifacts: list[_Artifact], thing: Thing) -> _Artifact:
+    space = robot_of(thing.name, robots(joined.contents))
+    return next((each for each in artifacts if each.namespace == space), artifacts[0])
+
+
+def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
+    if thing.kind in (Kind.NODE, Kind.TYPE):
+        raise UsageError(f"{thing.name} is a {thing.kind}; a mapping has topics, services and actions")
+    if not thing.type_name:
+        raise NothingThere(
+            f"the type of {thing.kind} {thing.name} is not told here; write the mapping by hand"
+        )
+    fields, name, written = (
+        joined.backend.fields,
+        artifact.free_name(thing.name),
+        artifact.relative(thing.name),
+    )
+    if thing.kind is Kind.SERVICE:
+        artifact.add([calling(fields, name, written, thing.type_name)])
+        return
+    if thing.kind is Kind.ACTION:
+        artifact.add([acting(fields, name, written, thing.type_name)])
+        return
+    info = joined.contents.topics[thing.name]
+    if info.subscriptions and (not info.publishers or thing.type_name in TWISTS):
+        artifact.add(publishing(fields, name, written, info))
+        return
+    entry = property_of(fields, name, written, info)
+    look = looking(entry)
+    artifact.add([entry, look] if look is not None else [entry])
+
+
+def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
+    """Where the robot is in the map by tf, if its frames are known; without a map odometry tells the same."""
+    prefix = f"{artifact.namespace}/" if artifact.namespace else ""
+    for body in _BODIES:
+        for inside in dict.fromkeys((prefix, "")):
+            source = f"{inside}{body}"
+            targets = dict.fromkeys(("map", f"{inside}map"))
+            target = next((each for each in targets if _joins(frames, each, source)), None)
+            if target is None:
+                continue
+            name = "pose" if all(entry.name != "pose" for entry in artifact.entries) else "pose_in_tf"
+            line = (
+                f"target: {target.removeprefix(inside)}",
+                f"source: {body}",
+                "fields: [x, y, {path: yaw, unit: degrees}]",
+                "rate: 5",
+                "dead_band: [0.02, 0.02, 1]",
+            )
+            own = ('tf_prefix: ""',) if prefix and not inside else ()
+            return [
+                *(Entry("", "tf_prefix", "frames have no prefix here", own) for _ in own),
+                Entry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", line),
+            ]
+    return []
+
+
+def _joins(frames: dict[str, str], target: str, source: str) -> bool:
+    return target in frames and source in frames and root(frames, target) == root(frames, source)
+
+
+def _file(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
+    yield from _head(artifacts, file, options)
+    if len(artifacts) == 1:
+        artifact = artifacts[0]
+        yield from _namespace(artifact)
+        yield from _connected(artifact)
+        yield from _body(artifact)
+        return
+    yield "artifacts:"
+    for artifact in artifacts:
+        yield f"  {artifact.name}:"
+        for line in (*_namespace(artifact), *_connected(artifact), *_body(artifact)):
+            yield f"    {line}" if line else ""
+        yield ""
+
+
+def _head(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
+    yield "# A first mapping of a robot, written by `jacaros ros map`: change what you want to."
+    yield "#"
+    yield "# Properties become beliefs, signals become events, operations are what agents can do. The comments say how"
+    yield '# agents write them. The page "Mapping files" of the reference has all keys.'
+    yield "#"
+    yield f"#   jacaros check {file}"
+    yield f"#   jacaros ros check {file}{options}"
+    yield f"#   jacaros run agent.asl --mapping {file}{options}"
+    example = _example(artifacts)
+    if example:
+        yield "#"
+        yield "# A first agent.asl:"
+        yield "#"
+        yield f"#   {example}"
+    yield ""
+
+
+def _example(artifacts: list[_Artifact]) -> str:
+    """A plan that prints a belief."""
+    for entry in (each for artifact in artifacts for each in artifact.entries):
+        head = entry.comment.partition(":")[0]
+        if entry.section in ("properties", "frames") and head.startswith(f"{entry.name}("):
+            arguments = head.partition("(")[2].split(")")[0]
+            printed = ', " ", '.join(arguments.split(", "))
+            return f'+{entry.name}({arguments}) <- .print("{entry.name} ", {printed}).'
+    return ""
+
+
+def _namespace(artifact: _Artifact) -> Iterator[str]:
+    if artifact.namespace:
+        yield _with_comment(f"namespace: {artifact.namespace}", "makeArtifact can give another")
+    for entry in artifact.entries:
+        if not entry.section:
+            yield _with_comment(entry.lines[0], entry.comment)
+
+
+def _connected(artifact: _Artifact) -> Iterator[str]:
+    if any(entry.section == "properties" for entry in artifact.entries):
+        comment = 'connected("/odom") and so on, while messages come'
+        yield _with_comment("connected: true", comment)
+
+
+def _body(artifact: _Artifact) -> Iterator[str]:
+    for section in _SECTIONS:
+        entries = [entry for entry in artifact.entries if entry.section == section]
+        if not entries:
+            continue
+        yield ""
+        yield f"{section}:"
+        for entry in entries:
+            yield _with_comment(f"  {entry.name}:", entry.comment)
+            yield from (_aligned(f"    {line}") for line in entry.lines)
+
+
+def _aligned(line: str) -> str:
+    """A line whose comment, if it has one behind its key, stands where all comments stand."""
+    key, sign, comment = line.partition("  # ")
+    return _with_comment(key.rstrip(), comment) if sign and key.strip() else line
+
+
+def _with_comment(line: str, comment: str) -> str:
+    return f"{line.ljust(_COMMENT_AT - 2)}  # {comment}"

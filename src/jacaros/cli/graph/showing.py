@@ -1,0 +1,215 @@
+"""``jacaros ros show``: what a thing is made of, who is there, and what it says just now."""
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import Any
+
+from jacaros.cli.graph.definitions import Leaf, is_time, leaves, parts, value_at
+from jacaros.cli.graph.first_mapping import lines_for
+from jacaros.cli.graph.joining import Joined
+from jacaros.cli.graph.kinds import Kind, Thing
+from jacaros.cli.graph.listening import one_message
+from jacaros.ros.backend import PARAMETERS
+from jacaros.ros.errors import RosError, UnknownInterface
+from jacaros.ros.graph import Endpoint
+from jacaros.ros.message import to_seconds
+
+FEW = 6
+"""So many elements of a list are shown."""
+LONG = 60
+"""So many characters of a text."""
+
+
+async def described_all(joined: Joined, things: Sequence[Thing]) -> list[dict[str, Any]]:
+    """What is known of each thing; of a type whose kind was left out, of that which there is.
+
+    Raises:
+        UnknownInterface: no definition is known.
+    """
+    found, missing = [], None
+    for thing in things:
+        try:
+            found.append(await described(joined, thing))
+        except UnknownInterface as unknown:
+            missing = unknown
+    if not found and missing is not None:
+        raise missing
+    return found
+
+
+async def described(joined: Joined, thing: Thing) -> dict[str, Any]:
+    """What is known of a thing, as plain data for `as_text` and for JSON.
+
+    Raises:
+        UnknownInterface: its type has no definition here.
+    """
+    data: dict[str, Any] = {"kind": str(thing.kind), "name": thing.name}
+    if thing.type_name:
+        data["type"] = thing.type_name
+    if thing.kind is Kind.NODE:
+        return {**data, **await _node(joined, thing.name)}
+    message = None
+    if thing.kind is Kind.TOPIC:
+        info = joined.contents.topics[thing.name]
+        data["types"] = list(info.types)
+        data["publishers"] = [_endpoint(each) for each in info.publishers]
+        data["subscriptions"] = [_endpoint(each) for each in info.subscriptions]
+    if not thing.type_name:
+        return data
+    if thing.kind is Kind.TOPIC and data["publishers"]:
+        message = await one_message(joined, joined.contents.topics[thing.name], joined.timeout)
+        data["heard"] = message is not None
+    data["parts"] = {
+        name: [_row(joined, leaf, message) for leaf in leaves(joined.backend.fields, type_name)]
+        for name, type_name in parts(thing.type_name).items()
+    }
+    if thing.kind is not Kind.TYPE:
+        data["mapping"] = lines_for(joined, thing)
+    return data
+
+
+async def _node(joined: Joined, name: str) -> dict[str, Any]:
+    topics = sorted(joined.contents.topics.items())
+    data: dict[str, Any] = {
+        "publishes": [topic for topic, info in topics if any(e.node == name for e in info.publishers)],
+        "subscribes": [topic for topic, info in topics if any(e.node == name for e in info.subscriptions)],
+    }
+    if PARAMETERS in joined.backend.capabilities:
+        parameters = joined.backend.parameters(name)
+        # Not every node answers: on ROS 2 some have no parameter services.
+        with suppress(RosError):
+            names = await parameters.names(joined.timeout)
+            data["parameters"] = {each: await parameters.get(each, joined.timeout) for each in names}
+    return data
+
+
+def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
+    data: dict[str, Any] = {"node": endpoint.node or None}
+    if endpoint.qos is not None:
+        qos = endpoint.qos
+        data["qos"] = {"reliability": qos.reliability, "durability": qos.durability, "depth": qos.depth}
+        if qos.deadline is not None:
+            data["qos"]["deadline"] = qos.deadline
+    return data
+
+
+def _row(joined: Joined, leaf: Leaf, message: Any) -> dict[str, Any]:
+    row: dict[str, Any] = {"path": leaf.path, "type": str(leaf.type)}
+    if is_time(leaf.type) and not leaf.type.array:
+        row["type"] = leaf.type.base.rpartition("/")[2].lower()
+    if leaf.unit:
+        row["unit"] = leaf.unit
+    if message is not None:
+        row["value"] = _plain(value_at(message, leaf.path), leaf)
+    return row
+
+
+def _plain(value: Any, leaf: Leaf) -> Any:
+    """A value as JSON has it; of long lists the beginning and the length."""
+    if value is None:
+        return None
+    if is_time(leaf.type) and not leaf.type.array:
+        return to_seconds(value)
+    if leaf.type.array:
+        elements = [_single(each) for each in value[:FEW]]
+        return elements if len(value) <= FEW else {"length": len(value), "first": elements}
+    return _single(value)
+
+
+def _single(value: Any) -> Any:
+    if hasattr(value, "item"):
+        value = value.item()
+    if isinstance(value, bytes):
+        return value[0] if len(value) == 1 else list(value)
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value if isinstance(value, bool | int | float | str) else str(value)
+
+
+def as_json(data: Sequence[dict[str, Any]]) -> str:
+    """One object, or a list if there are several things of that name."""
+    return json.dumps(data[0] if len(data) == 1 else list(data), indent=2, ensure_ascii=False, default=str)
+
+
+def as_text(data: dict[str, Any]) -> Iterator[str]:
+    """What people read."""
+    yield f"{data['kind']} {data['name']}"
+    if len(data.get("types", ())) > 1:
+        yield f"  types: {', '.join(data['types'])}: somebody uses a wrong one"
+    elif "type" in data and data["kind"] != "type":
+        yield f"  type: {data['type']}"
+    elif data["kind"] not in ("node", "type"):
+        yield "  type: not told by this middleware"
+    for key in ("publishers", "subscriptions"):
+        if key in data:
+            yield f"  {key}: {_endpoints(data[key])}"
+    yield from _of_node(data)
+    for name, rows in data.get("parts", {}).items():
+        yield ""
+        yield (
+            name
+            if len(data["parts"]) > 1 or "value" not in (rows[0] if rows else {})
+            else "message just heard"
+        )
+        yield from _table(rows)
+    if data.get("heard") is False:
+        yield ""
+        yield "no message was heard; --timeout S waits longer"
+    if data.get("mapping"):
+        yield ""
+        yield "in a mapping file (`jacaros ros map` writes one)"
+        yield from (f"  {line}".rstrip() for line in data["mapping"])
+
+
+def _of_node(data: dict[str, Any]) -> Iterator[str]:
+    for key in ("publishes", "subscribes"):
+        if key in data:
+            yield f"  {key}: {', '.join(data[key]) or 'nothing that is known'}"
+    if data.get("parameters"):
+        yield ""
+        yield "parameters"
+        yield from (f"  {name}: {value!r}" for name, value in data["parameters"].items())
+
+
+def _endpoints(endpoints: list[dict[str, Any]]) -> str:
+    return "; ".join(_endpoint_text(each) for each in endpoints) or "nobody"
+
+
+def _endpoint_text(endpoint: dict[str, Any]) -> str:
+    node = endpoint["node"] or "somebody"
+    qos = endpoint.get("qos")
+    if qos is None:
+        return str(node)
+    deadline = f", deadline {qos['deadline']:g} s" if "deadline" in qos else ""
+    return f"{node} ({qos['reliability']}, {qos['durability']}, depth {qos['depth']}{deadline})"
+
+
+def _table(rows: list[dict[str, Any]]) -> Iterator[str]:
+    if not rows:
+        yield "  (empty)"
+        return
+    cells = [[row["path"], row["type"], row.get("unit", ""), _text(row)] for row in rows]
+    widths = [max(len(cell[column]) for cell in cells) for column in range(3)]
+    for cell in cells:
+        line = "  ".join(text.ljust(width) for text, width in zip(cell, widths, strict=False))
+        yield f"  {line}  {cell[3]}".rstrip()
+
+
+def _text(row: dict[str, Any]) -> str:
+    if "value" not in row:
+        return ""
+    value = row["value"]
+    if isinstance(value, dict):
+        return f"[{', '.join(map(_number, value['first']))}, ... {value['length']} in all]"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_number, value))}]"
+    if isinstance(value, str):
+        text = json.dumps(value, ensure_ascii=False)
+        return text if len(text) <= LONG else f"{text[:LONG]}..."
+    return "(none)" if value is None else _number(value)
+
+
+def _number(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) and abs(value) < 1e6 else str(value)

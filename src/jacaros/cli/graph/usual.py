@@ -1,0 +1,85 @@
+"""What a robot usually has that agents want, told by its types and names."""
+
+from jacaros.cli.graph.kinds import Kind, Thing, all_things
+from jacaros.cli.graph.suggestions import TWISTS
+from jacaros.ros.graph import GraphContents
+
+_BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan", *TWISTS)
+"""Whoever has these is a robot, and their namespace is its own."""
+_SENSORS = (
+    "nav_msgs/msg/Odometry",
+    "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/BatteryState",
+    "sensor_msgs/msg/Range",
+    "sensor_msgs/msg/Imu",
+    "irobot_create_msgs/msg/HazardDetectionVector",
+    "irobot_create_msgs/msg/DockStatus",
+    "kobuki_msgs/msg/BumperEvent",
+    "kobuki_msgs/msg/CliffEvent",
+    "turtlebot3_msgs/msg/SensorState",
+)
+_BY_NAME = {
+    "map": ("nav_msgs/msg/OccupancyGrid",),
+    "amcl_pose": ("geometry_msgs/msg/PoseWithCovarianceStamped",),
+}
+_ACTIONS = (
+    "nav2_msgs/action/NavigateToPose",
+    "nav2_msgs/action/DockRobot",
+    "nav2_msgs/action/UndockRobot",
+    "move_base_msgs/action/MoveBase",
+    "irobot_create_msgs/action/Dock",
+    "irobot_create_msgs/action/Undock",
+    "irobot_create_msgs/action/DriveDistance",
+    "irobot_create_msgs/action/RotateAngle",
+    "kobuki_msgs/action/AutoDocking",
+)
+_SERVICES = ("std_srvs/srv/Trigger", "std_srvs/srv/Empty")
+_INNER = (
+    "costmap",
+    "lifecycle",
+    "slam",
+    "amcl",
+    "recorder",
+    "/_",
+    "/rosbridge",
+    "/rosapi",
+    "global_localization",
+)
+"""Services of programs and not of robots have such names."""
+SERVICES_AT_MOST = 10
+
+
+def usual_things(contents: GraphContents) -> list[Thing]:
+    """Odometry, scan, velocity, battery, bumpers, map, actions to drive and dock, plain services."""
+    things = [thing for thing in all_things(contents) if _is_usual(thing, contents)]
+    services = [thing for thing in things if thing.kind is Kind.SERVICE][:SERVICES_AT_MOST]
+    return [thing for thing in things if thing.kind is not Kind.SERVICE] + services
+
+
+def _is_usual(thing: Thing, contents: GraphContents) -> bool:
+    last = thing.name.rpartition("/")[2]
+    match thing.kind:
+        case Kind.TOPIC:
+            if thing.type_name in TWISTS:
+                return last == "cmd_vel" and bool(contents.topics[thing.name].subscriptions)
+            wanted = thing.type_name in _SENSORS or thing.type_name in _BY_NAME.get(last, ())
+            return wanted and bool(contents.topics[thing.name].publishers)
+        case Kind.ACTION:
+            return thing.type_name in _ACTIONS
+        case Kind.SERVICE:
+            return thing.type_name in _SERVICES and not any(part in thing.name for part in _INNER)
+    return False
+
+
+def robots(contents: GraphContents) -> list[str]:
+    """The namespaces of robots, without slash in front, sorted; ``""`` is left out."""
+    spaces = {
+        name.rpartition("/")[0] for name, info in contents.topics.items() if set(info.types) & set(_BASE)
+    }
+    return sorted(space.strip("/") for space in spaces if space.strip("/"))
+
+
+def robot_of(name: str, namespaces: list[str]) -> str:
+    """The robot to which a thing of that name belongs; empty for none."""
+    fitting = [space for space in namespaces if name.startswith(f"/{space}/")]
+    return min(fitting, key=len, default="")

@@ -1,0 +1,226 @@
+"""``jacaros ros list|show|map|check``: looking at a live ROS graph."""
+
+import sys
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from jacaros.errors import UsageError
+from jacaros.mas.options import ROS_KINDS, RunOptions
+
+F = TypeVar("F", bound=Callable[..., Any])
+T = TypeVar("T")
+
+_OPTIONS = (
+    click.option(
+        "--ros",
+        type=click.Choice(ROS_KINDS),
+        default="memory",
+        show_default=True,
+        help="The ROS graph: that of the embedded world, or a real one.",
+    ),
+    click.option("--world", metavar="FILE", help="World file or name, with --ros memory."),
+    click.option(
+        "--domain-id", type=int, metavar="N", help="Domain of the ROS 2 graph, in place of ROS_DOMAIN_ID."
+    ),
+    click.option("--master", metavar="URI", help="Master of the ROS 1 graph, in place of ROS_MASTER_URI."),
+    click.option("--bridge", metavar="URL", help="Address of the rosbridge server, such as ws://robot:9090."),
+    click.option(
+        "--namespace", default="", metavar="NAME", help="Put before names without a slash in front."
+    ),
+    click.option(
+        "--timeout",
+        type=click.FloatRange(min=0.0, min_open=True),
+        default=5.0,
+        show_default=True,
+        metavar="S",
+        help="Seconds to wait for nodes, answers and messages.",
+    ),
+)
+
+
+def _asking(command: F) -> F:
+    """Give a command the options that say which graph is looked at."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+@click.group("ros", short_help="Look at a live ROS graph, and write mapping files for it.")
+def command() -> None:
+    """Look at a live ROS graph, and write and check mapping files for it.
+
+    Without --ros it is the graph of the embedded world.
+    """  # fmt: skip
+
+
+@command.command("list")
+@_asking
+@click.option("--rates", is_flag=True, help="Listen for two seconds and tell how often messages come.")
+@click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
+def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
+    """List the topics, actions, services and nodes of the graph with their types.
+
+    On a terminal as tables, else a line for each thing.
+    """  # fmt: skip
+    from jacaros.cli.graph import listening, listing
+    from jacaros.cli.graph.joining import Joined
+
+    async def look(joined: Joined) -> None:
+        counted = await listening.rates(joined, joined.contents.topics.values()) if rates else {}
+        if as_json:
+            click.echo(listing.as_json(joined.contents, counted))
+        elif sys.stdout.isatty():
+            listing.show_tables(joined.contents, counted)
+        else:
+            for line in listing.as_lines(joined.contents, counted):
+                click.echo(line)
+
+    _in_graph(look, **graph)
+
+
+@command.command("show")
+@click.argument("name")
+@_asking
+@click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
+def show_command(name: str, as_json: bool, **graph: Any) -> None:
+    """Show NAME: a topic, service, action or node of the graph, or a type such as nav_msgs/msg/Odometry.
+
+    Tells its fields with their types and units, who is there with which quality of service, a message that is
+    just coming, and what a mapping file would say of it.
+    """  # fmt: skip
+    from jacaros.cli.graph import showing
+    from jacaros.cli.graph.joining import Joined
+    from jacaros.cli.graph.kinds import find
+
+    async def look(joined: Joined) -> None:
+        things = find(joined, name)
+        data = await showing.described_all(joined, things)
+        if as_json:
+            click.echo(showing.as_json(data))
+            return
+        for number, each in enumerate(data):
+            if number:
+                click.echo()
+            for line in showing.as_text(each):
+                click.echo(line)
+
+    _in_graph(look, **graph)
+
+
+@command.command("map")
+@click.argument("names", nargs=-1, metavar="[TOPIC|SERVICE|ACTION]...")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="File to write; else it is printed.",
+)
+@click.option("--force", is_flag=True, help="Write over a file that is there.")
+@_asking
+def map_command(names: tuple[str, ...], output: Path | None, force: bool, **graph: Any) -> None:
+    """Write a first mapping file for things of the graph; without names for the usual things of a robot.
+
+    These are odometry, scan, battery, bumpers, map, velocity, actions to drive and dock, and plain services. The file
+    is right at once; its comments say how agents use it.
+    """  # fmt: skip
+    from jacaros.cli.graph import first_mapping, listening
+    from jacaros.cli.graph.joining import Joined, NothingThere
+    from jacaros.cli.graph.kinds import find
+    from jacaros.cli.graph.usual import usual_things
+
+    if output is not None and output.exists() and not force:
+        raise UsageError(f"there is a file {output} already; --force writes over it")
+
+    async def look(joined: Joined) -> str:
+        if names:
+            things = [thing for name in names for thing in find(joined, name)]
+            frames: dict[str, str] = {}
+        else:
+            things = usual_things(joined.contents)
+            frames = await listening.frames(joined)
+            if not things:
+                raise NothingThere(
+                    "nothing that robots usually have is in the graph (odometry, scan, cmd_vel, battery, actions to "
+                    "drive); name topics, services and actions of `jacaros ros list`"
+                )
+        file = output.name if output is not None else "robot.yaml"
+        return first_mapping.mapping_for(joined, things, frames, file, _written(**graph))
+
+    text = _in_graph(look, **graph)
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    output.write_text(text, encoding="utf-8")
+    click.echo(f"{output} is written; see `jacaros describe {output}`")
+
+
+@command.command("check")
+@click.argument("file", type=click.Path(path_type=Path))
+@_asking
+def check_command(file: Path, **graph: Any) -> int:
+    """Compare the mapping FILE with the graph: are its topics, servers, frames and parameters there and as it says?
+
+    Each problem is told with its line, what was found, and what to write. The exit code is 1 if there is one.
+    """  # fmt: skip
+    from jacaros.artifacts.mapping.file import find_mapping, load_mapping
+    from jacaros.cli.graph import listening
+    from jacaros.cli.graph.joining import Joined
+    from jacaros.cli.graph.verifying import problems_of
+    from jacaros.yaml_nodes import Problem, shown
+
+    mapping = load_mapping(find_mapping(str(file)) or file)
+
+    async def look(joined: Joined) -> list[Problem]:
+        wanted = any(part.frames for part in mapping.artifacts.values())
+        frames = await listening.frames(joined) if wanted else {}
+        return [
+            each for part in mapping.artifacts.values() for each in await problems_of(joined, part, frames)
+        ]
+
+    problems = _in_graph(look, **graph)
+    lines = mapping.text.splitlines()
+    for problem in problems:
+        click.echo(shown(mapping.file, lines, problem))
+    count = f"{len(problems)} problem{'s' if len(problems) != 1 else ''}"
+    click.echo(f"{count} with this graph" if problems else f"{file} suits this graph", err=bool(problems))
+    return 1 if problems else 0
+
+
+def _in_graph(
+    look: Callable[[Any], Awaitable[T]],
+    ros: str,
+    world: str | None,
+    domain_id: int | None,
+    master: str | None,
+    bridge: str | None,
+    namespace: str,
+    timeout: float,
+) -> T:
+    """Join the graph that the options say, and look at it."""
+    from jacaros.cli.graph.joining import clock_for, joined
+    from jacaros.clock import run
+
+    options = RunOptions(
+        ros=ros, world=world, domain_id=domain_id, master=master, bridge=bridge, namespace=namespace
+    )
+    clock = clock_for(options)
+
+    async def main() -> T:
+        async with joined(options, clock, timeout) as there:
+            return await look(there)
+
+    return run(main, clock)
+
+
+def _written(ros: str, world: str | None, **rest: Any) -> str:
+    """The options as they are written, for commands in comments."""
+    parts = [f"--ros {ros}"] if ros != "memory" else []
+    parts += [f"--world {world}"] if world is not None else []
+    for name in ("domain_id", "master", "bridge"):
+        if rest[name] is not None:
+            parts.append(f"--{name.replace('_', '-')} {rest[name]}")
+    return "".join(f" {part}" for part in parts)
