@@ -7,6 +7,7 @@ from types import MappingProxyType, ModuleType
 
 from jacaros.artifacts.ros.battery import ArtSimBattery
 from jacaros.artifacts.ros.cleaning import ArtCleaning
+from jacaros.artifacts.ros.connection_artifact import ArtRos
 from jacaros.artifacts.ros.laser import ArtBaseScan, ArtScan
 from jacaros.artifacts.ros.map import ArtSlamData
 from jacaros.artifacts.ros.odometry import ArtOdometry, ArtOdometryOnDemand
@@ -37,6 +38,7 @@ BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
             ArtCmdVelMuxAndOdometry,
             ArtOdometry,
             ArtOdometryOnDemand,
+            ArtRos,
             ArtScan,
             ArtSimBattery,
             ArtSlamData,

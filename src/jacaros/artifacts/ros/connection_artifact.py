@@ -1,0 +1,216 @@
+"""``ArtRos``: the connection to the robot's middleware itself, for agents that look around in the graph."""
+
+import math
+from collections.abc import Awaitable
+from typing import ClassVar, NoReturn, TypeVar
+
+from jacaros.artifacts.ros.options import positive
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.env.artifact import Out, internal_operation, operation
+from jacaros.env.values import Atom, Structure
+from jacaros.ros.errors import (
+    CallTimedOut,
+    ParameterRefused,
+    ParameterUnknown,
+    RosError,
+    ServiceError,
+    ServiceUnavailable,
+    TransformUnavailable,
+)
+from jacaros.ros.parameter import ParameterValue
+from jacaros.ros.ros_clock import RosClock
+
+T = TypeVar("T")
+
+PATIENCE = 5.0
+"""Seconds that an operation waits for an answer, unless the option ``timeout`` says otherwise."""
+
+LEVELS = ("debug", "info", "warn", "error", "fatal")
+
+
+class ArtRos(RosArtifact):
+    """Shows the connection to ROS, and gives agents what else there is in the graph.
+
+    Names of nodes are below the robot's name, if the artifact was made with one; with a slash in front they are
+    absolute.  An operation that reaches nobody fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or
+    ``service_failed(Name)``.
+
+    Options:
+        timeout(S): seconds that operations wait for an answer, 5 unless given.
+
+    Properties:
+        middleware(Kind): ``memory``, ``ros1``, ``ros2`` or ``rosbridge``.
+        node(Name): the name of our own node, as text.
+        connected: the graph (on ROS 1: the master) can be reached; it is not there while it cannot.
+
+    Signals:
+        clock_jumped(S): with ``--clock ros``: the simulator's time jumped back by S seconds.
+    """
+
+    known_options: ClassVar = {"timeout": positive}
+
+    def open(self) -> None:
+        """Show the connection, and follow it."""
+        self._closed = False
+        self.define_property("middleware", Atom(self.ros.name))
+        self.define_property("node", self.ros.node_name)
+        if self.ros.connected:
+            self.define_property("connected")
+        self.ros.on_connection(self._connection_changed)
+        self.at_dispose(self._close)
+        if isinstance(self.clock, RosClock):
+            self.at_dispose(self.clock.on_jump(lambda by: self.start(self.tell_jump, -by)))
+
+    def _close(self) -> None:
+        self._closed = True
+
+    def _connection_changed(self, connected: bool) -> None:
+        if not self._closed:
+            self.start(self.show_connected, connected)
+
+    @internal_operation
+    def show_connected(self, connected: bool) -> None:
+        """Have the property ``connected``, or have it no more."""
+        if connected and not self.has_property("connected"):
+            self.define_property("connected")
+        elif not connected and self.has_property("connected"):
+            self.remove_property("connected")
+
+    @internal_operation
+    def tell_jump(self, by: float) -> None:
+        """Signal that time jumped back."""
+        self.signal("clock_jumped", by)
+
+    # ---- parameters
+
+    @operation
+    async def get_parameter(self, node: str, name: str, value: Out) -> None:
+        """Give the value of a node's parameter: a number, text, truth value, or a list of them.
+
+        Fails with ``parameter_unknown(Name)`` when the node has none of that name.
+        """
+        found = await self._asked(self.ros.parameters(self._node(node)).get(name, self._patience), node, name)
+        value.set(list(found) if isinstance(found, bytes) else found)
+
+    @operation
+    async def set_parameter(self, node: str, name: str, value: object) -> None:
+        """Change a node's parameter; a whole number is taken for a parameter that has a number with a fraction.
+
+        Fails with ``parameter_unknown(Name)``, or with ``parameter_refused(Name)`` when the node does not take the value.
+        """
+        parameters = self.ros.parameters(self._node(node))
+        wanted = _parameter_value(value)
+        if wanted is None:
+            self.fail(f"{value!r} cannot be the value of a parameter", "parameter_refused", name)
+        if isinstance(wanted, int) and not isinstance(wanted, bool):
+            wanted = await self._asked(_as_before(parameters.get(name, self._patience), wanted), node, name)
+        await self._asked(parameters.set(name, wanted, self._patience), node, name)
+
+    @operation
+    async def list_parameters(self, node: str, names: Out) -> None:
+        """Give the names of a node's parameters, as a list of texts."""
+        names.set(await self._asked(self.ros.parameters(self._node(node)).names(self._patience), node))
+
+    # ---- the graph
+
+    @operation
+    async def list_topics(self, topics: Out) -> None:
+        """Give all topics, as a list of ``topic(Name, Type)``."""
+        contents = await self._asked(self.ros.contents(self._patience), "graph")
+        listed = sorted(contents.topics.items())
+        topics.set([Structure("topic", (name, info.types[0] if info.types else "")) for name, info in listed])
+
+    @operation
+    async def list_services(self, services: Out) -> None:
+        """Give all services, as a list of ``service(Name, Type)``; Type is "" where it is not told."""
+        contents = await self._asked(self.ros.contents(self._patience), "graph")
+        services.set([Structure("service", each) for each in sorted(contents.services.items())])
+
+    @operation
+    async def list_actions(self, actions: Out) -> None:
+        """Give all actions, as a list of ``action(Name, Type)``."""
+        contents = await self._asked(self.ros.contents(self._patience), "graph")
+        actions.set([Structure("action", each) for each in sorted(contents.actions.items())])
+
+    @operation
+    async def list_nodes(self, nodes: Out) -> None:
+        """Give the names of all nodes, as a list of texts."""
+        nodes.set(list((await self._asked(self.ros.contents(self._patience), "graph")).nodes))
+
+    @operation
+    def rosout(self, level: str, text: str) -> None:
+        """Write a line to the graph's log under our node's name; *level* is debug, info, warn, error or fatal."""
+        if level not in LEVELS:
+            self.fail(f"there is no level {level}; there are {', '.join(LEVELS)}", "unknown_level", level)
+        self.ros.rosout(str(level), text)
+
+    # ---- frames
+
+    @operation
+    async def lookup_transform(self, target: str, source: str, x: Out, y: Out, yaw: Out) -> None:
+        """Give the place of frame *source* in frame *target* by the newest transforms, as tf2 does.
+
+        X and Y are metres, Yaw is in degrees, counter-clockwise, in (-180, 180].  It waits for a transform; when none
+        comes it fails with ``transform_unavailable(Reason)``: ``unknown_frame``, ``not_connected``, ``too_old`` or
+        ``too_new``.
+        """
+        waiting = self.ros.tf_wait(target.lstrip("/"), source.lstrip("/"), timeout=self._patience)
+        found = await self._asked(waiting, target)
+        x.set(found.translation[0])
+        y.set(found.translation[1])
+        yaw.set(math.degrees(found.yaw))
+
+    # ---- what they have in common
+
+    @property
+    def _patience(self) -> float:
+        patience = self.options.get("timeout", PATIENCE)
+        assert isinstance(patience, float)
+        return patience
+
+    def _node(self, name: str) -> str:
+        return str(name) if name.startswith(("/", "~")) else f"{self.robot_prefix}/{name}"
+
+    async def _asked(self, question: Awaitable[T], whom: str, what: str = "") -> T:
+        """Wait for an answer; a step boundary."""
+        try:
+            return await self.step(question)
+        except RosError as error:
+            self._failed(error, str(whom), what)
+
+    def _failed(self, error: RosError, whom: str, what: str) -> NoReturn:
+        match error:
+            case ParameterUnknown():
+                self.fail(str(error), "parameter_unknown", what or whom)
+            case ParameterRefused():
+                self.fail(str(error), "parameter_refused", what or whom)
+            case TransformUnavailable():
+                self.fail(str(error), "transform_unavailable", Atom(error.reason))
+            case ServiceUnavailable():
+                self.fail(str(error), "service_unavailable", whom)
+            case CallTimedOut():
+                self.fail(str(error), "service_timeout", self._patience)
+            case ServiceError():
+                self.fail(str(error), "service_failed", whom)
+        self.fail(str(error), "ros_error", type(error).__name__)
+
+
+async def _as_before(present: Awaitable[ParameterValue], wanted: int) -> int | float:
+    """A whole number in the kind that the parameter has now: agents do not tell 1 from 1.0."""
+    return float(wanted) if isinstance(await present, float) else wanted
+
+
+def _parameter_value(value: object) -> ParameterValue | None:
+    """A value of the agents as parameters have it; None when they have none such."""
+    if isinstance(value, bool | int | float):
+        return value
+    if isinstance(value, str):
+        return str.__str__(value)
+    if isinstance(value, list | tuple):
+        parts = [_parameter_value(each) for each in value]
+        kinds = {float if isinstance(each, float) else type(each) for each in parts}
+        if kinds == {int, float}:
+            return [float(each) for each in parts if isinstance(each, int | float)]
+        if len(kinds) <= 1 and not kinds & {list, type(None)}:
+            return parts  # type: ignore[return-value]  # all of them are of one plain kind
+    return None
