@@ -27,7 +27,6 @@ _NAMES = {
     "undock_robot": "undock",
     "cmd_vel": "drive",
     "battery_state": "battery",
-    "amcl_pose": "amcl_pose",
 }
 """Words that read better in a plan."""
 _COMMENT_AT = 41
@@ -48,15 +47,10 @@ class _Artifact:
         """A name that no entry has yet: the last part of the ROS name, with parts in front, or with a number."""
         taken = {entry.name for entry in self.entries}
         parts = [part for part in ros_name.split("/") if part]
-        for count in range(1, len(parts) + 1):
-            wanted = plain_name("_".join(parts[-count:]))
-            name = _NAMES.get(wanted, wanted)
-            if name not in taken:
-                return name
-        number = 2
-        while f"{name}{number}" in taken:
-            number += 1
-        return f"{name}{number}"
+        plain = [plain_name("_".join(parts[-count:])) for count in range(1, len(parts) + 1)]
+        names = [_NAMES.get(plain[0], plain[0]), *plain]
+        names += [f"{plain[-1]}{number}" for number in range(2, len(taken) + 3)]
+        return next(name for name in names if name not in taken)
 
     def relative(self, name: str) -> str:
         """A ROS name as the file writes it."""

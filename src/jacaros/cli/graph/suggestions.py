@@ -93,7 +93,9 @@ def _call(name: str, values: Sequence[Value]) -> str:
     """How agents write it: ``odom(X, Y, Yaw): metres, metres, degrees``."""
     arguments = ", ".join(_variable(value.name) for value in values)
     head = f"{name}({arguments})" if values else name
-    return f"{head}: {', '.join(value.unit or value.path for value in values)}" if values else head
+    if not any(value.unit for value in values):
+        return head
+    return f"{head}: {', '.join(value.unit or value.name for value in values)}"
 
 
 def _variable(name: str) -> str:
@@ -243,9 +245,17 @@ def acting(fields: Fields, name: str, action: str, type_name: str) -> Entry:
     outputs = _results(fields, result_type(type_name))
     lines = [*_parameters(inputs), f"action: {action}", f"type: {type_name}", *body, *_outputs(outputs)]
     lines += _feedback(fields, name, type_name)
+    lines += [_SUCCESS[type_name]] if type_name in _SUCCESS else []
     if _moves(type_name):
         lines.append("suspend: cancel   # .suspend stops the robot, .resume sends the goal again")
     return Entry("operations", name, _call(name, [*inputs, *outputs]), tuple(lines))
+
+
+_SUCCESS = {
+    "irobot_create_msgs/action/Dock": "success: is_docked",
+    "irobot_create_msgs/action/Undock": "success: {path: is_docked, is: false}",
+}
+"""What else than its status tells whether an action went well."""
 
 
 def _moves(type_name: str) -> bool:
@@ -264,16 +274,28 @@ def _feedback(fields: Fields, name: str, type_name: str) -> list[str]:
     if not shown:
         return []
     items = ", ".join(value.as_field for value in shown)
-    said = f"   # {_call(f'{name}_feedback', shown)}"
-    return ["feedback:", f"  {name}_feedback: {{fields: [{items}], rate: 2}}{said}"]
+    return [
+        "feedback:",
+        f"  # {_call(f'{name}_feedback', shown)}",
+        f"  {name}_feedback: {{fields: [{items}], rate: 2}}",
+    ]
 
 
-_TOLD_ANYWAY = ("success", "message", "status_message", "error_code", "error_msg", "error_string")
+_TOLD_ANYWAY = (
+    "is_docked",
+    "success",
+    "message",
+    "status_message",
+    "error_code",
+    "error_msg",
+    "error_string",
+)
 """Fields of results that make the operation fail, with a reason."""
 
 
 def _results(fields: Fields, type_name: str) -> list[Value]:
-    return [value for value in values_of(fields, type_name) if value.path not in _TOLD_ANYWAY][:3]
+    values = values_of(fields, type_name)
+    return [value for value in values if value.path not in _TOLD_ANYWAY and "pose." not in value.path][:3]
 
 
 def _outputs(values: Sequence[Value]) -> list[str]:

@@ -1,5 +1,7 @@
 """What a robot usually has that agents want, told by its types and names."""
 
+from collections.abc import Iterator
+
 from jacaros.cli.graph.kinds import Kind, Thing, all_things
 from jacaros.cli.graph.suggestions import TWISTS
 from jacaros.ros.graph import GraphContents
@@ -12,27 +14,25 @@ _SENSORS = (
     "sensor_msgs/msg/BatteryState",
     "sensor_msgs/msg/Range",
     "sensor_msgs/msg/Imu",
-    "irobot_create_msgs/msg/HazardDetectionVector",
     "irobot_create_msgs/msg/DockStatus",
-    "kobuki_msgs/msg/BumperEvent",
-    "kobuki_msgs/msg/CliffEvent",
-    "turtlebot3_msgs/msg/SensorState",
 )
 _BY_NAME = {
     "map": ("nav_msgs/msg/OccupancyGrid",),
     "amcl_pose": ("geometry_msgs/msg/PoseWithCovarianceStamped",),
 }
-_ACTIONS = (
-    "nav2_msgs/action/NavigateToPose",
-    "nav2_msgs/action/DockRobot",
-    "nav2_msgs/action/UndockRobot",
-    "move_base_msgs/action/MoveBase",
-    "irobot_create_msgs/action/Dock",
-    "irobot_create_msgs/action/Undock",
-    "irobot_create_msgs/action/DriveDistance",
-    "irobot_create_msgs/action/RotateAngle",
-    "kobuki_msgs/action/AutoDocking",
+_ROLES = (
+    (
+        "irobot_create_msgs/msg/HazardDetectionVector",
+        "kobuki_msgs/msg/BumperEvent",
+        "turtlebot3_msgs/msg/SensorState",
+    ),
+    ("nav2_msgs/action/NavigateToPose", "move_base_msgs/action/MoveBase"),
+    ("irobot_create_msgs/action/Dock", "nav2_msgs/action/DockRobot", "kobuki_msgs/action/AutoDocking"),
+    ("irobot_create_msgs/action/Undock", "nav2_msgs/action/UndockRobot"),
+    ("irobot_create_msgs/action/DriveDistance",),
+    ("irobot_create_msgs/action/RotateAngle",),
 )
+"""Of the things that do the same, a robot's first one is taken."""
 _SERVICES = ("std_srvs/srv/Trigger", "std_srvs/srv/Empty")
 _INNER = (
     "costmap",
@@ -51,9 +51,27 @@ SERVICES_AT_MOST = 10
 
 def usual_things(contents: GraphContents) -> list[Thing]:
     """Odometry, scan, velocity, battery, bumpers, map, actions to drive and dock, plain services."""
-    things = [thing for thing in all_things(contents) if _is_usual(thing, contents)]
-    services = [thing for thing in things if thing.kind is Kind.SERVICE][:SERVICES_AT_MOST]
-    return [thing for thing in things if thing.kind is not Kind.SERVICE] + services
+    things = all_things(contents)
+    spaces = robots(contents)
+    taken = {thing for space in ("", *spaces) for thing in _in_roles(things, contents, space, spaces)}
+    found = [thing for thing in things if thing in taken or _is_usual(thing, contents)]
+    services = [thing for thing in found if thing.kind is Kind.SERVICE][:SERVICES_AT_MOST]
+    return [thing for thing in found if thing.kind is not Kind.SERVICE] + services
+
+
+def _in_roles(things: list[Thing], contents: GraphContents, space: str, spaces: list[str]) -> Iterator[Thing]:
+    """What one robot has for each of the roles."""
+    own = [thing for thing in things if robot_of(thing.name, spaces) == space and _is_there(thing, contents)]
+    for role in _ROLES:
+        for type_name in role:
+            fitting = [thing for thing in own if thing.type_name == type_name]
+            if fitting:
+                yield from fitting
+                break
+
+
+def _is_there(thing: Thing, contents: GraphContents) -> bool:
+    return thing.kind is not Kind.TOPIC or bool(contents.topics[thing.name].publishers)
 
 
 def _is_usual(thing: Thing, contents: GraphContents) -> bool:
@@ -63,9 +81,7 @@ def _is_usual(thing: Thing, contents: GraphContents) -> bool:
             if thing.type_name in TWISTS:
                 return last == "cmd_vel" and bool(contents.topics[thing.name].subscriptions)
             wanted = thing.type_name in _SENSORS or thing.type_name in _BY_NAME.get(last, ())
-            return wanted and bool(contents.topics[thing.name].publishers)
-        case Kind.ACTION:
-            return thing.type_name in _ACTIONS
+            return wanted and _is_there(thing, contents)
         case Kind.SERVICE:
             return thing.type_name in _SERVICES and not any(part in thing.name for part in _INNER)
     return False

@@ -25,9 +25,10 @@ _IN_THE_PLANE: Mapping[str, tuple[str, ...]] = {
     "geometry_msgs/msg/Point32": ("x", "y"),
 }
 """Robots on wheels: the height is left out."""
+_LEFT = ("behavior_tree", "controller_id", "planner_id", "goal_checker_id", "progress_checker_id")
+"""Texts of Nav2 that are better left empty: it then takes those of its configuration."""
 _TURNS = ("angular", "angular_velocity")
 """Vectors of a robot on wheels of which only z is not zero."""
-_ANGLES = {("geometry_msgs/msg/Pose2D", "theta")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,7 @@ def lists_of(fields: Fields, type_name: str) -> list[tuple[str, FieldType]]:
     return [(name, kind) for name, kind in fields(type_name).items() if kind.array]
 
 
-def _walk(fields: Fields, type_name: str, path: str, turns: bool = False) -> Iterator[Value]:
+def _walk(fields: Fields, type_name: str, path: str) -> Iterator[Value]:
     chosen = _CHOSEN.get(type_name) or _IN_THE_PLANE.get(type_name)
     for name, kind in fields(type_name).items():
         here = f"{path}.{name}" if path else name
@@ -82,14 +83,16 @@ def _walk(fields: Fields, type_name: str, path: str, turns: bool = False) -> Ite
                 yield Value(f"{here}.z", "turn", "unit: degrees", "degrees per second")
             else:
                 yield from _walk(fields, kind.base, here)
-        elif (type_name, name) in _ANGLES:
-            yield Value(here, "yaw", "unit: degrees", "degrees")
-        else:
-            yield Value(here, name.lower(), "", _unit(type_name, name, kind))
-
-
-def _unit(type_name: str, name: str, kind: FieldType) -> str:
-    return "seconds" if is_time(kind) else _WORDS.get(unit_of(type_name, name), "")
+        elif name not in _LEFT:
+            unit = "s" if is_time(kind) else unit_of(type_name, name)
+            angle = unit in ("rad", "rad/s")
+            words = _WORDS.get(unit, "")
+            yield Value(
+                here,
+                "yaw" if name == "theta" else name.lower(),
+                "unit: degrees" if angle else "",
+                words.replace("radians", "degrees") if angle else words,
+            )
 
 
 _WORDS = {
