@@ -1,0 +1,164 @@
+"""`jacaros ros` on the graph of the embedded world."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from jacaros.cli.main import call
+
+
+def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error output of a command."""
+    code = call(["ros", *arguments])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """The output of a command that must succeed."""
+    code, output, errors = outcome(capsys, *arguments)
+    assert (code, errors) == (0, ""), errors
+    return output
+
+
+def test_everything_is_listed_a_line_for_each(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = told(capsys, "list", "--world", "house").splitlines()
+    assert "topic /odom nav_msgs/msg/Odometry publishers=1 subscriptions=0" in lines
+    assert "topic /cmd_vel geometry_msgs/msg/Twist publishers=0 subscriptions=1" in lines
+    assert "action /navigate_to_pose nav2_msgs/action/NavigateToPose" in lines
+    assert lines[-1] == "node /world"
+    assert not any("jacaros_ros" in line for line in lines), "our own node is there for the look alone"
+
+
+def test_rates_are_measured(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = told(capsys, "list", "--rates").splitlines()
+    assert "topic /odom nav_msgs/msg/Odometry publishers=1 subscriptions=0 rate=20" in lines
+    assert "topic /scan sensor_msgs/msg/LaserScan publishers=1 subscriptions=0 rate=5" in lines
+
+
+def test_the_list_is_there_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
+    data = json.loads(told(capsys, "list", "--world", "two_robots", "--json", "--rates"))
+    assert set(data) == {"topics", "actions", "services", "nodes"}
+    [odom] = [topic for topic in data["topics"] if topic["name"] == "/robot_1/odom"]
+    assert odom == {
+        "name": "/robot_1/odom",
+        "types": ["nav_msgs/msg/Odometry"],
+        "publishers": ["/world"],
+        "subscriptions": [],
+        "rate": 20.0,
+    }
+
+
+def test_a_topic_is_shown_with_fields_units_endpoints_and_a_message(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = told(capsys, "show", "odom")
+    lines = [" ".join(line.split()) for line in text.splitlines()]
+    assert lines[:3] == [
+        "topic /odom",
+        "type: nav_msgs/msg/Odometry",
+        "publishers: /world (reliable, volatile, depth 10)",
+    ]
+    assert "message just heard" in lines
+    assert "pose.pose.position.x float64 m 0" in lines
+    assert "twist.twist.angular.z float64 rad/s 0" in lines
+    assert 'child_frame_id string "base_footprint"' in lines
+    assert "- {path: pose.pose.orientation, as: yaw, unit: degrees}" in lines
+
+
+def test_long_lists_are_shortened(capsys: pytest.CaptureFixture[str]) -> None:
+    data = json.loads(told(capsys, "show", "/scan", "--json"))
+    [ranges] = [row for row in data["parts"]["message"] if row["path"] == "ranges"]
+    assert (ranges["type"], ranges["unit"]) == ("float32[]", "m")
+    assert len(ranges["value"]["first"]) == 6
+    assert ranges["value"]["length"] > 100
+
+
+def test_an_action_is_shown_with_its_three_parts(capsys: pytest.CaptureFixture[str]) -> None:
+    data = json.loads(told(capsys, "show", "/navigate_to_pose", "--json"))
+    assert list(data["parts"]) == ["goal", "result", "feedback"]
+    assert {"path": "distance_remaining", "type": "float32", "unit": "m"} in data["parts"]["feedback"]
+    assert "    action: navigate_to_pose" in data["mapping"]
+
+
+def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    service = json.loads(told(capsys, "show", "/map_server/map", "--json"))
+    assert list(service["parts"]) == ["request", "response"]
+    node = told(capsys, "show", "/world")
+    assert "publishes: /battery_state, " in node
+    text = told(capsys, "show", "sensor_msgs/BatteryState")
+    assert text.startswith("type sensor_msgs/msg/BatteryState")
+    assert "0 to 1" in text
+    assert "in a mapping file" not in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "text"),
+    [
+        (["show", "/odm"], 2, "nothing in the graph is called /odm; did you mean /odom?"),
+        (["show", "/robot_1/odom"], 2, "did you mean /odom?"),
+        (["show", "/nonsense"], 2, "`jacaros ros list` shows what is there"),
+        (["show", "/o dom"], 2, "'/o dom' is no ROS name"),
+        (["show", "nonsense_msgs/Thing"], 1, "nonsense_msgs"),
+        (["list", "--domain-id", "3"], 2, "--domain-id goes with --ros ros2"),
+        (["list", "--master", "http://robot:11311"], 2, "--master goes with --ros ros1"),
+        (["list", "--ros", "ros2", "--world", "house"], 2, "jacaros sim"),
+        (["list", "--world", "hose"], 1, "hose"),
+        (["list", "--timeout", "0"], 2, "--timeout"),
+        (["map", "/world"], 2, "/world is a node"),
+        (["map", "nav_msgs/msg/Odometry"], 2, "is a type; a mapping has topics, services and actions"),
+    ],
+)
+def test_mistakes_are_told(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, text: str
+) -> None:
+    got, output, errors = outcome(capsys, *arguments)
+    assert (got, output) == (code, "")
+    assert text in errors
+    assert "Traceback" not in errors
+
+
+def test_the_usual_things_of_a_robot_are_mapped(capsys: pytest.CaptureFixture[str]) -> None:
+    text = told(capsys, "map", "--world", "house")
+    for name in ("odom", "scan", "battery", "map", "drive", "stop", "navigate_to", "dock", "undock", "pose"):
+        assert f"\n  {name}:" in text
+    assert "\nframes:\n" in text
+    assert "move_base" not in text, "one action to drive is enough"
+    assert "#   jacaros ros check robot.yaml --world house" in text
+
+
+def test_robots_have_an_artifact_each(capsys: pytest.CaptureFixture[str]) -> None:
+    text = told(capsys, "map", "/robot_0/odom", "/robot_1/cmd_vel", "--world", "two_robots")
+    assert "\n  robot_0:\n    namespace: robot_0 " in text
+    assert "\n  robot_1:\n    namespace: robot_1 " in text
+    assert "        topic: odom\n" in text
+    assert "        publish: cmd_vel\n" in text
+
+
+def test_one_robot_in_a_namespace_needs_no_list_of_artifacts(capsys: pytest.CaptureFixture[str]) -> None:
+    text = told(capsys, "map", "odom", "scan", "--namespace", "robot_1", "--world", "two_robots")
+    assert "\nnamespace: robot_1 " in text
+    assert "    topic: scan\n" in text
+    assert "artifacts:" not in text
+
+
+def test_names_do_not_clash(capsys: pytest.CaptureFixture[str]) -> None:
+    text = told(
+        capsys, "map", "/dock", "/dock_robot", "/navigate_to_pose", "/move_base", "/cmd_vel", "/goal_pose"
+    )
+    for name in ("dock", "dock_robot", "navigate_to", "move_base", "drive", "goal_pose"):
+        assert text.count(f"\n  {name}:") == 1
+    assert "parameters: [x, y, yaw]" in text
+
+
+def test_a_file_is_written_but_not_over_another(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    file = tmp_path / "robot.yaml"
+    assert "is written" in told(capsys, "map", "/odom", "-o", str(file))
+    first = file.read_text(encoding="utf-8")
+    code, _, errors = outcome(capsys, "map", "/scan", "-o", str(file))
+    assert code == 2
+    assert "--force writes over it" in errors
+    assert file.read_text(encoding="utf-8") == first
+    told(capsys, "map", "/scan", "-o", str(file), "--force")
+    assert "LaserScan" in file.read_text(encoding="utf-8")
