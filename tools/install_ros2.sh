@@ -46,5 +46,5 @@ if ! "$venv/bin/python" -c 'import jacaros.ros.open, rosbags, pytest, pytest_rer
   "$venv/bin/python" -m pip install -q --disable-pip-version-check -e "$root" pytest pytest-rerunfailures hypothesis >&2
 fi
 "$root/tools/build_ros2_interfaces.sh" "$distribution" "$venv"
-"$venv/bin/python" -c 'import jacaros.ros.open, pytest, rclpy; from jacaros_interfaces.srv import AddTwoInts'
+"$venv/bin/python" -c 'import jacaros.ros.open, pytest, rclpy; import tf2_msgs.msg; from jacaros_interfaces.action import Count'
 say "ready: $venv/bin/python -m pytest tests/contracts --require-ros2"
