@@ -67,6 +67,14 @@ class Handoff(Generic[T]):
             self._closed = True
             self._waiting.clear()
 
+    def deliver_all(self) -> None:
+        """Deliver what waits now, on the loop: something comes next that must not overtake it."""
+        with self._lock:
+            waiting = list(self._waiting)
+            self._waiting.clear()
+        for item in waiting:
+            self._deliver(item)
+
     def _deliver_next(self) -> None:
         # One item a turn of the loop: others get their turn between two messages of a burst.
         with self._lock:

@@ -2,14 +2,17 @@
 
 import array
 from collections.abc import Mapping
+from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType, from_ros2
+from jacaros.ros.interfaces.ros2_package import PACKAGE, origin
 
-SUBSTITUTES = {"example_interfaces/srv/AddTwoInts": "jacaros_interfaces"}
-"""Our own package with the same definition, for installations that lack the usual one."""
+_PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
+"""The messages that services and actions are made of."""
 
 _TYPECODES = {
     "float64": "d",
@@ -65,14 +68,30 @@ class RosidlSchema:
             found = self._classes[type_name] = self._find(type_name)
         return found
 
+    def graph_type(self, type_name: str) -> str:
+        """How the graph calls a type in full form: a look-alike has its own package; raises `UnknownInterface`."""
+        package, kind, name = type_name.split("/")
+        self.message_class(type_name)
+        return type_name if _is_installed(package) else f"{PACKAGE}/{kind}/{name}"
+
+    def usual_type(self, told: str) -> str:
+        """How we call a type that the graph tells: a look-alike goes by the name of what it looks like."""
+        package, _, rest = told.partition("/")
+        kind, _, name = rest.partition("/")
+        if package != PACKAGE:
+            return told
+        looks_like = origin(kind, name)
+        # Where the genuine package is installed the two differ, so the look-alike must be told from it.
+        return told if looks_like is None or _is_installed(looks_like) else f"{looks_like}/{kind}/{name}"
+
     def _find(self, type_name: str) -> Any:
         package, kind, name = type_name.split("/")
-        if kind == "srv" and name.endswith(("_Request", "_Response")):
-            service, _, part = type_name.rpartition("_")
-            return getattr(self.message_class(service), part)
+        whole, _, part = name.rpartition("_")
+        if whole and part in _PARTS.get(kind, ()):
+            return getattr(self.message_class(f"{package}/{kind}/{whole}"), part)
         found = _imported(package, kind, name)
-        if found is None and type_name in SUBSTITUTES:
-            found = _imported(SUBSTITUTES[type_name], kind, name)
+        if found is None and not _is_installed(package) and origin(kind, name) == package:
+            found = _imported(PACKAGE, kind, name)
         if found is None:
             raise UnknownInterface(
                 f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "
@@ -80,6 +99,14 @@ class RosidlSchema:
                 "setup file"
             )
         return found
+
+
+@cache
+def _is_installed(package: str) -> bool:
+    try:
+        return find_spec(package) is not None
+    except (ImportError, ValueError):
+        return False
 
 
 def _imported(package: str, kind: str, name: str) -> Any:

@@ -1,0 +1,198 @@
+"""Actions of ROS 2, made of what they are made of: three services and two topics below ``<name>/_action``.
+
+rclpy's own classes for actions are not used: their state belongs to the executor's threads, they want the judgement of a
+goal before their callback returns, and on Jazzy an answer that comes too early is lost.  The protocol is that of the design
+article "Actions" (design.ros2.org), which every client library speaks.
+"""
+
+import uuid
+from collections.abc import Callable
+from typing import Any
+
+from action_msgs.msg import GoalInfo, GoalStatusArray  # type: ignore[import-not-found]
+from action_msgs.msg import GoalStatus as Status
+from action_msgs.srv import CancelGoal  # type: ignore[import-not-found]
+from unique_identifier_msgs.msg import UUID  # type: ignore[import-not-found]
+
+from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
+from jacaros.ros.action_serving import ServedGoals
+from jacaros.ros.backends.ros2_graph import ACTION, FEEDBACK, SEND_GOAL
+from jacaros.ros.backends.ros2_node import Ros2Node
+from jacaros.ros.backends.ros2_quality import profile
+from jacaros.ros.backends.ros2_services import LateService
+from jacaros.ros.qos import QoS
+
+GET_RESULT, CANCEL_GOAL, STATUS = f"{ACTION}get_result", f"{ACTION}cancel_goal", f"{ACTION}status"
+FEEDBACK_QUALITY, STATUS_QUALITY = QoS(), QoS(durability="transient_local", depth=1)
+"""ROS 2's profiles of these topics."""
+RESULT_KEPT = 10.0
+"""Seconds for which a server remembers a goal that is over, as rcl does."""
+
+STATUSES = {
+    Status.STATUS_SUCCEEDED: GoalStatus.SUCCEEDED,
+    Status.STATUS_CANCELED: GoalStatus.CANCELED,
+    Status.STATUS_ABORTED: GoalStatus.ABORTED,
+}
+_NUMBERS = {ours: number for number, ours in STATUSES.items()}
+Respond = Callable[[Any], None]
+
+
+def goal_id(message: Any) -> str:
+    """Read a goal's id from a message, as 32 hexadecimal digits."""
+    return bytes(message.uuid).hex()
+
+
+def id_message(identity: str) -> Any:
+    """Make the message of a goal's id."""
+    return UUID(uuid=list(bytes.fromhex(identity)))
+
+
+def new_goal_id() -> str:
+    """Make up the id of a goal."""
+    return uuid.uuid4().hex
+
+
+class _ServedGoal:
+    """What the graph is told about one goal: its status, feedback and end."""
+
+    def __init__(self, server: "Ros2ActionServer", info: Any) -> None:
+        self.info = info
+        self.status = Status.STATUS_ACCEPTED
+        self.response: Any = None
+        self.asking: list[Respond] = []
+        self._server = server
+
+    def feedback(self, message: Any) -> None:
+        """The goal has got so far."""
+        self._server.publish_feedback(self.info.goal_id, message)
+
+    def ended(self, outcome: Outcome) -> None:
+        """The goal is over."""
+        self._server.finish(self, outcome)
+
+
+class Ros2ActionServer:
+    """Action server of the ``ros2`` backend."""
+
+    def __init__(
+        self, node: Ros2Node, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+    ) -> None:
+        self.name = name
+        self._node = node
+        self._impl: Any = node.schema.message_class(type_name).Impl
+        self._under_way = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
+        self._goals: dict[str, _ServedGoal] = {}
+        self._closed = False
+        rcl, impl = node.rcl, self._impl
+        self._feedback: Any = rcl.create_publisher(
+            impl.FeedbackMessage, name + FEEDBACK, profile(FEEDBACK_QUALITY)
+        )
+        self._status: Any = rcl.create_publisher(GoalStatusArray, name + STATUS, profile(STATUS_QUALITY))
+        # The goal's service is the last: a client that sees it finds the others too.
+        self._services = [
+            LateService(node, impl.GetResultService, name + GET_RESULT, self._tell_result),
+            LateService(node, CancelGoal, name + CANCEL_GOAL, self._cancel),
+            LateService(node, impl.SendGoalService, name + SEND_GOAL, self._judge),
+        ]
+
+    def publish_feedback(self, identity: Any, message: Any) -> None:
+        """Tell how far a goal is."""
+        if not self._closed and not self._node.ended:
+            self._feedback.publish(self._impl.FeedbackMessage(goal_id=identity, feedback=message))
+
+    def finish(self, goal: _ServedGoal, outcome: Outcome) -> None:
+        """Tell a goal's end to those who asked, and keep it for those who will."""
+        if self._node.ended:
+            return
+        goal.status = _NUMBERS[outcome.status]
+        goal.response = self._impl.GetResultService.Response(status=goal.status, result=outcome.result)
+        for respond in goal.asking:
+            respond(goal.response)
+        goal.asking.clear()
+        self._publish_status()
+        self._node.loop.call_later(RESULT_KEPT, self._goals.pop, goal_id(goal.info.goal_id), None)
+
+    def farewell(self, seconds: float) -> None:
+        """Clients learn from the graph that the server is gone."""
+
+    def close(self) -> None:
+        """Stop to offer the action."""
+        if self._closed:
+            return
+        self._under_way.close()
+        self._closed = True
+        for service in self._services:
+            service.close(late=True)
+        for publisher in (self._feedback, self._status):
+            self._node.retire_later(self._node.rcl.destroy_publisher, publisher)
+        self._node.forget(self)
+
+    def _judge(self, request: Any, respond: Respond) -> None:
+        identity = goal_id(request.goal_id)
+        known = identity in self._goals
+        refusal = "" if known else self._under_way.judge(request.goal)
+        stamp = self._node.rcl.get_clock().now().to_msg()
+        # ROS 2 has no words for a refusal.
+        respond(self._impl.SendGoalService.Response(accepted=refusal is None, stamp=stamp))
+        if refusal is not None:
+            return
+        goal = self._goals[identity] = _ServedGoal(self, GoalInfo(goal_id=request.goal_id, stamp=stamp))
+        self._publish_status()
+        goal.status = Status.STATUS_EXECUTING
+        self._under_way.begin(identity, request.goal, goal)
+        self._publish_status()
+
+    def _cancel(self, request: Any, respond: Respond) -> None:
+        """Cancel as ``action_msgs/srv/CancelGoal`` says: one goal, all up to a time, or all."""
+        meant = self._meant(request.goal_info)
+        agreed = [goal for goal in meant if self._under_way.cancel(goal_id(goal.info.goal_id))]
+        for goal in agreed:
+            if goal.response is None:
+                goal.status = Status.STATUS_CANCELING
+        respond(self._cancel_response(request.goal_info, meant, agreed))
+        if agreed:
+            self._publish_status()
+
+    def _meant(self, info: Any) -> list[_ServedGoal]:
+        identity, until = goal_id(info.goal_id), (info.stamp.sec, info.stamp.nanosec)
+        one, timed = int(identity, 16) != 0, until != (0, 0)
+        return [
+            goal
+            for known, goal in self._goals.items()
+            if goal.response is None
+            and (
+                (not one and not timed)
+                or (one and known == identity)
+                or (timed and (goal.info.stamp.sec, goal.info.stamp.nanosec) <= until)
+            )
+        ]
+
+    def _cancel_response(self, info: Any, meant: list[_ServedGoal], agreed: list[_ServedGoal]) -> Any:
+        response = CancelGoal.Response(goals_canceling=[goal.info for goal in agreed])
+        identity = goal_id(info.goal_id)
+        if agreed:
+            response.return_code = CancelGoal.Response.ERROR_NONE
+        elif meant:
+            response.return_code = CancelGoal.Response.ERROR_REJECTED
+        elif int(identity, 16) == 0:
+            response.return_code = CancelGoal.Response.ERROR_NONE
+        elif identity in self._goals:
+            response.return_code = CancelGoal.Response.ERROR_GOAL_TERMINATED
+        else:
+            response.return_code = CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
+        return response
+
+    def _tell_result(self, request: Any, respond: Respond) -> None:
+        goal = self._goals.get(goal_id(request.goal_id))
+        if goal is None:
+            respond(self._impl.GetResultService.Response(status=Status.STATUS_UNKNOWN))
+        elif goal.response is None:
+            goal.asking.append(respond)
+        else:
+            respond(goal.response)
+
+    def _publish_status(self) -> None:
+        if self._closed or self._node.ended:
+            return
+        listed = [Status(goal_info=goal.info, status=goal.status) for goal in self._goals.values()]
+        self._status.publish(GoalStatusArray(status_list=listed))

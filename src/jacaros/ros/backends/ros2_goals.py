@@ -1,0 +1,303 @@
+"""Action clients of ROS 2: goals on their way to a server, and whether the server is still alive."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from action_msgs.msg import GoalInfo, GoalStatusArray  # type: ignore[import-not-found]
+from action_msgs.srv import CancelGoal  # type: ignore[import-not-found]
+from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[import-not-found]
+
+from jacaros.ros.action import Outcome
+from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_serving import text_of
+from jacaros.ros.backends.ros2_actions import (
+    CANCEL_GOAL,
+    FEEDBACK_QUALITY,
+    GET_RESULT,
+    STATUS,
+    STATUS_QUALITY,
+    STATUSES,
+    goal_id,
+    id_message,
+    new_goal_id,
+)
+from jacaros.ros.backends.ros2_graph import FEEDBACK, SEND_GOAL, action_mismatch, action_servers
+from jacaros.ros.backends.ros2_node import Ros2Node
+from jacaros.ros.backends.ros2_quality import profile
+from jacaros.ros.backends.ros2_services import SETTLING
+from jacaros.ros.backends.ros2_signs import SignsOfLife
+from jacaros.ros.errors import CallFailed, ServerLost
+from jacaros.ros.handoff import Handoff, post
+
+LOOKING = 0.1
+"""Seconds between two looks at the server, while a goal is under way or the server is waited for."""
+REPEATING = 1.0
+"""Seconds after which a request is repeated that was not answered although it should have been."""
+FEEDBACK_WAITING = 100
+"""Feedback messages that wait for the loop; the oldest is dropped first."""
+
+
+class _SentGoal:
+    """What the wire knows of a goal."""
+
+    def __init__(self, identity: str) -> None:
+        self.identity = identity
+        self.accepted = False
+        self.over = False
+        self.result_asked = 0.0
+        self.cancel_asked: float | None = None
+
+
+class Ros2GoalWire:
+    """Carries goals from a `GoalSender` to the servers of the graph.
+
+    An answer that is lost (a server answers before it has discovered who asks, a network drops out) does not leave
+    anybody waiting: acceptance and end are also told by the status topic, and then the request is repeated.
+    """
+
+    def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
+        self.name = name
+        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name)
+        self.sender.wire = self
+        self._node = node
+        self._type_name = type_name
+        self._impl: Any = node.schema.message_class(type_name).Impl
+        self._goals: dict[str, _SentGoal] = {}
+        self._there = False
+        self._there_since = 0.0
+        self._servers: frozenset[bytes] = frozenset()
+        self._signs = SignsOfLife(self._probe, self.sender.server_present)
+        self._looking: Any = None
+        self._closed = False
+        rcl, impl = node.rcl, self._impl
+        self._goal_client: Any = rcl.create_client(impl.SendGoalService, name + SEND_GOAL)
+        self._cancel_client: Any = rcl.create_client(CancelGoal, name + CANCEL_GOAL)
+        self._result_client: Any = rcl.create_client(impl.GetResultService, name + GET_RESULT)
+        self._feedback: Handoff[Any] = Handoff(node.loop, FEEDBACK_WAITING, self._take_feedback)
+        self._subscriptions = [
+            rcl.create_subscription(
+                impl.FeedbackMessage, name + FEEDBACK, self._feedback.put, profile(FEEDBACK_QUALITY)
+            ),
+            rcl.create_subscription(
+                GoalStatusArray,
+                name + STATUS,
+                lambda told: self._post(self._take_status, told),
+                profile(STATUS_QUALITY),
+                event_callbacks=SubscriptionEventCallbacks(
+                    matched=lambda _: self._post(self._look), use_default_callbacks=False
+                ),
+            ),
+        ]
+
+    # What the sender asks for:
+
+    @property
+    def offered(self) -> bool:
+        """Whether a server offers the action."""
+        if self._closed or self._node.ended:
+            return False
+        self._note_presence()
+        if not self._there:
+            self._keep_looking()
+        return self._there
+
+    def new_id(self) -> str:
+        """Make up the id of a new goal."""
+        return new_goal_id()
+
+    def send_goal(self, identity: str, goal: Any) -> None:
+        """Send a goal, as soon as the server knows us: what it answers earlier is lost."""
+        mismatch = action_mismatch(self._node, self.name, self._type_name)
+        if mismatch is not None:
+            raise CallFailed(mismatch)
+        self._goals[identity] = _SentGoal(identity)
+        self._servers |= action_servers(self._node, self.name)
+        self._keep_looking()
+        request = self._impl.SendGoalService.Request(goal_id=id_message(identity), goal=goal)
+
+        def send() -> None:
+            if identity in self._goals and not self._closed:
+                self._call(self._goal_client, request, lambda answer: self._answered(identity, answer))
+
+        rest = self._there_since + SETTLING - time.monotonic()
+        if rest > 0.0:
+            self._node.loop.call_later(rest, send)
+        else:
+            send()
+
+    def cancel_goal(self, identity: str) -> None:
+        """Ask the server to cancel a goal."""
+        goal = self._goals.get(identity)
+        if goal is not None:
+            goal.cancel_asked = time.monotonic()
+            self._keep_looking()
+        request = CancelGoal.Request(goal_info=GoalInfo(goal_id=id_message(identity)))
+        self._call(self._cancel_client, request, lambda answer: self._cancel_answered(identity, answer))
+
+    def forget_goal(self, identity: str) -> None:
+        """The goal is over."""
+        self._goals.pop(identity, None)
+        if not self._goals:
+            self._signs.rest()
+
+    def close(self) -> None:
+        """Leave, when what was sent last has arrived."""
+        if self._closed:
+            return
+        self._closed = True
+        self._feedback.close()
+        if self._looking is not None:
+            self._looking.cancel()
+        node = self._node
+        for client in (self._goal_client, self._cancel_client, self._result_client):
+            node.retire_later(node.rcl.destroy_client, client)
+        for subscription in self._subscriptions:
+            node.retire_later(node.rcl.destroy_subscription, subscription)
+        node.forget(self)
+
+    def farewell(self, seconds: float) -> None:
+        """Cancel what is under way: when its client ends, nobody watches over the robot."""
+        asked = False
+        for goal in list(self._goals.values()):
+            if not goal.over:
+                info = GoalInfo(goal_id=id_message(goal.identity))
+                self._cancel_client.call_async(CancelGoal.Request(goal_info=info))
+                asked = True
+        if asked:
+            time.sleep(min(0.1, seconds))
+
+    # What comes back, on the loop:
+
+    def _answered(self, identity: str, answer: Any) -> None:
+        goal = self._goals.get(identity)
+        if answer.accepted:
+            self._accept(identity)
+        elif goal is not None and not goal.accepted:
+            self.sender.rejected(identity)
+
+    def _accept(self, identity: str) -> None:
+        goal = self._goals.get(identity)
+        if goal is not None and goal.accepted:
+            return
+        if goal is not None:
+            goal.accepted = True
+            self._signs.goal_begins()
+        self.sender.accepted(identity)
+        if goal is not None and identity in self._goals:
+            self._ask_for_result(goal)
+
+    def _ask_for_result(self, goal: _SentGoal) -> None:
+        goal.result_asked = time.monotonic()
+        request = self._impl.GetResultService.Request(goal_id=id_message(goal.identity))
+        self._call(self._result_client, request, lambda answer: self._take_result(goal.identity, answer))
+
+    def _take_result(self, identity: str, answer: Any) -> None:
+        if identity not in self._goals:
+            return
+        self._feedback.deliver_all()
+        status = STATUSES.get(answer.status)
+        if status is None:
+            text = f"the server of action {self.name} does not know goal {identity} any more: it was started anew"
+            self.sender.fail(identity, ServerLost(text))
+        else:
+            self.sender.ended(identity, Outcome(status, answer.result, text_of(answer.result)))
+
+    def _cancel_answered(self, identity: str, answer: Any) -> None:
+        goal = self._goals.get(identity)
+        if goal is not None:
+            goal.cancel_asked = None
+        agreed = any(goal_id(info.goal_id) == identity for info in answer.goals_canceling)
+        self.sender.cancel_answered(identity, agreed)
+
+    def _take_feedback(self, message: Any) -> None:
+        identity = goal_id(message.goal_id)
+        if identity in self._goals:
+            self._signs.heard()
+            self._accept(identity)
+            self.sender.feedback(identity, message.feedback)
+
+    def _take_status(self, told: Any) -> None:
+        for entry in told.status_list:
+            identity = goal_id(entry.goal_info.goal_id)
+            goal = self._goals.get(identity)
+            if goal is not None:
+                self._signs.heard()
+                goal.over = entry.status in STATUSES
+                self._accept(identity)
+
+    # Looking after the server:
+
+    def _keep_looking(self) -> None:
+        if self._looking is None and not self._closed:
+            self._looking = self._node.loop.call_later(LOOKING, self._look_again)
+
+    def _look_again(self) -> None:
+        self._looking = None
+        self._look()
+        if self.sender.busy:
+            self._keep_looking()
+
+    def _look(self) -> None:
+        if self._closed or self._node.ended:
+            return
+        self._note_presence()
+        if not self._goals:
+            return
+        now = time.monotonic()
+        if self._there:
+            self._greet_newcomers()
+        for goal in list(self._goals.values()):
+            if goal.accepted and goal.over and now > goal.result_asked + REPEATING:
+                self._ask_for_result(goal)
+            if goal.cancel_asked is not None and now > goal.cancel_asked + REPEATING:
+                self.cancel_goal(goal.identity)
+        if self._there:
+            self._signs.check(now, any(goal.accepted and not goal.over for goal in self._goals.values()))
+
+    def _note_presence(self) -> None:
+        rcl = self._node.rcl
+        clients = (self._goal_client, self._cancel_client, self._result_client)
+        there = all(client.service_is_ready() for client in clients) and bool(
+            rcl.count_publishers(self.name + FEEDBACK)
+        )
+        if there != self._there:
+            self._there = there
+            self._there_since = time.monotonic()
+            self.sender.server_present(there)
+
+    def _greet_newcomers(self) -> None:
+        """A server that came during a goal may have taken another's place: then it does not know the goal, and says so."""
+        servers = action_servers(self._node, self.name)
+        if servers <= self._servers:
+            return
+        self._servers |= servers
+        self._signs.stranger()
+        for goal in list(self._goals.values()):
+            if goal.accepted:
+                self._ask_for_result(goal)
+
+    def _probe(self) -> None:
+        """Ask for something that every server answers at once: the result of a goal that nobody knows."""
+        request = self._impl.GetResultService.Request(goal_id=id_message(new_goal_id()))
+        self._call(self._result_client, request, lambda _: self._signs.probe_answered())
+
+    # Between the threads:
+
+    def _call(self, client: Any, request: Any, take: Callable[[Any], None]) -> None:
+        def finished(future: Any) -> None:
+            if future.exception() is None and future.result() is not None:
+                self._post(self._take_answer, take, future.result())
+
+        client.call_async(request).add_done_callback(finished)
+
+    def _take_answer(self, take: Callable[[Any], None], answer: Any) -> None:
+        self._signs.heard()
+        take(answer)
+
+    def _post(self, action: Callable[..., None], *arguments: Any) -> None:
+        def on_loop() -> None:
+            if not self._closed:
+                action(*arguments)
+
+        post(self._node.loop, on_loop)

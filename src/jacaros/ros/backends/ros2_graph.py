@@ -1,0 +1,118 @@
+"""What rclpy knows of the graph: who is there, and with which types."""
+
+from typing import Any
+
+from jacaros.ros.backends.ros2_node import Ros2Node
+from jacaros.ros.backends.ros2_quality import quality
+from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+
+ACTION = "/_action/"
+"""Stands in the names of the topics and services that an action is made of."""
+SEND_GOAL, FEEDBACK = f"{ACTION}send_goal", f"{ACTION}feedback"
+INFRASTRUCTURE = frozenset({"/rosout", "/parameter_events"})
+NODE_SERVICES = frozenset(
+    {
+        "describe_parameters",
+        "get_parameter_types",
+        "get_parameters",
+        "get_type_description",
+        "list_parameters",
+        "set_parameters",
+        "set_parameters_atomically",
+    }
+)
+"""What every node offers, below its name."""
+
+
+def absolute(namespace: str, name: str) -> str:
+    """Put a node's name together."""
+    return f"{namespace.rstrip('/')}/{name}"
+
+
+def endpoint(info: Any) -> Endpoint:
+    """Read what rclpy tells of an endpoint."""
+    name = "" if info.node_name.startswith("_") else absolute(info.node_namespace, info.node_name)
+    return Endpoint(name, quality(info.qos_profile))
+
+
+def foreign_types(node: Ros2Node, topic: str, type_name: str) -> dict[str, str]:
+    """Types other than *type_name* that are published on a topic, each with one of the nodes that do it."""
+    ours = node.schema.graph_type(type_name)
+    told = node.rcl.get_publishers_info_by_topic(topic)
+    return {
+        info.topic_type: endpoint(info).node or "an unknown node" for info in told if info.topic_type != ours
+    }
+
+
+def service_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
+    """Tell that a service is there with another type only; None when all is well, or nothing is known."""
+    return _mismatch(node, "service", name, name, type_name, "")
+
+
+def action_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
+    """Tell that an action is there with another type only; None when all is well, or nothing is known."""
+    return _mismatch(node, "action", name, name + SEND_GOAL, type_name, "_SendGoal")
+
+
+def _mismatch(node: Ros2Node, what: str, name: str, service: str, type_name: str, ending: str) -> str | None:
+    ours = node.schema.graph_type(type_name) + ending
+    told = dict(node.rcl.get_service_names_and_types()).get(service, [])
+    if not told or ours in told:
+        return None
+    theirs = told[0].removesuffix(ending)
+    text = f"{what} {name} is of type {theirs}, not {type_name}"
+    if node.schema.usual_type(ours.removesuffix(ending)) == theirs != ours.removesuffix(ending):
+        package = theirs.split("/")[0].replace("_", "-")
+        text = (
+            f"{what} {name} is of the genuine type {theirs}, of which only a look-alike is installed here: "
+            f"install ros-<distribution>-{package}"
+        )
+    return text
+
+
+def contents(node: Ros2Node) -> GraphContents:
+    """Look at the graph as it is known now."""
+    rcl = node.rcl
+    nodes = sorted({absolute(space, name) for name, space in rcl.get_node_names_and_namespaces()})
+    topics: dict[str, TopicInfo] = {}
+    actions: dict[str, str] = {}
+    for name, types in rcl.get_topic_names_and_types():
+        if name.endswith(FEEDBACK):
+            actions[name.removesuffix(FEEDBACK)] = _action_type(node, types)
+        elif ACTION not in name and name not in INFRASTRUCTURE:
+            topics[name] = _topic(node, name, types)
+    services: dict[str, str] = {}
+    for name, types in rcl.get_service_names_and_types():
+        if ACTION not in name and not _belongs_to_node(name, nodes):
+            services[name] = node.schema.usual_type(sorted(types)[0]) if types else ""
+    return GraphContents(topics, services, actions, tuple(node for node in nodes if _is_shown(node)))
+
+
+def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
+    return TopicInfo(
+        name,
+        tuple(sorted({node.schema.usual_type(told) for told in types})),
+        tuple(endpoint(info) for info in node.rcl.get_publishers_info_by_topic(name)),
+        tuple(endpoint(info) for info in node.rcl.get_subscriptions_info_by_topic(name)),
+    )
+
+
+def _action_type(node: Ros2Node, types: list[str]) -> str:
+    return node.schema.usual_type(sorted(types)[0].removesuffix("_FeedbackMessage")) if types else ""
+
+
+def _belongs_to_node(service: str, nodes: list[str]) -> bool:
+    """Whether a service is one of those that every node has."""
+    owner, _, last = service.rpartition("/")
+    return last in NODE_SERVICES and owner in nodes
+
+
+def _is_shown(node: str) -> bool:
+    """Nodes of tools begin with an underscore and are hidden, as in ROS 2's own lists."""
+    return not node.rpartition("/")[2].startswith("_")
+
+
+def action_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
+    """The identities of those that offer an action: a server that was started anew has another."""
+    told = node.rcl.get_publishers_info_by_topic(name + FEEDBACK)
+    return frozenset(bytes(info.endpoint_gid) for info in told)

@@ -1,0 +1,161 @@
+"""A node of rclpy: a context and an executor thread of our own, beside the loop.
+
+Domain, discovery range and the middleware below are ROS 2's own business: ``ROS_DOMAIN_ID``,
+``ROS_AUTOMATIC_DISCOVERY_RANGE``, ``RMW_IMPLEMENTATION``.
+"""
+
+import asyncio
+import os
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, Protocol
+
+# Unless this is set before their import, rclpy's messages take whatever is assigned and publish it misread.
+os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
+
+import rclpy  # type: ignore[import-not-found]
+import rclpy.executors  # type: ignore[import-not-found]
+import rclpy.signals  # type: ignore[import-not-found]
+import rclpy.task  # type: ignore[import-not-found]
+
+from jacaros.ros.backends.ros2_output import leave_standard_output_alone
+from jacaros.ros.backends.ros2_types import RosidlSchema
+from jacaros.ros.handoff import in_thread, post
+from jacaros.ros.node import Node, NodeSettings
+
+SENDING = 0.5
+"""Seconds that closing waits for the last messages to be acknowledged; a dead receiver never does it."""
+STOPPING = 1.0
+"""Seconds that closing waits for the executor's thread."""
+LINGERING = 0.5
+"""Seconds that a closed thing stays in the graph when something that it sent may still be on its way."""
+
+
+class Member(Protocol):
+    """What the node holds in the graph: a publisher, an action server and so on."""
+
+    def farewell(self, seconds: float) -> None:
+        """Say what is to be said before leaving, within *seconds*; on any thread, when the process ends."""
+
+    def close(self) -> None:
+        """Leave the graph."""
+
+
+class Ros2Node(Node):
+    """The part of the ROS 2 backend that its publishers, services and actions rest on.
+
+    Args:
+        settings: names, clock and reports.
+        domain_id: the DDS domain; ``ROS_DOMAIN_ID`` without it.
+    """
+
+    name = "ros2"
+
+    def __init__(self, settings: NodeSettings, domain_id: int | None = None) -> None:
+        self.schema = RosidlSchema()
+        super().__init__(settings, self.schema, finish=self._leave, threaded_hooks=True)
+        self._domain_id = domain_id
+        self._context: Any = rclpy.Context()
+        self._executor: Any = None
+        self._thread: threading.Thread | None = None
+        self._stopped: Any = rclpy.task.Future()
+        self._ended = False
+        self.rcl: Any = None
+        self.members: list[Member] = []
+
+    @property
+    def ended(self) -> bool:
+        """Whether the node has left the graph, or is about to."""
+        return self._ended
+
+    async def start(self) -> None:
+        """Join the graph."""
+        self._loop = asyncio.get_running_loop()
+        self.exit_hooks.watch_thread()
+        await in_thread(self._loop, self._join, "joining")
+        self.set_connected(True)
+
+    async def close(self) -> None:
+        """Run the exit hooks and leave the graph."""
+        await in_thread(self.loop, self.exit_hooks.run, "closing")
+        self.exit_hooks.stop_watching()
+        self.members.clear()
+        self.set_connected(False)
+
+    def retire(self, destroy: Callable[[Any], Any], thing: Any) -> None:
+        """Have *destroy* called with *thing*, on the executor's thread.
+
+        Anywhere else the executor may be about to wait for the thing, or be in the middle of its lists.
+        """
+
+        def now() -> None:
+            with suppress(Exception):  # it may be gone with its node
+                destroy(thing)
+
+        if self._ended or self._executor is None:
+            now()
+        else:
+            self._executor.create_task(now)
+
+    def retire_later(self, destroy: Callable[[Any], Any], thing: Any) -> None:
+        """`retire`, but only when what was sent just before has arrived."""
+        if self._ended:
+            self.retire(destroy, thing)
+        else:
+            self.loop.call_later(LINGERING, self.retire, destroy, thing)
+
+    def forget(self, member: Member) -> None:
+        """Note that a member has left."""
+        if member in self.members:
+            self.members.remove(member)
+
+    def _join(self) -> None:
+        leave_standard_output_alone()
+        # Signals are ours: rclpy's handlers would end the context before the exit hooks have published.
+        no_signals = rclpy.signals.SignalHandlerOptions.NO
+        rclpy.init(
+            args=[], context=self._context, domain_id=self._domain_id, signal_handler_options=no_signals
+        )
+        self.rcl = rclpy.create_node(
+            self.names.node_name,
+            namespace=self.names.namespace or "/",
+            context=self._context,
+            use_global_arguments=False,
+        )
+        self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.rcl)
+        self._thread = threading.Thread(target=self._spin, name="rclpy executor", daemon=True)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        while self._context.ok() and not self._stopped.done():
+            try:
+                self._executor.spin_until_future_complete(self._stopped)
+            except rclpy.executors.ExternalShutdownException:
+                return
+            except Exception as problem:  # a fault in one callback must not make the node deaf
+                if self._context.ok():
+                    post(self.loop, self.log, f"rclpy: {type(problem).__name__}: {problem}")
+
+    def _leave(self) -> None:
+        """Wait until the last messages have arrived, then end rclpy before the interpreter ends."""
+        if self.rcl is None:
+            return
+        deadline = time.monotonic() + SENDING
+        for member in list(self.members):
+            with suppress(Exception):  # whatever is wrong with one, the others are to be heard
+                member.farewell(max(0.0, deadline - time.monotonic()))
+        time.sleep(0.02)  # best-effort messages are acknowledged by nobody
+        # The executor's thread stops itself: shutting an executor down under a spinning thread is a race.
+        self._executor.create_task(self._stopped.set_result, None)
+        if self._thread is not None:
+            self._thread.join(STOPPING)
+        self._ended = True
+        self._executor.shutdown(timeout_sec=0.0)
+        for member in list(self.members):
+            with suppress(Exception):
+                member.close()
+        self.rcl.destroy_node()
+        self._context.try_shutdown()

@@ -1,0 +1,309 @@
+"""Parameters of ROS 2's nodes: our own through rclpy, others' through their services, news on ``/parameter_events``."""
+
+import math
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rcl_interfaces.msg import (  # type: ignore[import-not-found]
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    ParameterType,
+    SetParametersResult,
+)
+from rclpy.exceptions import (  # type: ignore[import-not-found]
+    InvalidParameterException,
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    ParameterAlreadyDeclaredException,
+    ParameterNotDeclaredException,
+)
+from rclpy.parameter import Parameter, parameter_value_to_python  # type: ignore[import-not-found]
+
+from jacaros.ros.backend import Sample
+from jacaros.ros.backends.ros2_node import Ros2Node
+from jacaros.ros.backends.ros2_services import Ros2Client
+from jacaros.ros.backends.ros2_topics import Ros2Subscription
+from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown
+from jacaros.ros.handoff import LoopEnded, ask
+from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.qos import QoS
+
+EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/ParameterEvent", QoS(depth=1000)
+_LARGEST = 2**63 - 1
+_KINDS: dict[type, Any] = {
+    bool: Parameter.Type.BOOL,
+    int: Parameter.Type.INTEGER,
+    float: Parameter.Type.DOUBLE,
+    str: Parameter.Type.STRING,
+    bytes: Parameter.Type.BYTE_ARRAY,
+}
+_LIST_KINDS: dict[type, Any] = {
+    bool: Parameter.Type.BOOL_ARRAY,
+    int: Parameter.Type.INTEGER_ARRAY,
+    float: Parameter.Type.DOUBLE_ARRAY,
+    str: Parameter.Type.STRING_ARRAY,
+}
+
+
+def parameter(name: str, value: Any, kind: Any = None) -> Any:
+    """Make rclpy's object for a parameter.
+
+    Args:
+        name: its name.
+        value: plain value.
+        kind: rclpy's type of an empty list, which does not tell it by itself.
+
+    Raises:
+        ParameterRefused: no parameter can hold such a value.
+    """
+    if isinstance(value, list | tuple):
+        elements = list(value)
+        if not elements:
+            return Parameter(name, kind or Parameter.Type.STRING_ARRAY, [])
+        kinds = {_LIST_KINDS.get(type(element)) for element in elements}
+        if len(kinds) == 1 and (kind := kinds.pop()) is not None:
+            return Parameter(name, kind, elements)
+    elif isinstance(value, bytes | bytearray):
+        return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in value])
+    else:
+        for python, kind in _KINDS.items():  # bool is an int, and comes first
+            if isinstance(value, python):
+                return Parameter(name, kind, python(value))
+    raise ParameterRefused(
+        f"parameter {name}: a parameter holds a bool, a number, a text, bytes, or a list of bools, ints, floats or "
+        f"texts; not {value!r}"
+    )
+
+
+def plain_value(told: Any) -> Any:
+    """Read a value that rclpy gives; None for a parameter without one."""
+    if isinstance(told, str | bool | int | float) or told is None:
+        return told
+    elements = list(told)
+    return b"".join(elements) if elements and isinstance(elements[0], bytes) else elements
+
+
+class ParameterNews:
+    """Tells of changed parameters of all nodes, from the one topic; joined at the first use."""
+
+    def __init__(self, node: Ros2Node) -> None:
+        self._node = node
+        self._subscription: Ros2Subscription | None = None
+        self._listeners: dict[str, list[Callable[[Mapping[str, ParameterValue]], None]]] = {}
+
+    def listen(
+        self, node_name: str, callback: Callable[[Mapping[str, ParameterValue]], None]
+    ) -> Callable[[], None]:
+        """Have *callback* called with what changes at a node; the result ends that."""
+        if self._subscription is None:
+            self._subscription = Ros2Subscription(
+                self._node, EVENTS, EVENT_TYPE, self._take, EVENT_QUALITY, None
+            )
+            self._node.members.append(self._subscription)
+        listeners = self._listeners.setdefault(node_name, [])
+        listeners.append(callback)
+
+        def end() -> None:
+            if callback in listeners:
+                listeners.remove(callback)
+
+        return end
+
+    def _take(self, sample: Sample) -> None:
+        event = sample.message
+        listeners = self._listeners.get(event.node)
+        if not listeners:
+            return
+        changed = {
+            told.name: plain_value(parameter_value_to_python(told.value))
+            for told in (*event.new_parameters, *event.changed_parameters)
+        }
+        known = {name: value for name, value in changed.items() if value is not None}
+        if known:
+            for callback in list(listeners):
+                callback(known)
+
+
+class OwnParameters:
+    """The parameters of our own node.
+
+    rclpy keeps them and serves them to others on its thread; what is to be judged is judged on the loop.
+    """
+
+    def __init__(self, node: Ros2Node, news: ParameterNews) -> None:
+        self.node = node.node_name
+        self._node = node
+        self._news = news
+        self._judges: dict[str, Callable[[ParameterValue], str | None]] = {}
+        self._loops_thread = threading.get_ident()
+        node.rcl.add_on_set_parameters_callback(self._judge)
+
+    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+        """Declare a parameter."""
+        default = parameter(name, declaration.default)
+        if declaration.accept is not None and not self._node.rcl.has_parameter(name):
+            self._judges[name] = declaration.accept
+        try:
+            made = self._node.rcl.declare_parameter(name, default.value, _descriptor(default, declaration))
+        except ParameterAlreadyDeclaredException:
+            raise ParameterRefused(f"parameter {name} of {self.node} is declared already") from None
+        except (
+            InvalidParameterException,
+            InvalidParameterValueException,
+            InvalidParameterTypeException,
+            ValueError,
+        ) as problem:
+            self._judges.pop(name, None)
+            raise ParameterRefused(f"parameter {name} of {self.node}: {problem}") from None
+        return self._value(made)
+
+    async def names(self, timeout: float | None = None) -> list[str]:
+        """Names of the node's parameters."""
+        return sorted(self._node.rcl.list_parameters([], 0).names)
+
+    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
+        """Give a parameter's value."""
+        try:
+            return self._value(self._node.rcl.get_parameter(name))
+        except ParameterNotDeclaredException:
+            raise await self._unknown(name) from None
+
+    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
+        """Change a parameter."""
+        try:
+            before = self._node.rcl.get_parameter(name)
+        except ParameterNotDeclaredException:
+            raise await self._unknown(name) from None
+        [result] = self._node.rcl.set_parameters([parameter(name, value, before.type_)])
+        if not result.successful:
+            raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {result.reason}")
+
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Have *callback* called with what changed."""
+        return self._news.listen(self.node, callback)
+
+    def _value(self, told: Any) -> ParameterValue:
+        value: ParameterValue = (
+            b"" if told.type_ == Parameter.Type.BYTE_ARRAY and not told.value else (plain_value(told.value))
+        )
+        return value
+
+    async def _unknown(self, name: str) -> ParameterUnknown:
+        return ParameterUnknown(
+            f"node {self.node} has no parameter {name}; it has {', '.join(await self.names())}"
+        )
+
+    def _judge(self, changes: list[Any]) -> Any:
+        """Called by rclpy, on whatever thread the change comes from."""
+        for change in changes:
+            accept = self._judges.get(change.name)
+            if accept is not None and (reason := self._judged(accept, self._value(change))) is not None:
+                return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
+
+    def _judged(self, accept: Callable[[ParameterValue], str | None], value: ParameterValue) -> str | None:
+        def judge(tell: Callable[[str | None, Exception | None], None]) -> None:
+            try:
+                tell(accept(value), None)
+            except Exception as problem:  # the node lives on, and who asked learns of it
+                reason = f"{type(problem).__name__}: {problem}"
+                self._node.log(f"judging a parameter of {self.node} failed: {reason}")
+                tell(reason, None)
+
+        if threading.get_ident() == self._loops_thread:
+            told: list[str | None] = []
+            judge(lambda reason, _: told.append(reason))
+            return told[0]
+        try:
+            return ask(self._node.loop, judge, lambda: self._node.ended)
+        except LoopEnded:
+            return "the node is leaving"
+
+
+class OtherParameters:
+    """The parameters of another node, through the services that every node has."""
+
+    def __init__(self, node: Ros2Node, name: str, news: ParameterNews) -> None:
+        self.node = name
+        self._node = node
+        self._news = news
+        self._clients: dict[str, Ros2Client] = {}
+
+    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+        """Only the node itself can do that."""
+        raise CapabilityMissing(
+            f"only {self.node} itself can declare its parameters; {self._node.node_name} can get and set them"
+        )
+
+    async def names(self, timeout: float | None = None) -> list[str]:
+        """Names of the node's parameters."""
+        answer = await self._call("ListParameters", {"depth": 0}, timeout)
+        return sorted(answer.result.names)
+
+    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
+        """Give a parameter's value."""
+        answer = await self._call("GetParameters", {"names": [name]}, timeout)
+        value = plain_value(parameter_value_to_python(answer.values[0])) if len(answer.values) == 1 else None
+        if value is None:
+            raise ParameterUnknown(f"node {self.node} has no parameter {name}, or it has no value")
+        if value == [] and answer.values[0].type == ParameterType.PARAMETER_BYTE_ARRAY:
+            return b""
+        return value  # type: ignore[no-any-return]
+
+    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
+        """Change a parameter."""
+        kind = None
+        if isinstance(value, list | tuple) and not value:
+            kind = Parameter.Type(await self._type(name, timeout) or ParameterType.PARAMETER_STRING_ARRAY)
+        wanted = parameter(name, value, kind).to_parameter_msg()
+        answer = await self._call("SetParameters", {"parameters": [wanted]}, timeout)
+        result = (
+            answer.results[0] if answer.results else SetParametersResult(reason="the node did not say why")
+        )
+        if result.successful:
+            return
+        if not await self._type(name, timeout):
+            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
+        raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {result.reason}")
+
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Have *callback* called with what changed."""
+        return self._news.listen(self.node, callback)
+
+    async def _type(self, name: str, timeout: float | None) -> int:
+        """The number of a parameter's type; 0 for one that is not there."""
+        answer = await self._call("GetParameterTypes", {"names": [name]}, timeout)
+        return int(answer.types[0]) if len(answer.types) == 1 else ParameterType.PARAMETER_NOT_SET
+
+    async def _call(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
+        client = self._clients.get(service)
+        if client is None:
+            name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
+            client = Ros2Client(self._node, f"{self.node}/{name[1:]}", f"rcl_interfaces/srv/{service}")
+            self._clients[service] = client
+            self._node.members.append(client)
+        return await client.call(request, timeout)
+
+
+def _descriptor(default: Any, declaration: Declaration) -> Any:
+    told = ParameterDescriptor(description=declaration.description, read_only=declaration.read_only)
+    low, high = declaration.minimum, declaration.maximum
+    if low is None and high is None:
+        return told
+    if default.type_ in (Parameter.Type.INTEGER, Parameter.Type.INTEGER_ARRAY):
+        told.integer_range = [
+            IntegerRange(
+                from_value=-_LARGEST if low is None else math.ceil(low),
+                to_value=_LARGEST if high is None else math.floor(high),
+            )
+        ]
+    else:
+        told.floating_point_range = [
+            FloatingPointRange(
+                from_value=-math.inf if low is None else float(low),
+                to_value=math.inf if high is None else float(high),
+            )
+        ]
+    return told

@@ -1,0 +1,168 @@
+"""Services of ROS 2."""
+
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.ros.backend import Handler
+from jacaros.ros.backends.ros2_graph import service_mismatch
+from jacaros.ros.backends.ros2_node import Ros2Node
+from jacaros.ros.errors import CallFailed, ServiceUnavailable
+from jacaros.ros.handoff import post
+from jacaros.ros.names import request_type
+from jacaros.ros.serving import PendingCalls, Responder, call_when_offered, checked_message, settle
+from jacaros.ros.waiting import within
+
+SETTLING = 0.5
+"""Seconds between finding a server and the first request: what it answers before it knows the client is lost."""
+
+
+class _Call:
+    """A request on its way through rclpy's executor; see `LateService`."""
+
+    def __init__(self, request: Any) -> None:
+        self.request = request
+
+
+class LateService:
+    """A service whose response may come at any time.
+
+    rclpy wants the response when its callback returns.  The callback returns the request instead, and
+    *sending* it passes it to the loop; the loop sends the real response when there is one.  So a handler may
+    take its time without holding up the executor, and any number of calls go on at once.
+
+    Args:
+        node: the backend.
+        service_class: rclpy's class of the service type.
+        name: absolute name.
+        take: called on the loop with each request and the function that sends the response.
+    """
+
+    def __init__(
+        self,
+        node: Ros2Node,
+        service_class: Any,
+        name: str,
+        take: Callable[[Any, Callable[[Any], None]], None],
+    ) -> None:
+        self._node = node
+        self._take = take
+        self._service: Any = node.rcl.create_service(service_class, name, lambda request, _: _Call(request))
+        self._send = self._service.send_response
+        self._service.send_response = self._hand_over
+        self._closed = False
+
+    def close(self, late: bool = False) -> None:
+        """Stop to offer the service; *late*: after the responses given just before have arrived."""
+        if not self._closed:
+            self._closed = True
+            retire = self._node.retire_later if late else self._node.retire
+            retire(self._node.rcl.destroy_service, self._service)
+
+    def _hand_over(self, call: _Call, header: Any) -> None:
+        def respond(response: Any) -> None:
+            if self._closed or self._node.ended:
+                return
+            try:
+                self._send(response, header)
+            except Exception as problem:  # the client has gone: that is no fault of ours
+                self._node.log(f"a response could not be sent: {problem}")
+
+        post(self._node.loop, self._take, call.request, respond)
+
+
+class Ros2Service:
+    """Service of the ``ros2`` backend."""
+
+    def __init__(self, node: Ros2Node, name: str, type_name: str, handler: Handler) -> None:
+        self.name = name
+        self._node = node
+        self._responder = Responder(node.factory, name, type_name, handler, node.log)
+        self._service = LateService(node, node.schema.message_class(type_name), name, self._answer)
+
+    def farewell(self, seconds: float) -> None:
+        """Nothing is left to say."""
+
+    def close(self) -> None:
+        """Stop to offer the service."""
+        self._responder.close()
+        self._service.close()
+        self._node.forget(self)
+
+    def _answer(self, request: Any, respond: Callable[[Any], None]) -> None:
+        def done(response: Any, problem: CallFailed | None) -> None:
+            # ROS 2 has no way to tell a client of a failure: its call times out.
+            if problem is None:
+                respond(response)
+
+        self._responder.answer(request, done)
+
+
+class Ros2Client:
+    """Client of the ``ros2`` backend."""
+
+    def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
+        self.name = name
+        self._node = node
+        self._type_name = type_name
+        self._client: Any = node.rcl.create_client(node.schema.message_class(type_name), name)
+        self._pending = PendingCalls(name)
+        self._acquainted = False
+        self._closed = False
+
+    @property
+    def ready(self) -> bool:
+        """Whether somebody offers the service."""
+        return not self._closed and bool(self._client.service_is_ready())
+
+    def request(self, **fields: Any) -> Any:
+        """Make a request message."""
+        return self._node.factory.make(request_type(self._type_name), fields)
+
+    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
+        """Call the service and give its response."""
+        node = self._node
+        message = checked_message(node.factory, request_type(self._type_name), request)
+        what = f"service {self.name} ({self._type_name})"
+
+        async def attempt(rest: float | None) -> Any:
+            return await self._attempt(message, rest)
+
+        return await call_when_offered(node.clock, node.log, what, attempt, timeout)
+
+    async def _attempt(self, message: Any, rest: float | None) -> Any:
+        clock = self._node.clock
+        deadline = None if rest is None else clock.now() + rest
+        if not self.ready:
+            self._acquainted = False
+            raise ServiceUnavailable(f"nobody offers service {self.name}")
+        if not self._acquainted:
+            await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
+            if (mismatch := service_mismatch(self._node, self.name, self._type_name)) is not None:
+                raise CallFailed(mismatch)
+            self._acquainted = True
+        if self._closed:
+            raise CallFailed(f"the client of service {self.name} was closed during the call")
+        answer = self._pending.new()
+
+        def finished(future: Any) -> None:
+            problem = future.exception()
+            failure = None if problem is None else CallFailed(f"service {self.name}: {problem}")
+            post(self._node.loop, settle, answer, None if problem else future.result(), failure)
+
+        call = self._client.call_async(message)
+        call.add_done_callback(finished)
+        try:
+            return await within(clock, answer, None if deadline is None else deadline - clock.now())
+        finally:
+            self._client.remove_pending_request(call)
+
+    def farewell(self, seconds: float) -> None:
+        """Nothing is left to say."""
+
+    def close(self) -> None:
+        """Give the client up."""
+        self._pending.close()
+        if not self._closed:
+            self._closed = True
+            self._node.retire(self._node.rcl.destroy_client, self._client)
+            self._node.forget(self)

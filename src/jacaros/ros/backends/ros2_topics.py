@@ -1,0 +1,186 @@
+"""Topics of ROS 2: publishers and subscriptions, and what a subscription learns besides messages."""
+
+from collections.abc import Callable
+from typing import Any
+
+import rclpy.duration  # type: ignore[import-not-found]
+from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[import-not-found]
+
+from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
+from jacaros.ros.backends.ros2_graph import endpoint, foreign_types
+from jacaros.ros.backends.ros2_node import Ros2Node
+from jacaros.ros.backends.ros2_quality import profile
+from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.handoff import Handoff, post
+from jacaros.ros.qos import QoS, incompatibility
+
+COURTESY = 0.002
+"""Seconds that rclpy's executor lets the agents go first: it computes for long (in Python) before it waits again."""
+LOOKING = 2.0
+"""Seconds between two looks at who publishes on a topic that is silent: ROS 2 tells of no other type by itself."""
+
+
+class Ros2Publisher:
+    """Publisher of the ``ros2`` backend."""
+
+    def __init__(self, node: Ros2Node, topic: str, type_name: str, qos: QoS) -> None:
+        self.topic = topic
+        self._node = node
+        self._type_name = type_name
+        self._class = node.factory.message_class(type_name)
+        self._publisher: Any = node.rcl.create_publisher(self._class, topic, profile(qos))
+        self._closed = False
+
+    @property
+    def subscription_count(self) -> int:
+        """How many subscriptions are connected now."""
+        return 0 if self._closed else int(self._publisher.get_subscription_count())
+
+    def message(self, **fields: Any) -> Any:
+        """Make a message of the topic's type."""
+        return self._node.factory.make(self._type_name, fields)
+
+    def publish(self, message: Any) -> None:
+        """Send *message*."""
+        if not isinstance(message, self._class):
+            raise MessageMismatch(
+                f"topic {self.topic} carries {self._type_name}, not {message!r}", self._type_name
+            )
+        if not self._closed and self._node.exit_hooks.admits():
+            self._publisher.publish(message)
+
+    def farewell(self, seconds: float) -> None:
+        """Wait until the reliable subscriptions have what was published, but not longer than *seconds*."""
+        if not self._closed:
+            self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=seconds))
+
+    def close(self) -> None:
+        """Leave the topic."""
+        if not self._closed:
+            self._closed = True
+            self._node.retire(self._node.rcl.destroy_publisher, self._publisher)
+            self._node.forget(self)
+
+
+class Ros2Subscription:
+    """Subscription of the ``ros2`` backend."""
+
+    def __init__(
+        self,
+        node: Ros2Node,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS,
+        on_event: Callable[[TopicEvent], None] | None,
+    ) -> None:
+        self.topic = topic
+        self._node = node
+        self._type_name = type_name
+        self._qos = qos
+        self._callback = callback
+        self._on_event = on_event
+        self._queue: Handoff[Any] = Handoff(node.loop, qos.depth, self._deliver, COURTESY)
+        self._silent = True
+        self._deadline_missed = False
+        self._told: set[str] = set()
+        self._closed = False
+        self._subscription: Any = node.rcl.create_subscription(
+            node.factory.message_class(type_name),
+            topic,
+            self._queue.put,
+            profile(qos),
+            event_callbacks=self._events(),
+        )
+        self._timer = node.loop.call_later(LOOKING, self._look)
+
+    @property
+    def publisher_count(self) -> int:
+        """How many publishers of the topic are known now."""
+        return 0 if self._closed else int(self._node.rcl.count_publishers(self.topic))
+
+    def farewell(self, seconds: float) -> None:
+        """Nothing is left to say."""
+
+    def close(self) -> None:
+        """Leave the topic."""
+        self._queue.close()
+        self._timer.cancel()
+        if not self._closed:
+            self._closed = True
+            self._node.retire(self._node.rcl.destroy_subscription, self._subscription)
+            self._node.forget(self)
+
+    def _events(self) -> Any:
+        def on_loop(action: Callable[[], None]) -> Callable[[Any], None]:
+            def event(_: Any) -> None:
+                post(self._node.loop, action)
+
+            return event
+
+        return SubscriptionEventCallbacks(
+            deadline=on_loop(self._miss_deadline) if self._qos.deadline is not None else None,
+            incompatible_qos=on_loop(self._compare_qos),
+            use_default_callbacks=False,
+        )
+
+    def _deliver(self, message: Any) -> None:
+        self._silent = False
+        self._deadline_missed = False
+        self._callback(self._node.sample(message, self.topic))
+
+    def _tell(self, trouble: TopicTrouble, text: str) -> None:
+        if self._closed:
+            return
+        if self._on_event is not None:
+            self._on_event(TopicEvent(trouble, text))
+        else:
+            self._node.log(text)
+
+    def _miss_deadline(self) -> None:
+        # The middleware tells it again with every deadline that passes; news is only the first after a message.
+        if not self._deadline_missed:
+            self._deadline_missed = True
+            self._tell(
+                TopicTrouble.DEADLINE_MISSED,
+                f"topic {self.topic}: no message within the deadline of {self._qos.deadline:g} s",
+            )
+
+    def _compare_qos(self) -> None:
+        """Find out which publisher does not fit; the event itself names one of the reasons only."""
+        if self._closed:
+            return
+        found = False
+        for info in self._node.rcl.get_publishers_info_by_topic(self.topic):
+            publisher = endpoint(info)
+            reason = None if publisher.qos is None else incompatibility(publisher.qos, self._qos)
+            if reason is None:
+                continue
+            found = True
+            key = f"qos {bytes(info.endpoint_gid).hex()}"
+            if key not in self._told:
+                self._told.add(key)
+                self._tell_qos(f"of {publisher.node or 'an unknown node'}: {reason}")
+        if not found:
+            self._tell_qos("there: what it offers and what is asked for do not fit")
+
+    def _tell_qos(self, whose: str) -> None:
+        self._tell(
+            TopicTrouble.INCOMPATIBLE_QOS,
+            f"topic {self.topic}: nothing will come from the publisher {whose}; ask for less, or offer more",
+        )
+
+    def _look(self) -> None:
+        """See whether a silent topic carries another type: then nothing ever comes, and nobody says why."""
+        if self._closed or self._node.ended:
+            return
+        if self._silent and self.publisher_count:
+            for other, who in foreign_types(self._node, self.topic, self._type_name).items():
+                if other not in self._told:
+                    self._told.add(other)
+                    self._tell(
+                        TopicTrouble.OTHER_TYPE,
+                        f"topic {self.topic} carries {other} (published by {who}), not {self._type_name}",
+                    )
+        self._silent = True
+        self._timer = self._node.loop.call_later(LOOKING, self._look)
