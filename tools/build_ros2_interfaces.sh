@@ -84,9 +84,8 @@ builder=/opt/python/cp${version/./}-cp${version/./}       # where the wheels' bu
   -e "s#$builder/include/python$version#$headers#g" \
   -e "s#$builder/lib/python$version/site-packages/numpy#$numpy#g"
 sed -i 's/lttng-ust;dl/dl/' "$venv"/share/tracetools/cmake/*.cmake       # lttng is not shipped
-# rclpy needs the C type support alone, and Fast DDS no introspection: the build takes a quarter of the time without the rest.
-for package in rosidl_generator_cpp rosidl_typesupport_cpp rosidl_typesupport_fastrtps_cpp \
-  rosidl_typesupport_introspection_cpp rosidl_typesupport_introspection_c; do
+# rclpy needs the C type support alone; without the C++ generators the build takes a quarter of the time.
+for package in rosidl_generator_cpp rosidl_typesupport_cpp rosidl_typesupport_fastrtps_cpp rosidl_typesupport_introspection_cpp; do
   for file in "$venv/share/$package"/cmake/*-extras.cmake "$venv/share/$package"/cmake/register_*.cmake; do
     if [ -f "$file" ]; then sed -i '/ament_register_extension/,/)/d' "$file"; fi
   done
