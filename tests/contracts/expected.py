@@ -16,9 +16,6 @@ CAPABILITIES = {
 NOT_YET = {
     "memory": set[str](),
     "ros1": {"actions", "parameters", "contents", "events", "deadlines", "rosout", "listening"},
-    "ros2": {
-        *("actions", "parameters", "declared parameters", "parameter events", "contents", "events"),
-        *("deadlines", "qos in the graph", "rosout", "transforms", "listening"),
-    },
+    "ros2": set[str](),
 }
 """Kind of graph → capabilities, and other words that tests need (marker `needs`), that are still to come."""

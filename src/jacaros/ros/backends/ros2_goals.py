@@ -32,6 +32,8 @@ from jacaros.ros.handoff import Handoff, post
 
 LOOKING = 0.1
 """Seconds between two looks at the server, while a goal is under way or the server is waited for."""
+COMPARING = 0.5
+"""Seconds between two looks at the types in the graph, while there is no server."""
 REPEATING = 1.0
 """Seconds after which a request is repeated that was not answered although it should have been."""
 FEEDBACK_WAITING = 100
@@ -66,6 +68,8 @@ class Ros2GoalWire:
         self._goals: dict[str, _SentGoal] = {}
         self._there = False
         self._there_since = 0.0
+        self._mismatch: str | None = None
+        self._compared = 0.0
         self._servers: frozenset[bytes] = frozenset()
         self._signs = SignsOfLife(self._probe, self.sender.server_present)
         self._looking: Any = None
@@ -100,7 +104,8 @@ class Ros2GoalWire:
         self._note_presence()
         if not self._there:
             self._keep_looking()
-        return self._there
+        # A server of another type is one too: `send_goal` says what is wrong with it.
+        return self._there or self._mismatch is not None
 
     def new_id(self) -> str:
         """Make up the id of a new goal."""
@@ -108,9 +113,9 @@ class Ros2GoalWire:
 
     def send_goal(self, identity: str, goal: Any) -> None:
         """Send a goal, as soon as the server knows us: what it answers earlier is lost."""
-        mismatch = action_mismatch(self._node, self.name, self._type_name)
-        if mismatch is not None:
-            raise CallFailed(mismatch)
+        self._mismatch = action_mismatch(self._node, self.name, self._type_name)
+        if self._mismatch is not None:
+            raise CallFailed(self._mismatch)
         self._goals[identity] = _SentGoal(identity)
         self._servers |= action_servers(self._node, self.name)
         self._keep_looking()
@@ -264,7 +269,13 @@ class Ros2GoalWire:
         if there != self._there:
             self._there = there
             self._there_since = time.monotonic()
+            self._mismatch = None
             self.sender.server_present(there)
+        elif not there and time.monotonic() > self._compared + COMPARING:
+            self._compared = time.monotonic()
+            self._mismatch = action_mismatch(self._node, self.name, self._type_name)
+            if self._mismatch is not None:
+                self.sender.server_present(True)
 
     def _greet_newcomers(self) -> None:
         """A server that came during a goal may have taken another's place: then it does not know the goal, and says so."""

@@ -2,10 +2,14 @@
 
 from typing import Any
 
+from rclpy.impl.implementation_singleton import rclpy_implementation  # type: ignore[import-not-found]
+
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_quality import quality
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 
+RCLError = rclpy_implementation.RCLError
+"""What rclpy raises when the middleware refuses."""
 ACTION = "/_action/"
 """Stands in the names of the topics and services that an action is made of."""
 SEND_GOAL, FEEDBACK = f"{ACTION}send_goal", f"{ACTION}feedback"
@@ -44,6 +48,16 @@ def foreign_types(node: Ros2Node, topic: str, type_name: str) -> dict[str, str]:
     }
 
 
+def own_types(node: Ros2Node, topic: str) -> list[list[str]]:
+    """With which types our own node is at a topic."""
+    names = node.names
+    told = [
+        *node.rcl.get_publisher_names_and_types_by_node(names.node_name, names.namespace or "/"),
+        *node.rcl.get_subscriber_names_and_types_by_node(names.node_name, names.namespace or "/"),
+    ]
+    return [types for name, types in told if name == topic]
+
+
 def service_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
     """Tell that a service is there with another type only; None when all is well, or nothing is known."""
     return _mismatch(node, "service", name, name, type_name, "")
@@ -78,12 +92,15 @@ def contents(node: Ros2Node) -> GraphContents:
     actions: dict[str, str] = {}
     for name, types in rcl.get_topic_names_and_types():
         if name.endswith(FEEDBACK):
-            actions[name.removesuffix(FEEDBACK)] = _action_type(node, types)
+            servers = rcl.get_publishers_info_by_topic(name)
+            if servers:  # else it is only asked for
+                told = servers[0].topic_type.removesuffix("_FeedbackMessage")
+                actions[name.removesuffix(FEEDBACK)] = node.schema.usual_type(told)
         elif ACTION not in name and name not in INFRASTRUCTURE:
             topics[name] = _topic(node, name, types)
     services: dict[str, str] = {}
     for name, types in rcl.get_service_names_and_types():
-        if ACTION not in name and not _belongs_to_node(name, nodes):
+        if ACTION not in name and not _belongs_to_node(name, nodes) and rcl.count_services(name):
             services[name] = node.schema.usual_type(sorted(types)[0]) if types else ""
     return GraphContents(topics, services, actions, tuple(node for node in nodes if _is_shown(node)))
 
@@ -95,10 +112,6 @@ def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
         tuple(endpoint(info) for info in node.rcl.get_publishers_info_by_topic(name)),
         tuple(endpoint(info) for info in node.rcl.get_subscriptions_info_by_topic(name)),
     )
-
-
-def _action_type(node: Ros2Node, types: list[str]) -> str:
-    return node.schema.usual_type(sorted(types)[0].removesuffix("_FeedbackMessage")) if types else ""
 
 
 def _belongs_to_node(service: str, nodes: list[str]) -> bool:

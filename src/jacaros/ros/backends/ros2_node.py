@@ -22,6 +22,7 @@ import rclpy.task  # type: ignore[import-not-found]
 
 from jacaros.ros.backends.ros2_output import leave_standard_output_alone
 from jacaros.ros.backends.ros2_types import RosidlSchema
+from jacaros.ros.backends.ros2_values import parameter
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.node import Node, NodeSettings
 
@@ -57,6 +58,7 @@ class Ros2Node(Node):
         self.schema = RosidlSchema()
         super().__init__(settings, self.schema, finish=self._leave, threaded_hooks=True)
         self._domain_id = domain_id
+        self._given = settings.parameters
         self._context: Any = rclpy.Context()
         self._executor: Any = None
         self._thread: threading.Thread | None = None
@@ -123,6 +125,7 @@ class Ros2Node(Node):
             namespace=self.names.namespace or "/",
             context=self._context,
             use_global_arguments=False,
+            parameter_overrides=[parameter(name, value) for name, value in self._given.items()],
         )
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.rcl)

@@ -25,6 +25,7 @@ from jacaros.ros.backend import Sample
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_services import Ros2Client
 from jacaros.ros.backends.ros2_topics import Ros2Subscription
+from jacaros.ros.backends.ros2_values import parameter, plain_value
 from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue
@@ -32,57 +33,6 @@ from jacaros.ros.qos import QoS
 
 EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/ParameterEvent", QoS(depth=1000)
 _LARGEST = 2**63 - 1
-_KINDS: dict[type, Any] = {
-    bool: Parameter.Type.BOOL,
-    int: Parameter.Type.INTEGER,
-    float: Parameter.Type.DOUBLE,
-    str: Parameter.Type.STRING,
-    bytes: Parameter.Type.BYTE_ARRAY,
-}
-_LIST_KINDS: dict[type, Any] = {
-    bool: Parameter.Type.BOOL_ARRAY,
-    int: Parameter.Type.INTEGER_ARRAY,
-    float: Parameter.Type.DOUBLE_ARRAY,
-    str: Parameter.Type.STRING_ARRAY,
-}
-
-
-def parameter(name: str, value: Any, kind: Any = None) -> Any:
-    """Make rclpy's object for a parameter.
-
-    Args:
-        name: its name.
-        value: plain value.
-        kind: rclpy's type of an empty list, which does not tell it by itself.
-
-    Raises:
-        ParameterRefused: no parameter can hold such a value.
-    """
-    if isinstance(value, list | tuple):
-        elements = list(value)
-        if not elements:
-            return Parameter(name, kind or Parameter.Type.STRING_ARRAY, [])
-        kinds = {_LIST_KINDS.get(type(element)) for element in elements}
-        if len(kinds) == 1 and (kind := kinds.pop()) is not None:
-            return Parameter(name, kind, elements)
-    elif isinstance(value, bytes | bytearray):
-        return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in value])
-    else:
-        for python, kind in _KINDS.items():  # bool is an int, and comes first
-            if isinstance(value, python):
-                return Parameter(name, kind, python(value))
-    raise ParameterRefused(
-        f"parameter {name}: a parameter holds a bool, a number, a text, bytes, or a list of bools, ints, floats or "
-        f"texts; not {value!r}"
-    )
-
-
-def plain_value(told: Any) -> Any:
-    """Read a value that rclpy gives; None for a parameter without one."""
-    if isinstance(told, str | bool | int | float) or told is None:
-        return told
-    elements = list(told)
-    return b"".join(elements) if elements and isinstance(elements[0], bytes) else elements
 
 
 class ParameterNews:

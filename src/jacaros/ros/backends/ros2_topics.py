@@ -1,16 +1,20 @@
 """Topics of ROS 2: publishers and subscriptions, and what a subscription learns besides messages."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import rclpy.duration  # type: ignore[import-not-found]
-from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[import-not-found]
+from rclpy.event_handler import (  # type: ignore[import-not-found]
+    PublisherEventCallbacks,
+    SubscriptionEventCallbacks,
+)
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.ros2_graph import endpoint, foreign_types
+from jacaros.ros.backends.ros2_graph import RCLError, endpoint, foreign_types, own_types
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_quality import profile
-from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.errors import MessageMismatch, RosError
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS, incompatibility
 
@@ -18,6 +22,19 @@ COURTESY = 0.002
 """Seconds that rclpy's executor lets the agents go first: it computes for long (in Python) before it waits again."""
 LOOKING = 2.0
 """Seconds between two looks at who publishes on a topic that is silent: ROS 2 tells of no other type by itself."""
+
+
+@contextmanager
+def _at_topic(node: Ros2Node, topic: str, type_name: str) -> Iterator[None]:
+    """Say in our words what rclpy says in its own when it cannot join a topic."""
+    try:
+        yield
+    except RCLError as problem:
+        others = {kind for kinds in own_types(node, topic) for kind in kinds} - {type_name}
+        because = (
+            f"this node uses it with type {', '.join(sorted(others))} already" if others else str(problem)
+        )
+        raise RosError(f"topic {topic} cannot be joined with type {type_name}: {because}") from None
 
 
 class Ros2Publisher:
@@ -28,8 +45,17 @@ class Ros2Publisher:
         self._node = node
         self._type_name = type_name
         self._class = node.factory.message_class(type_name)
-        self._publisher: Any = node.rcl.create_publisher(self._class, topic, profile(qos))
+        self._qos = qos
+        self._told: set[bytes] = set()
         self._closed = False
+        events = PublisherEventCallbacks(
+            incompatible_qos=lambda _: post(node.loop, self._compare_qos) and None,
+            use_default_callbacks=False,
+        )
+        with _at_topic(node, topic, type_name):
+            self._publisher: Any = node.rcl.create_publisher(
+                self._class, topic, profile(qos), event_callbacks=events
+            )
 
     @property
     def subscription_count(self) -> int:
@@ -61,6 +87,18 @@ class Ros2Publisher:
             self._node.retire(self._node.rcl.destroy_publisher, self._publisher)
             self._node.forget(self)
 
+    def _compare_qos(self) -> None:
+        """Tell the log which subscriptions ask for more than is offered."""
+        if self._closed or self._node.ended:
+            return
+        for info in self._node.rcl.get_subscriptions_info_by_topic(self.topic):
+            listener, identity = endpoint(info), bytes(info.endpoint_gid)
+            reason = None if listener.qos is None else incompatibility(self._qos, listener.qos)
+            if reason is not None and identity not in self._told:
+                self._told.add(identity)
+                who = listener.node or "an unknown node"
+                self._node.log(f"topic {self.topic}: {who} does not get what we publish, because {reason}")
+
 
 class Ros2Subscription:
     """Subscription of the ``ros2`` backend."""
@@ -85,13 +123,11 @@ class Ros2Subscription:
         self._deadline_missed = False
         self._told: set[str] = set()
         self._closed = False
-        self._subscription: Any = node.rcl.create_subscription(
-            node.factory.message_class(type_name),
-            topic,
-            self._queue.put,
-            profile(qos),
-            event_callbacks=self._events(),
-        )
+        kind = node.factory.message_class(type_name)
+        with _at_topic(node, topic, type_name):
+            self._subscription: Any = node.rcl.create_subscription(
+                kind, topic, self._queue.put, profile(qos), event_callbacks=self._events()
+            )
         self._timer = node.loop.call_later(LOOKING, self._look)
 
     @property
@@ -138,12 +174,12 @@ class Ros2Subscription:
             self._node.log(text)
 
     def _miss_deadline(self) -> None:
-        # The middleware tells it again with every deadline that passes; news is only the first after a message.
-        if not self._deadline_missed:
+        # The middleware tells it again with every deadline that passes; for the log the first after a message is enough.
+        if self._on_event is not None or not self._deadline_missed:
             self._deadline_missed = True
             self._tell(
                 TopicTrouble.DEADLINE_MISSED,
-                f"topic {self.topic}: no message within the deadline of {self._qos.deadline:g} s",
+                f"topic {self.topic}: no message came for {self._qos.deadline:g} s, which is the deadline",
             )
 
     def _compare_qos(self) -> None:
@@ -160,14 +196,15 @@ class Ros2Subscription:
             key = f"qos {bytes(info.endpoint_gid).hex()}"
             if key not in self._told:
                 self._told.add(key)
-                self._tell_qos(f"of {publisher.node or 'an unknown node'}: {reason}")
+                self._tell_qos(f"not connected to {publisher.node or 'an unknown node'}, because {reason}")
         if not found:
-            self._tell_qos("there: what it offers and what is asked for do not fit")
+            self._tell_qos(
+                "not connected to a publisher, because what it offers and what is asked for do not fit"
+            )
 
-    def _tell_qos(self, whose: str) -> None:
+    def _tell_qos(self, what: str) -> None:
         self._tell(
-            TopicTrouble.INCOMPATIBLE_QOS,
-            f"topic {self.topic}: nothing will come from the publisher {whose}; ask for less, or offer more",
+            TopicTrouble.INCOMPATIBLE_QOS, f"topic {self.topic}: {what}; ask for no more than is offered"
         )
 
     def _look(self) -> None:
@@ -180,7 +217,8 @@ class Ros2Subscription:
                     self._told.add(other)
                     self._tell(
                         TopicTrouble.OTHER_TYPE,
-                        f"topic {self.topic} carries {other} (published by {who}), not {self._type_name}",
+                        f"topic {self.topic}: {who} publishes {other}, not {self._type_name}; "
+                        f"write {other} here to receive it",
                     )
         self._silent = True
         self._timer = self._node.loop.call_later(LOOKING, self._look)
