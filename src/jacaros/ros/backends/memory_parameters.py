@@ -1,5 +1,6 @@
 """Parameters of `jacaros.ros.backends.memory`: as on ROS 2, every node keeps its own."""
 
+import asyncio
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
@@ -38,6 +39,7 @@ class MemoryParameters:
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
         """Change a parameter."""
         (await self._store(timeout)).set(name, value)
+        await asyncio.sleep(0)  # the news of it comes first, as it does on real graphs more often than not
 
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
         """Have *callback* called with what changed."""
