@@ -15,7 +15,7 @@ CAPABILITIES = {
 
 NOT_YET = {
     "memory": set[str](),
-    "ros1": {"actions", "parameters", "contents", "events", "deadlines", "rosout", "listening"},
+    "ros1": {"actions", "parameters", "contents", "events", "deadlines"},
     "ros2": set[str](),
 }
 """Kind of graph → capabilities, and other words that tests need (marker `needs`), that are still to come."""
