@@ -37,8 +37,8 @@ event.
 * `dead_band(D)`: tell a value only when a number in it differs by more than D from the one told before; a list has one
   figure for each number. Equal values are never told twice.
 * `latest_only(true)`: while an agent has still to take up the value before, nothing is told, and then the newest is: an
-  agent that is slower than its sensor reacts to what is now. So it is by default where a value is a state; `latest_only(false)`
-  tells all.
+  agent that is slower than its sensor reacts to what is now. So it is by default where a value is a state;
+  `latest_only(false)` tells all.
 * `expire(S)`: the property goes when no message came for S seconds, and comes back with the next one. Then there is none
   before the first message either.
 

@@ -19,6 +19,7 @@ from jacaros.bdi import (
     goals,
     meta_events,
     plan_changes,
+    uptake,
 )
 from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.answers import AnswerByPlan
@@ -221,16 +222,11 @@ class Agent(Circumstance):
             self.architecture.ready()
 
     def has_untaken(self, name: str) -> bool:
-        """Whether a change or event of a belief called *name* from the environment still waits to be taken up."""
-        for percepts in self.percepts:
-            for each in percepts:
-                symbol = functor_of(each.literal)
-                if symbol is not None and symbol.name == name:
-                    return True
-        return any(
-            intention is None and goal[0].kind == "" and goal[0].functor.name == name
-            for goal, intention, _, _ in self.events
-        )
+        """Whether a change of a belief called *name* from the environment still waits to be taken up.
+
+        It is taken up when the plan for its event has ended, or waits for something itself.
+        """
+        return uptake.is_untaken(self, name)
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """An external action ended; an id that is not pending (any more) is ignored."""

@@ -1,0 +1,40 @@
+"""Whether an agent has taken up what it perceived: a sensor that is faster than its agent asks before it tells more."""
+
+from collections.abc import Iterator
+
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import EVENT_GOAL, EVENT_INTENTION
+from jacaros.bdi.intention import GOAL, Intention
+from jacaros.compiler.triggers import Trigger
+from jacaros.terms.values import functor_of
+
+
+def is_untaken(agent: Circumstance, name: str) -> bool:
+    """Whether a change of a belief called *name* has still to be noticed or handled, or its plan has still to run.
+
+    A plan that waits (for an action, a time, a condition) has had its turn.
+    """
+    for percepts in agent.percepts:
+        for each in percepts:
+            symbol = functor_of(each.literal)
+            if symbol is not None and symbol.name == name:
+                return True
+    for event in agent.events:
+        if event[EVENT_INTENTION] is None and _is_change(event[EVENT_GOAL][0], name):
+            return True
+    return any(each.frames and _is_change(each.frames[0][GOAL][0], name) for each in _running(agent))
+
+
+def _is_change(kind: Trigger, name: str) -> bool:
+    return kind.kind == "" and kind.functor.name == name
+
+
+def _running(agent: Circumstance) -> Iterator[Intention]:
+    """The intentions that wait for nothing but their turn."""
+    if agent.current is not None and agent.current.waiting is None:
+        yield agent.current
+    yield from agent.intentions
+    for event in agent.events:
+        intention = event[EVENT_INTENTION]
+        if intention is not None:
+            yield intention

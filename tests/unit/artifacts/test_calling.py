@@ -1,0 +1,108 @@
+"""Operations over services: outputs, reasons, refusals, and requests that do not fit."""
+
+from typing import Any
+
+from robot_lab import Lab, in_lab
+
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.env import Out, operation
+
+TRIGGER, SET_BOOL = "std_srvs/srv/Trigger", "std_srvs/srv/SetBool"
+
+
+class Arm(RosArtifact):
+    """Asks services."""
+
+    def open(self) -> None:
+        self.gripper = self.client("/grip", SET_BOOL)
+        self.starter = self.client("/start", TRIGGER)
+        self.emptier = self.client("/empty", "std_srvs/srv/Empty")
+
+    @operation
+    async def grip(self, closed: Any, message: Out) -> None:
+        """Open or close; a refusal is a failure."""
+        response = await self.call(self.gripper, 2.0, must_succeed=True, data=closed)
+        message.set(response.message)
+
+    @operation
+    async def start_it(self, success: Out, message: Out) -> None:
+        """Give what the service says."""
+        response = await self.call(self.starter, 2.0)
+        success.set(response.success)
+        message.set(response.message)
+
+    @operation
+    async def empty(self) -> None:
+        """Want to know what nobody says."""
+        await self.call(self.emptier, 2.0, must_succeed=True)
+
+
+def test_the_fields_of_a_response_come_back() -> None:
+    async def body(lab: Lab) -> None:
+        lab.backend.service("/start", TRIGGER, lambda request: {"success": False, "message": "no fuel"})
+        artifact = await lab.make(Arm)
+        success, message = Out(), Out()
+        await lab.do(artifact, "start_it", success, message)
+        assert (success.value, message.value) == (False, "no fuel")
+
+    in_lab(body, None)
+
+
+def test_a_service_that_refuses_fails_the_operation_that_wants_success() -> None:
+    async def body(lab: Lab) -> None:
+        said = {"success": False, "message": "jammed"}
+        lab.backend.service("/grip", SET_BOOL, lambda request: said)
+        artifact = await lab.make(Arm)
+        refused = await lab.call(artifact, "grip", True, Out())
+        assert refused.reason == 'refused("jammed")'
+        assert refused.outcome is not None
+        assert refused.outcome.message == "service /grip refused: jammed"
+        said.update(success=True, message="closed")
+        out = Out()
+        await lab.do(artifact, "grip", True, out)
+        assert out.value == "closed"
+
+    in_lab(body, None)
+
+
+def test_a_request_that_does_not_fit_is_never_sent() -> None:
+    async def body(lab: Lab) -> None:
+        asked: list[Any] = []
+        lab.backend.service("/grip", SET_BOOL, asked.append)
+        artifact = await lab.make(Arm)
+        wrong = await lab.call(artifact, "grip", "tight", Out())
+        assert wrong.reason == 'wrong_value("data")'
+        assert asked == []
+
+    in_lab(body, None)
+
+
+def test_wanting_success_of_a_service_that_says_nothing_about_it_is_a_mistake_of_the_artifact() -> None:
+    async def body(lab: Lab) -> None:
+        lab.backend.service("/empty", "std_srvs/srv/Empty", lambda request: None)
+        artifact = await lab.make(Arm)
+        ended = await lab.call(artifact, "empty")
+        assert ended.outcome is not None
+        assert not ended.outcome.ok
+        assert any("has no field success" in line for line in lab.logged)
+
+    in_lab(body, None)
+
+
+def test_dropping_a_call_waits_for_nobody() -> None:
+    async def body(lab: Lab) -> None:
+        async def slow(request: Any) -> dict[str, Any]:
+            await lab.sleep(1)
+            return {"success": True}
+
+        lab.backend.service("/start", TRIGGER, slow)
+        artifact = await lab.make(Arm)
+        asking = lab.begin(artifact, "start_it", Out(), Out())
+        await lab.sleep(0.1)
+        asking.execution.cancel()
+        await lab.sleep(0.01)
+        assert asking.execution.ended
+        await lab.sleep(2)
+        assert not asking.done.done()
+
+    in_lab(body, None)
