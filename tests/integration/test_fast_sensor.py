@@ -18,7 +18,7 @@ PROGRAM = """
 
 
 def lags(folder: Path, latest: str) -> tuple[list[float], RunResult]:
-    """Run the program with a tenth of a second of odometry; seconds from each message that it handled to the end of its plan."""
+    """Run the program at 1 kHz; seconds from each message that it handled to the end of its plan."""
     file = folder / "slow.asl"
     file.write_text(PROGRAM.format(latest=latest), encoding="utf-8")
 
