@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceUnavailable
+from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError, ServiceUnavailable
 
 PERIOD = 0.25
 """Seconds between two looks at the master."""
@@ -38,7 +38,10 @@ class NodeActions:
         register: registers one name again; the number says which kind: 0 publication, 1 subscription, 2
             service.
         on_state: is told whether the master is there, at the first look and at every change.
-        on_again: is told the names that were registered again.
+        on_again: is told the names that were registered again, and whether these are all the node has: then the
+            master was restarted.
+        on_types: is told the types of the topics that somebody publishes, as on ROS 1, whenever publishers have
+            come or gone.
         on_problem: is told of work that failed.
     """
 
@@ -46,8 +49,41 @@ class NodeActions:
     offers: Callable[[], Offers]
     register: Callable[[int, str, str], None]
     on_state: Callable[[bool], None]
-    on_again: Callable[[list[str]], None]
+    on_again: Callable[[list[str], bool], None]
+    on_types: Callable[[dict[str, str]], None]
     on_problem: Callable[[Exception], None]
+
+
+class Master:
+    """Questions to the master, each of which blocks.
+
+    Args:
+        uri: the master's address.
+        caller: absolute name of the node that asks.
+    """
+
+    def __init__(self, uri: str, caller: str) -> None:
+        self.uri = uri
+        self._caller = caller
+
+    def ask(self, method: str, *arguments: Any) -> Any:
+        """Call a method of the master's interface (ROS wiki, "Master API") and give its value.
+
+        Raises:
+            ServiceUnavailable: the master is away.
+            CallFailed: it refused; the text is its own.
+        """
+        try:
+            with xmlrpc.client.ServerProxy(
+                self.uri, transport=_ImpatientTransport(use_builtin_types=True), use_builtin_types=True
+            ) as proxy:
+                answer: Any = getattr(proxy, method)(self._caller, *arguments)
+        except _AWAY as problem:
+            raise ServiceUnavailable(f"the ROS master at {self.uri} does not answer ({problem})") from None
+        code, text, value = answer
+        if code != 1:
+            raise CallFailed(str(text))
+        return value
 
 
 class MasterLink:
@@ -60,7 +96,7 @@ class MasterLink:
     """
 
     def __init__(self, uri: str, node_name: str, actions: NodeActions) -> None:
-        self._uri = uri
+        self._master = Master(uri, node_name)
         self._node_name = node_name
         self._actions = actions
         self._jobs: deque[Callable[[], None]] = deque()
@@ -68,6 +104,7 @@ class MasterLink:
         self._stopping = False
         self._joined = False
         self._state: bool | None = None
+        self._published: Any = None
         self.services: frozenset[str] = frozenset()
 
     def start(self) -> None:
@@ -104,6 +141,7 @@ class MasterLink:
         else:
             self._register_missing(known)
         self._set_state(True)
+        self._look_at_types(known)
         while self._jobs and not self._stopping:
             job = self._jobs.popleft()
             try:
@@ -114,26 +152,32 @@ class MasterLink:
     def _known(self) -> list[Any] | None:
         """Ask the master for all it knows: three lists of [name, [nodes]]; None when it is away."""
         try:
-            with xmlrpc.client.ServerProxy(self._uri, transport=_ImpatientTransport()) as master:
-                answer: Any = master.getSystemState(self._node_name)
-        except _AWAY:
-            return None
-        code, _, state = answer
-        if code != 1:
+            state: list[Any] = self._master.ask("getSystemState")
+        except ServiceError:
             return None
         self.services = frozenset(name for name, _ in state[2])
-        return list(state)
+        return state
+
+    def _look_at_types(self, known: list[Any]) -> None:
+        if known[0] == self._published:
+            return
+        published = {name for name, _ in known[0]}
+        types = {name: kind for name, kind in self._master.ask("getTopicTypes") if name in published}
+        self._published = known[0]
+        self._actions.on_types(types)
 
     def _register_missing(self, known: list[Any]) -> None:
-        again = []
+        again, kept = [], 0
         for kind, offers in enumerate(self._actions.offers()):
             names = {name for name, nodes in known[kind] if self._node_name in nodes}
             for name, detail in offers:
-                if name not in names:
+                if name in names:
+                    kept += 1
+                else:
                     self._actions.register(kind, name, detail)
                     again.append(name)
         if again:
-            self._actions.on_again(again)
+            self._actions.on_again(again, kept == 0)
 
     def _set_state(self, present: bool) -> None:
         if present != self._state:

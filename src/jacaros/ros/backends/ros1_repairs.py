@@ -4,12 +4,15 @@ import logging
 import sys
 import threading
 import warnings
+from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
 import rosgraph.xmlrpc  # type: ignore[import-not-found]
 import rospy.impl.masterslave  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
+from rospy.impl.paramserver import get_param_server_cache  # type: ignore[import-not-found]
 
 
 def let_subscribers_hear() -> None:
@@ -24,6 +27,21 @@ def leave_standard_output_alone() -> None:
             handler._stdout = sys.stderr
     for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
         module.print = partial(print, file=sys.stderr)
+
+
+def let_parameters_tell(listener: Callable[[str, Any], None]) -> None:
+    """Have *listener* called, on a thread of rospy's, with what the master says of a changed parameter.
+
+    rospy itself keeps such news in a cache that nobody can watch, and refuses news of parameters that are not in it.
+    """
+
+    def parameter_update(_: Any, caller: str, name: str, value: Any) -> tuple[int, str, int]:
+        with suppress(KeyError):
+            get_param_server_cache().update(name, value)
+        listener(name, value)
+        return 1, "", 0
+
+    rospy.impl.masterslave.ROSHandler.paramUpdate = parameter_update
 
 
 class EndingServer(rosgraph.xmlrpc.ThreadingXMLRPCServer):  # type: ignore[misc]

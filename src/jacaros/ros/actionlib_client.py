@@ -1,0 +1,251 @@
+"""Action clients of ROS 1 graphs: actionlib's protocol as a `GoalWire`."""
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.clock import Timer
+from jacaros.ros.action import Outcome
+from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_serving import text_of
+from jacaros.ros.actionlib_states import (
+    CANCELLING,
+    COMMANDS,
+    ENDS,
+    ENOUGH_NEWS,
+    ID_TYPE,
+    NEWS,
+    STATUS,
+    STATUS_PERIOD,
+    STATUS_TYPE,
+    ActionTopicsNode,
+    State,
+    part_type,
+)
+from jacaros.ros.backend import Sample
+from jacaros.ros.errors import ServerLost
+from jacaros.ros.names import result_type
+
+LOOKING = 0.02
+"""Seconds between two looks for a server that is awaited."""
+QUIET = 4
+"""So many `STATUS_PERIOD` without a word of the server, and it is called away; lost it is later, see `SERVER_LOST_AFTER`."""
+REFUSED_AFTER = 1.0
+"""Seconds in which a request for cancelling must show in the goal's state: actionlib's servers do not say no."""
+
+_numbers = itertools.count(1)
+
+
+@dataclass(slots=True)
+class _Goal:
+    """What is known of a goal under way.
+
+    Attributes:
+        accepted: by the server.
+        missing: messages about the server's goals, one after the other, in which an accepted goal was not mentioned.
+        ended: such messages that called it ended, while its result has not come.
+        cancelling: when cancelling was asked for, until it is answered.
+        unmoved: such messages since then that called it active.
+    """
+
+    accepted: bool = False
+    missing: int = 0
+    ended: int = 0
+    cancelling: float | None = None
+    unmoved: int = 0
+
+
+class ActionlibWire:
+    """The five topics of one action, as its client uses them.
+
+    Args:
+        node: the backend.
+        sender: the client.
+    """
+
+    def __init__(self, node: ActionTopicsNode, sender: GoalSender) -> None:
+        self._node = node
+        self._sender = sender
+        name, kind = sender.name, sender.type_name
+        self._result_type = result_type(kind)
+        self._goals: dict[str, _Goal] = {}
+        self._complete = self._heard = self._present = self._closed = False
+        self._quiet = 0
+        self._timer: Timer | None = None
+        self._goal = node.publisher(f"{name}/goal", part_type(kind, "ActionGoal"), COMMANDS)
+        self._cancel = node.publisher(f"{name}/cancel", ID_TYPE, COMMANDS)
+        self._status = node.subscription(f"{name}/status", STATUS_TYPE, self._take_status, STATUS)
+        self._feedback = node.subscription(
+            f"{name}/feedback", part_type(kind, "ActionFeedback"), self._take_feedback, NEWS
+        )
+        self._result = node.subscription(
+            f"{name}/result", part_type(kind, "ActionResult"), self._take_result, NEWS
+        )
+        self._forget_hook = node.add_exit_hook(self._cancel_all)
+
+    @property
+    def offered(self) -> bool:
+        """Whether a server is there, with all five topics connected.  Asking for it makes the wire look out."""
+        self._look()
+        return self._present
+
+    def new_id(self) -> str:
+        """Make up an id in actionlib's manner: node, number, time."""
+        return f"{self._node.node_name}-{next(_numbers)}-{self._node.clock.now():.9f}"
+
+    def send_goal(self, goal_id: str, goal: Any) -> None:
+        """Send a goal message."""
+        self._goals[goal_id] = _Goal()
+        now = self._node.clock.now()
+        message = self._goal.message(
+            header={"stamp": now}, goal_id={"stamp": now, "id": goal_id}, goal=goal
+        )
+        self._goal.publish(message)
+        self._look()
+
+    def cancel_goal(self, goal_id: str) -> None:
+        """Ask the server to cancel a goal."""
+        goal = self._goals.get(goal_id)
+        if goal is not None and goal.cancelling is None:
+            goal.cancelling, goal.unmoved = self._node.clock.now(), 0
+        self._cancel.publish(self._cancel.message(id=goal_id))
+
+    def forget_goal(self, goal_id: str) -> None:
+        """The goal is over for this client."""
+        self._goals.pop(goal_id, None)
+
+    def close(self) -> None:
+        """Leave the five topics."""
+        self._closed = True
+        self._forget_hook()
+        if self._timer is not None:
+            self._timer.cancel()
+        for end in (self._goal, self._cancel, self._status, self._feedback, self._result):
+            end.close()
+
+    def _cancel_all(self) -> None:
+        """An exit hook: a process that ends leaves no robot driving to its goal."""
+        for goal_id in list(self._goals):
+            self.cancel_goal(goal_id)
+
+    # Whether the server is there: connections tell no changes, so they are looked at while somebody cares.
+
+    def _look(self) -> None:
+        if self._closed:
+            return
+        publishers = self._status.publisher_count
+        complete = (
+            publishers > 0
+            and self._feedback.publisher_count > 0
+            and self._result.publisher_count > 0
+            and self._goal.subscription_count > 0
+            and self._cancel.subscription_count > 0
+        )
+        if complete and not self._complete:
+            self._lose_unanswered()
+        if publishers == 0:
+            self._heard = False
+        self._complete = complete
+        self._set_present(complete and self._heard)
+        if self._timer is None and (self._sender.busy or not self._present):
+            delay = STATUS_PERIOD if self._present else LOOKING
+            self._timer = self._node.clock.call_later(delay, self._tick)
+
+    def _tick(self) -> None:
+        self._timer = None
+        self._quiet += 1
+        if self._present and self._quiet >= QUIET:
+            self._heard = False
+        if self._sender.busy:
+            self._look()
+
+    def _note_server(self) -> None:
+        """A message of the server has come."""
+        self._quiet = 0
+        self._heard = True
+        if not self._present:
+            self._look()
+
+    def _set_present(self, present: bool) -> None:
+        if present != self._present:
+            self._present = present
+            self._quiet = 0
+            self._sender.server_present(present)
+
+    def _lose_unanswered(self) -> None:
+        """A server is there after none was: it has never heard of the goals that were not accepted."""
+        for goal_id, goal in list(self._goals.items()):
+            if not goal.accepted:
+                self._lose(goal_id, "went away before it accepted")
+
+    def _lose(self, goal_id: str, how: str) -> None:
+        self._sender.fail(goal_id, ServerLost(f"the server of action {self._sender.name} {how} goal {goal_id}"))
+
+    # What the server says:
+
+    def _take_status(self, sample: Sample) -> None:
+        self._note_server()
+        told = {status.goal_id.id: status for status in sample.message.status_list}
+        for goal_id, goal in list(self._goals.items()):
+            status = told.get(goal_id)
+            if status is not None:
+                goal.missing = 0
+                self._advance(goal_id, goal, status)
+            elif goal.accepted:
+                goal.missing += 1
+                if goal.missing >= ENOUGH_NEWS:
+                    self._lose(goal_id, "has been started again and does not know")
+
+    def _advance(self, goal_id: str, goal: _Goal, status: Any) -> None:
+        state = State(status.status)
+        if state is State.REJECTED:
+            self._sender.rejected(goal_id, status.text)
+            return
+        if state not in (State.PENDING, State.RECALLING):
+            self._accept(goal_id, goal)
+        if goal.cancelling is not None:
+            self._see_cancelling(goal_id, goal, state)
+        if state in ENDS:
+            goal.ended += 1
+            if goal.ended >= ENOUGH_NEWS:  # the result was lost: there is none to wait for
+                result = self._node.factory.make(self._result_type)
+                self._sender.ended(goal_id, Outcome(ENDS[state], result, status.text))
+
+    def _accept(self, goal_id: str, goal: _Goal) -> None:
+        if not goal.accepted:
+            goal.accepted = True
+            self._sender.accepted(goal_id)
+
+    def _see_cancelling(self, goal_id: str, goal: _Goal, state: State) -> None:
+        assert goal.cancelling is not None
+        if state in CANCELLING:
+            goal.cancelling = None
+            self._sender.cancel_answered(goal_id, True)
+        elif state is State.ACTIVE:
+            goal.unmoved += 1
+            if goal.unmoved >= ENOUGH_NEWS and self._node.clock.now() - goal.cancelling >= REFUSED_AFTER:
+                goal.cancelling = None
+                self._sender.cancel_answered(goal_id, False)
+
+    def _take_feedback(self, sample: Sample) -> None:
+        self._note_server()
+        message = sample.message
+        goal_id = message.status.goal_id.id
+        goal = self._goals.get(goal_id)
+        if goal is not None:
+            self._accept(goal_id, goal)
+            self._sender.feedback(goal_id, message.feedback)
+
+    def _take_result(self, sample: Sample) -> None:
+        self._note_server()
+        message = sample.message
+        goal_id, state = message.status.goal_id.id, State(message.status.status)
+        goal = self._goals.get(goal_id)
+        if goal is None:
+            return
+        text = message.status.text or text_of(message.result)
+        if state is State.REJECTED:
+            self._sender.rejected(goal_id, text)
+        elif state in ENDS:
+            self._accept(goal_id, goal)
+            self._sender.ended(goal_id, Outcome(ENDS[state], message.result, text))

@@ -1,0 +1,200 @@
+"""Action servers in ROS 1 graphs: actionlib's protocol around `ServedGoals`."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.clock import Timer
+from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
+from jacaros.ros.action_serving import ServedGoals
+from jacaros.ros.actionlib_states import (
+    COMMANDS,
+    ID_TYPE,
+    NEWS,
+    STATUS,
+    STATUS_KEPT,
+    STATUS_PERIOD,
+    STATUS_TYPE,
+    ActionTopicsNode,
+    State,
+    part_type,
+    time_of,
+)
+from jacaros.ros.backend import Sample
+from jacaros.ros.names import result_type
+
+NO_TIME = (0, 0)
+OUTDATED = "cancelled together with all goals of its time and before"
+
+
+@dataclass(slots=True)
+class _Goal:
+    """A goal that clients are told of.
+
+    Attributes:
+        goal_id: its name.
+        stamp: when it was sent, as the client said.
+        state: where it is.
+        text: what is said about that.
+        told_until: when it is dropped from the list; None while it is not over.
+    """
+
+    goal_id: str
+    stamp: Any
+    state: State
+    text: str = ""
+    told_until: float | None = None
+
+
+class ActionlibServer:
+    """An action server.
+
+    Args:
+        node: the backend.
+        name: absolute name of the action.
+        type_name: action type in full form.
+        execute: carries out one goal.
+        policy: how to treat goals.
+    """
+
+    def __init__(
+        self, node: ActionTopicsNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+    ) -> None:
+        self.name = name
+        self._node = node
+        self._result_type = result_type(type_name)
+        self._served = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
+        self._goals: dict[str, _Goal] = {}
+        self._cancelled_until = NO_TIME
+        self._count = 0
+        self._closed = False
+        self._status = node.publisher(f"{name}/status", STATUS_TYPE, STATUS)
+        self._feedback = node.publisher(f"{name}/feedback", part_type(type_name, "ActionFeedback"), NEWS)
+        self._result = node.publisher(f"{name}/result", part_type(type_name, "ActionResult"), NEWS)
+        self._goal = node.subscription(
+            f"{name}/goal", part_type(type_name, "ActionGoal"), self._take_goal, COMMANDS
+        )
+        self._cancel = node.subscription(f"{name}/cancel", ID_TYPE, self._take_cancel, COMMANDS)
+        self._timer: Timer | None = None
+        self._tell_regularly()
+
+    def close(self) -> None:
+        """Stop to offer the action; goals under way are aborted."""
+        if self._closed:
+            return
+        self._served.close()
+        self._closed = True
+        if self._timer is not None:
+            self._timer.cancel()
+        for end in (self._goal, self._cancel, self._status, self._feedback, self._result):
+            end.close()
+
+    # What clients want:
+
+    def _take_goal(self, sample: Sample) -> None:
+        message = sample.message
+        goal_id = message.goal_id.id or self._new_id()
+        known = self._goals.get(goal_id)
+        if known is not None:
+            if known.state is State.RECALLING:  # the request for cancelling has overtaken the goal
+                self._finish(known, State.RECALLED, "cancelled before it began")
+            return
+        goal = self._goals[goal_id] = _Goal(goal_id, message.goal_id.stamp, State.PENDING)
+        if NO_TIME < time_of(goal.stamp) <= self._cancelled_until:
+            self._finish(goal, State.RECALLED, OUTDATED)
+            return
+        refusal = self._served.judge(message.goal)
+        if refusal is not None:
+            self._finish(goal, State.REJECTED, refusal)
+            return
+        goal.state = State.ACTIVE
+        self._served.begin(goal_id, message.goal, _Listener(self, goal))
+        self._tell()
+
+    def _new_id(self) -> str:
+        """The id of a goal that came without one."""
+        self._count += 1
+        return f"{self.name}-{self._count}-{self._node.clock.now():.9f}"
+
+    def _take_cancel(self, sample: Sample) -> None:
+        """One goal, all up to a time, or, with neither given, all."""
+        wanted, until = sample.message.id, time_of(sample.message.stamp)
+        everything = not wanted and until == NO_TIME
+        for goal_id, goal in list(self._goals.items()):
+            in_time = until != NO_TIME and time_of(goal.stamp) <= until
+            if (everything or goal_id == wanted or in_time) and self._served.cancel(goal_id):
+                goal.state = State.PREEMPTING
+        if wanted and wanted not in self._goals:
+            self._goals[wanted] = _Goal(
+                wanted, sample.message.stamp, State.RECALLING, told_until=self._later()
+            )
+        self._cancelled_until = max(self._cancelled_until, until)
+        self._tell()
+
+    # What they are told:
+
+    def send_feedback(self, goal: _Goal, feedback: Any) -> None:
+        """Tell how far a goal is."""
+        self._feedback.publish(
+            self._feedback.message(
+                header={"stamp": self._node.clock.now()}, status=_status(goal), feedback=feedback
+            )
+        )
+
+    def end(self, goal: _Goal, outcome: Outcome) -> None:
+        """Tell how an accepted goal ended."""
+        states = {
+            GoalStatus.SUCCEEDED: State.SUCCEEDED,
+            GoalStatus.CANCELED: State.PREEMPTED,
+            GoalStatus.ABORTED: State.ABORTED,
+        }
+        self._finish(goal, states[outcome.status], outcome.text, outcome.result)
+
+    def _finish(self, goal: _Goal, state: State, text: str, result: Any = None) -> None:
+        goal.state, goal.text, goal.told_until = state, text, self._later()
+        if self._closed:
+            return
+        given = result if result is not None else self._node.factory.make(self._result_type)
+        self._result.publish(
+            self._result.message(
+                header={"stamp": self._node.clock.now()}, status=_status(goal), result=given
+            )
+        )
+        self._tell()
+
+    def _tell_regularly(self) -> None:
+        now = self._node.clock.now()
+        over = [goal_id for goal_id, goal in self._goals.items() if (goal.told_until or now) < now]
+        for goal_id in over:
+            del self._goals[goal_id]
+        self._tell()
+        self._timer = self._node.clock.call_later(STATUS_PERIOD, self._tell_regularly)
+
+    def _tell(self) -> None:
+        if not self._closed:
+            self._status.publish(
+                self._status.message(
+                    header={"stamp": self._node.clock.now()},
+                    status_list=[_status(goal) for goal in self._goals.values()],
+                )
+            )
+
+    def _later(self) -> float:
+        return self._node.clock.now() + STATUS_KEPT
+
+
+class _Listener:
+    """Brings the news of one goal to its client."""
+
+    def __init__(self, server: ActionlibServer, goal: _Goal) -> None:
+        self._server = server
+        self._goal = goal
+
+    def feedback(self, message: Any) -> None:
+        self._server.send_feedback(self._goal, message)
+
+    def ended(self, outcome: Outcome) -> None:
+        self._server.end(self._goal, outcome)
+
+
+def _status(goal: _Goal) -> dict[str, Any]:
+    return {"goal_id": {"id": goal.goal_id, "stamp": goal.stamp}, "status": goal.state.value, "text": goal.text}

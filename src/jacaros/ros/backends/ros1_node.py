@@ -1,0 +1,186 @@
+"""The ROS 1 node of this process: joined to the graph, kept in it, and left."""
+
+import asyncio
+import os
+import time
+from collections.abc import Callable, Collection, Mapping
+from typing import Any, Protocol
+
+import rospy  # type: ignore[import-not-found]
+import rospy.impl.registration as registration  # type: ignore[import-not-found]
+
+from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, stay_local
+from jacaros.ros.backends.ros1_repairs import (
+    leave_standard_output_alone,
+    let_closed_nodes_rest,
+    let_parameters_tell,
+    let_subscribers_hear,
+)
+from jacaros.ros.backends.ros1_types import GenpySchema
+from jacaros.ros.errors import CapabilityMissing, RosError
+from jacaros.ros.handoff import in_thread, post
+from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.qos import QoS
+from jacaros.ros.waiting import Waiting
+
+SENDING = 0.5
+"""Seconds that closing waits for the messages published last to leave."""
+
+
+class Member(Protocol):
+    """Something at the node that is closed with it."""
+
+    def close(self) -> None:
+        """Leave the graph."""
+
+
+class Ros1Node(Node):
+    """What topics, services, actions and parameters of ROS 1 stand on.
+
+    Args:
+        settings: names, clock and reports; the namespace is ``ROS_NAMESPACE`` when none is given.
+    """
+
+    name = "ros1"
+    ros_version = 1
+    _started = False
+
+    def __init__(self, settings: NodeSettings) -> None:
+        self.schema = GenpySchema(settings.interface_paths)
+        super().__init__(settings, self.schema, finish=self._leave, threaded_hooks=True)
+        self.master_uri = os.environ.setdefault("ROS_MASTER_URI", "http://localhost:11311")
+        actions = NodeActions(
+            self._join,
+            _offers,
+            _register_again,
+            self._note_state,
+            self._note_again,
+            self._note_types,
+            self._note_problem,
+        )
+        self.link = MasterLink(self.master_uri, self.node_name, actions)
+        self.members: dict[Member, None] = {}
+        self.actions: dict[Member, None] = {}
+        """Action clients and servers: they have something to tell when they are closed."""
+        self.unsent: dict[Callable[[], bool], None] = {}
+        """Publishers' tests whether anything waits to be sent."""
+        self.on_return: dict[Callable[[], None], None] = {}
+        """Called on the link's thread after the master had forgotten this node."""
+        self.on_parameter: dict[Callable[[str, Any], None], None] = {}
+        """Called on the loop with name and value of a parameter that the master says has changed."""
+        self._waiting: Waiting | None = None
+        self._first_look: asyncio.Future[None] | None = None
+
+    async def start(self) -> None:
+        """Join the graph, or say that the master is awaited and go on trying in the background."""
+        if Ros1Node._started:
+            raise RosError("ROS 1 allows one node per process, and this process has had one already")
+        Ros1Node._started = True
+        self._loop = asyncio.get_running_loop()
+        stay_local(self.master_uri)
+        let_subscribers_hear()
+        let_closed_nodes_rest()
+        let_parameters_tell(self._note_parameter)
+        self.exit_hooks.watch_thread()
+        self._first_look = self._loop.create_future()
+        self.link.start()
+        await self._first_look
+
+    async def close(self) -> None:
+        """Run the exit hooks and leave the graph."""
+        for action in list(self.actions):
+            action.close()
+        await in_thread(self.loop, self.exit_hooks.run, "closing")
+        self.exit_hooks.stop_watching()
+        for member in list(self.members):
+            member.close()
+        self.members.clear()
+        if self._waiting is not None:
+            self._waiting.__exit__(RosError, None, None)
+        self.set_connected(False)
+
+    def require_no_deadline(self, qos: QoS) -> None:
+        """Refuse a deadline, which nobody here would watch; raises `CapabilityMissing`."""
+        if qos.deadline is not None:
+            raise CapabilityMissing(
+                f"a deadline of {qos.deadline:g} s: ROS 1 has no deadlines (ros2 and memory do); leave it out"
+            )
+
+    def types_changed(self, types: Mapping[str, str]) -> None:
+        """Be told the types of all topics, as on ROS 1; on the loop, when publishers have come or gone."""
+
+    def _join(self) -> None:
+        # Where init_node takes its namespace from.
+        rospy.names._set_caller_id(f"{self.names.namespace}/unnamed")
+        rospy.init_node(self.names.node_name, argv=[], disable_signals=True)
+        leave_standard_output_alone()
+        rospy.on_shutdown(self._note_shutdown)
+
+    def _leave(self) -> None:
+        """Wait until the queues are empty, then end rospy: its threads would keep the process alive."""
+        wait_until_sent(list(self.unsent))
+        self.link.stop()
+        rospy.signal_shutdown("closed")
+
+    def _note_state(self, present: bool) -> None:
+        post(self.loop, self._state_changed, present)
+
+    def _state_changed(self, present: bool) -> None:
+        if not present and self._waiting is None:
+            cure = "Start it with `roscore`, or set ROS_MASTER_URI to where it runs."
+            self._waiting = Waiting(
+                self.clock, self.log, f"ROS master at {self.master_uri}", cure
+            ).__enter__()
+        elif present and self._waiting is not None:
+            self._waiting.__exit__(None, None, None)
+            self._waiting = None
+        self.set_connected(present)
+        if self._first_look is not None and not self._first_look.done():
+            self._first_look.set_result(None)
+
+    def _note_again(self, names: list[str], all_of_them: bool) -> None:
+        text = f"the ROS master had forgotten {', '.join(sorted(names))}: registered again"
+        if all_of_them:
+            text += "; the parameters that it kept are lost"
+        post(self.loop, self.log, text)
+        for callback in list(self.on_return):
+            callback()
+
+    def _note_types(self, types: Mapping[str, str]) -> None:
+        post(self.loop, self.types_changed, types)
+
+    def _note_parameter(self, name: str, value: Any) -> None:
+        post(self.loop, self.parameter_changed, name, value)
+
+    def parameter_changed(self, name: str, value: Any) -> None:
+        """Pass on that a parameter has a new value; on the loop."""
+        for callback in list(self.on_parameter):
+            callback(name, value)
+
+    def _note_problem(self, problem: Exception) -> None:
+        post(self.loop, self.log, f"rospy refused: {type(problem).__name__}: {problem}")
+
+    def _note_shutdown(self) -> None:
+        """On rospy's thread: somebody ended our node, most likely a newer node of the same name."""
+        if not self.exit_hooks.ran:
+            post(self.loop, self.log, f"node {self.node_name} was shut down from outside: is its name taken?")
+            post(self.loop, self.set_connected, False)
+            self.link.stop()
+
+
+def wait_until_sent(tests: Collection[Callable[[], bool]]) -> None:
+    """Block until publishers have sent what they had, by their *tests*, or until `SENDING` is over."""
+    deadline = time.monotonic() + SENDING
+    while time.monotonic() < deadline and not all(sent() for sent in tests):
+        time.sleep(0.005)
+    time.sleep(0.02)  # a queue is emptied just before its messages are written
+
+
+def _offers() -> Offers:
+    topics, services = rospy.topics.get_topic_manager(), registration.get_service_manager()
+    return topics.get_publications(), topics.get_subscriptions(), services.get_services()
+
+
+def _register_again(kind: int, name: str, detail: str) -> None:
+    kinds = (registration.Registration.PUB, registration.Registration.SUB, registration.Registration.SRV)
+    registration.get_registration_listeners().notify_added(name, detail, kinds[kind])

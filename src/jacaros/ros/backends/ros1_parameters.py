@@ -1,0 +1,162 @@
+"""Parameters of ROS 1: values that the master keeps for everybody, as a tree of names.
+
+A node's parameters are those below its name.  Nobody declares them and any may be set; the master tells who wants to know
+of changes.  The interface is the ROS wiki's "Parameter Server API".
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NoReturn
+
+import rospy  # type: ignore[import-not-found]
+
+from jacaros.ros.backends.ros1_master import Master
+from jacaros.ros.backends.ros1_node import Ros1Node
+from jacaros.ros.errors import (
+    CallFailed,
+    CapabilityMissing,
+    NameInvalid,
+    ParameterRefused,
+    ParameterUnknown,
+    ServiceUnavailable,
+)
+from jacaros.ros.handoff import in_thread
+from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.serving import call_when_offered
+from jacaros.ros.waiting import within
+
+WHOLE_NUMBERS = range(-(2**31), 2**31)
+"""What XML-RPC can carry."""
+
+
+class Ros1Parameters:
+    """The parameters below the name of a node.
+
+    Args:
+        node: asks the master.
+        name: whose they are; None for our own, ``/`` for all that the master keeps.
+    """
+
+    def __init__(self, node: Ros1Node, name: str | None) -> None:
+        self._backend = node
+        if name is None:
+            self.node = node.node_name
+        else:
+            self.node = "/" if name == "/" else node.resolve(name)
+        self._prefix = "/" if self.node == "/" else f"{self.node}/"
+        self._master = Master(node.master_uri, node.node_name)
+
+    def declare(self, name: str, declaration: Declaration) -> NoReturn:
+        """Refuse: nothing is declared here."""
+        raise CapabilityMissing(
+            f"declaring the parameter {name}: on ROS 1 the master keeps parameters and takes any name and value; "
+            "read it with `get`, and set it where nobody has"
+        )
+
+    async def names(self, timeout: float | None = None) -> list[str]:
+        """Names of the parameters below the node, sorted."""
+        everything = await self._ask(timeout, "getParamNames")
+        return sorted(name[len(self._prefix) :] for name in everything if name.startswith(self._prefix))
+
+    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
+        """Give a parameter's value."""
+        key = self._key(name)
+        try:
+            value = await self._ask(timeout, "getParam", key)
+        except CallFailed:
+            raise ParameterUnknown(f"there is no parameter {key} at the ROS master") from None
+        if isinstance(value, dict):
+            if not value:
+                raise ParameterUnknown(f"there is no parameter {key} at the ROS master")
+            parts = ", ".join(f"{name}/{part}" for part, _ in _leaves(value))
+            raise ParameterUnknown(f"parameter {key} is a mapping; ask for its parts: {parts}")
+        given: ParameterValue = value
+        return given
+
+    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
+        """Change a parameter, or add it."""
+        key = self._key(name)
+        plain = _plain(key, value)
+        await self._ask(timeout, "setParam", key, plain)
+        # The master does not tell those who made the change.
+        self._backend.parameter_changed(key, plain)
+
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Have *callback* called with what has changed below the node."""
+        backend = self._backend
+
+        def told(key: str, value: Any) -> None:
+            key = f"/{key.strip('/')}"
+            if not key.startswith(self._prefix) and f"{key}/" != self._prefix:
+                return
+            name = key[len(self._prefix) :]
+            # An empty mapping says that the parameter was deleted.
+            changed = dict(_leaves(value, name)) if isinstance(value, dict) else {name: value}
+            if changed:
+                callback(changed)
+
+        def subscribe() -> None:
+            self._master.ask("subscribeParam", rospy.get_node_uri(), self.node)
+
+        def again() -> None:
+            backend.link.do(subscribe)
+
+        def end() -> None:
+            backend.on_parameter.pop(told, None)
+            backend.on_return.pop(again, None)
+
+        backend.on_parameter[told] = None
+        backend.on_return[again] = None
+        again()
+        return end
+
+    def _key(self, name: str) -> str:
+        key = name if name.startswith("/") else self._prefix + name.removeprefix("~")
+        if not key.strip("/") or "//" in key or key.endswith("/"):
+            raise NameInvalid(f"{name!r} is no name of a parameter; write it like wheels/radius")
+        return key
+
+    async def _ask(self, timeout: float | None, method: str, *arguments: Any) -> Any:
+        """Ask the master in a thread, again and again while it is away, until the time is over."""
+        backend = self._backend
+
+        async def attempt(rest: float | None) -> Any:
+            answer = in_thread(backend.loop, lambda: self._master.ask(method, *arguments), method)
+            return await within(backend.clock, answer, rest)
+
+        what = f"ROS master at {self._master.uri}"
+        try:
+            return await call_when_offered(backend.clock, backend.log, what, attempt, timeout)
+        except ServiceUnavailable:
+            raise ServiceUnavailable(f"the {what} did not answer within {timeout:g} s") from None
+
+
+def _leaves(value: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    for name, part in value.items():
+        where = f"{path}/{name}" if path else name
+        if isinstance(part, dict):
+            yield from _leaves(part, where)
+        else:
+            yield where, part
+
+
+def _plain(key: str, value: Any) -> Any:
+    """Check that the master can keep *value*."""
+    if hasattr(value, "tolist"):  # numpy
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(key, element) for element in value]
+    if isinstance(value, bool | float | bytes):
+        return value
+    if isinstance(value, str):
+        return str.__str__(value)  # subclasses, such as atoms of the agents' language
+    if isinstance(value, int):
+        if value not in WHOLE_NUMBERS:
+            raise ParameterRefused(
+                f"parameter {key}: the ROS master keeps whole numbers of 32 bits, not {value}; write {value}.0"
+            )
+        return value
+    if isinstance(value, Mapping):
+        raise ParameterRefused(
+            f"parameter {key}: a mapping is set by its parts, such as {key}/{next(iter(value), 'a')}"
+        )
+    raise ParameterRefused(f"parameter {key}: {value!r} is no value for a parameter")

@@ -1,0 +1,107 @@
+"""Services of ROS 1: offered, and called."""
+
+import asyncio
+from typing import Any
+
+import rospy  # type: ignore[import-not-found]
+
+from jacaros.ros.backend import Handler
+from jacaros.ros.backends.ros1_master import call_failure
+from jacaros.ros.backends.ros1_node import Ros1Node
+from jacaros.ros.errors import CallFailed
+from jacaros.ros.handoff import LoopEnded, ask, in_thread
+from jacaros.ros.names import request_type
+from jacaros.ros.serving import PendingCalls, Responder, call_when_offered, checked_message, settle
+from jacaros.ros.waiting import within
+
+
+class Ros1Service:
+    """Service of `Ros1Backend`."""
+
+    def __init__(self, node: Ros1Node, name: str, type_name: str, handler: Handler) -> None:
+        self.name = name
+        self._node = node
+        self._class = node.schema.service_class(type_name)
+        self._responder = Responder(node.factory, name, type_name, handler, node.log)
+        self._service: Any = None
+        self._closed = False
+        node.members[self] = None
+        node.link.do(self._register)
+
+    def close(self) -> None:
+        """Stop to offer the service."""
+        if self._closed:
+            return
+        self._closed = True
+        self._node.members.pop(self, None)
+        self._responder.close()
+        self._node.link.do(self._unregister)
+
+    def _register(self) -> None:
+        self._service = rospy.Service(self.name, self._class, self._serve)
+
+    def _unregister(self) -> None:
+        if self._service is not None:
+            self._service.shutdown("closed")
+
+    def _serve(self, request: Any) -> Any:
+        """Have the loop answer; on rospy's thread of this connection."""
+        node = self._node
+        try:
+            return ask(
+                node.loop, lambda done: self._responder.answer(request, done), lambda: node.exit_hooks.ran
+            )
+        except CallFailed as problem:
+            raise rospy.ServiceException(str(problem)) from None
+        except LoopEnded:
+            raise rospy.ServiceException(f"service {self.name}: the node is shutting down") from None
+
+
+class Ros1Client:
+    """Client of `Ros1Backend`."""
+
+    def __init__(self, node: Ros1Node, name: str, type_name: str) -> None:
+        self.name = name
+        self._node = node
+        self._type_name = type_name
+        self._class = node.schema.service_class(type_name)
+        self._pending = PendingCalls(name)
+        node.members[self] = None
+
+    @property
+    def ready(self) -> bool:
+        """Whether somebody offers the service, as the master said a quarter of a second ago at most."""
+        return self.name in self._node.link.services
+
+    def request(self, **fields: Any) -> Any:
+        """Make a request message."""
+        return self._node.factory.make(request_type(self._type_name), fields)
+
+    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
+        """Call the service and give its response."""
+        node = self._node
+        message = checked_message(node.factory, request_type(self._type_name), request)
+        what = f"service {self.name} ({self._type_name})"
+
+        async def attempt(rest: float | None) -> Any:
+            return await self._attempt(message, rest)
+
+        return await call_when_offered(node.clock, node.log, what, attempt, timeout)
+
+    async def _attempt(self, message: Any, rest: float | None) -> Any:
+        answer = self._pending.new()
+
+        def finished(work: asyncio.Future[Any]) -> None:
+            problem = work.exception()
+            settle(answer, None if problem else work.result(), call_failure(self.name, problem))
+
+        # A proxy of its own for each call: rospy's is not made for several calls at a time.
+        in_thread(
+            self._node.loop, lambda: rospy.ServiceProxy(self.name, self._class)(message), f"call {self.name}"
+        ).add_done_callback(finished)
+        return await within(self._node.clock, answer, rest)
+
+    def close(self) -> None:
+        """Give the client up."""
+        self._node.members.pop(self, None)
+        self._pending.close()
