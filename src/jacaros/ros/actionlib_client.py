@@ -29,7 +29,7 @@ from jacaros.ros.names import result_type
 LOOKING = 0.02
 """Seconds between two looks for a server that is awaited."""
 QUIET = 4
-"""So many `STATUS_PERIOD` without a word of the server, and it is called away; lost it is later, see `SERVER_LOST_AFTER`."""
+"""So many `STATUS_PERIOD` without a word of the server, and it is called away; `SERVER_LOST_AFTER` begins then."""
 REFUSED_AFTER = 1.0
 """Seconds in which a request for cancelling must show in the goal's state: actionlib's servers do not say no."""
 
@@ -97,9 +97,7 @@ class ActionlibWire:
         """Send a goal message."""
         self._goals[goal_id] = _Goal()
         now = self._node.clock.now()
-        message = self._goal.message(
-            header={"stamp": now}, goal_id={"stamp": now, "id": goal_id}, goal=goal
-        )
+        message = self._goal.message(header={"stamp": now}, goal_id={"stamp": now, "id": goal_id}, goal=goal)
         self._goal.publish(message)
         self._look()
 
@@ -179,7 +177,9 @@ class ActionlibWire:
                 self._lose(goal_id, "went away before it accepted")
 
     def _lose(self, goal_id: str, how: str) -> None:
-        self._sender.fail(goal_id, ServerLost(f"the server of action {self._sender.name} {how} goal {goal_id}"))
+        self._sender.fail(
+            goal_id, ServerLost(f"the server of action {self._sender.name} {how} goal {goal_id}")
+        )
 
     # What the server says:
 

@@ -155,9 +155,7 @@ class ActionlibServer:
             return
         given = result if result is not None else self._node.factory.make(self._result_type)
         self._result.publish(
-            self._result.message(
-                header={"stamp": self._node.clock.now()}, status=_status(goal), result=given
-            )
+            self._result.message(header={"stamp": self._node.clock.now()}, status=_status(goal), result=given)
         )
         self._tell()
 
@@ -197,4 +195,8 @@ class _Listener:
 
 
 def _status(goal: _Goal) -> dict[str, Any]:
-    return {"goal_id": {"id": goal.goal_id, "stamp": goal.stamp}, "status": goal.state.value, "text": goal.text}
+    return {
+        "goal_id": {"id": goal.goal_id, "stamp": goal.stamp},
+        "status": goal.state.value,
+        "text": goal.text,
+    }

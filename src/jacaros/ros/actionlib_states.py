@@ -1,7 +1,7 @@
 """ROS 1's actions: five topics below the action's name, and the states that a goal goes through.
 
-The protocol is actionlib's (ROS wiki, "actionlib/DetailedDescription"; ``actionlib_msgs/GoalStatus``).  It needs nothing but
-topics, so every backend that reaches a ROS 1 graph can use it.
+The protocol is actionlib's (ROS wiki, "actionlib/DetailedDescription"; ``actionlib_msgs/GoalStatus``).  It needs nothing
+but topics, so every backend that reaches a ROS 1 graph can use it.
 """
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ STATUS_PERIOD = 0.2
 STATUS_KEPT = 5.0
 """Seconds for which a server goes on to tell how a goal ended."""
 ENOUGH_NEWS = 5
-"""After so many messages about a server's goals, what they do not say is believed not to be: one may have overtaken another."""
+"""After so many messages about a server's goals, what they do not say is not so: one alone may have overtaken others."""
 
 STATUS_TYPE, ID_TYPE = "actionlib_msgs/msg/GoalStatusArray", "actionlib_msgs/msg/GoalID"
 COMMANDS = QoS(depth=100)

@@ -5,6 +5,7 @@ import os
 import time
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, Protocol
+from weakref import WeakKeyDictionary
 
 import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
@@ -60,7 +61,7 @@ class Ros1Node(Node):
         )
         self.link = MasterLink(self.master_uri, self.node_name, actions)
         self.members: dict[Member, None] = {}
-        self.actions: dict[Member, None] = {}
+        self.actions: WeakKeyDictionary[Member, None] = WeakKeyDictionary()
         """Action clients and servers: they have something to tell when they are closed."""
         self.unsent: dict[Callable[[], bool], None] = {}
         """Publishers' tests whether anything waits to be sent."""

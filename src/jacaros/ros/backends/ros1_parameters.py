@@ -19,8 +19,9 @@ from jacaros.ros.errors import (
     ParameterUnknown,
     ServiceUnavailable,
 )
-from jacaros.ros.handoff import in_thread
+from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter_store import checked_value
 from jacaros.ros.serving import call_when_offered
 from jacaros.ros.waiting import within
 
@@ -48,8 +49,8 @@ class Ros1Parameters:
     def declare(self, name: str, declaration: Declaration) -> NoReturn:
         """Refuse: nothing is declared here."""
         raise CapabilityMissing(
-            f"declaring the parameter {name}: on ROS 1 the master keeps parameters and takes any name and value; "
-            "read it with `get`, and set it where nobody has"
+            f"parameter {name} cannot be declared: on ROS 1 the master keeps the parameters and takes any name and "
+            "value; read it with `get`, and set it where nobody has"
         )
 
     async def names(self, timeout: float | None = None) -> list[str]:
@@ -94,17 +95,23 @@ class Ros1Parameters:
             if changed:
                 callback(changed)
 
+        def begin() -> None:
+            if not ended:
+                backend.on_parameter[told] = None
+
         def subscribe() -> None:
             self._master.ask("subscribeParam", rospy.get_node_uri(), self.node)
+            post(backend.loop, begin)
 
         def again() -> None:
             backend.link.do(subscribe)
 
         def end() -> None:
+            ended.append(True)
             backend.on_parameter.pop(told, None)
             backend.on_return.pop(again, None)
 
-        backend.on_parameter[told] = None
+        ended: list[bool] = []
         backend.on_return[again] = None
         again()
         return end
@@ -140,23 +147,17 @@ def _leaves(value: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any
 
 
 def _plain(key: str, value: Any) -> Any:
-    """Check that the master can keep *value*."""
-    if hasattr(value, "tolist"):  # numpy
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(key, element) for element in value]
-    if isinstance(value, bool | float | bytes):
-        return value
-    if isinstance(value, str):
-        return str.__str__(value)  # subclasses, such as atoms of the agents' language
-    if isinstance(value, int):
-        if value not in WHOLE_NUMBERS:
-            raise ParameterRefused(
-                f"parameter {key}: the ROS master keeps whole numbers of 32 bits, not {value}; write {value}.0"
-            )
-        return value
+    """Check that the master can keep *value*, and give it in plain types."""
     if isinstance(value, Mapping):
-        raise ParameterRefused(
-            f"parameter {key}: a mapping is set by its parts, such as {key}/{next(iter(value), 'a')}"
-        )
-    raise ParameterRefused(f"parameter {key}: {value!r} is no value for a parameter")
+        part = next(iter(value), "a")
+        raise ParameterRefused(f"parameter {key}: a mapping is set by its parts, such as {key}/{part}")
+    try:
+        plain = checked_value(value.tolist() if hasattr(value, "tolist") else value)
+    except ParameterRefused as problem:
+        raise ParameterRefused(f"parameter {key}: {problem}") from None
+    for element in plain if isinstance(plain, list) else [plain]:
+        if isinstance(element, int) and element not in WHOLE_NUMBERS:
+            raise ParameterRefused(
+                f"parameter {key}: the ROS master keeps whole numbers of 32 bits, not {element}; write {element}.0"
+            )
+    return plain

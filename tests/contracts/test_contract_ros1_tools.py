@@ -1,0 +1,204 @@
+"""ROS 1 alone: its own tools and libraries (actionlib, rosparam, tf2_ros) understand us and we them."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from jacaros.ros.errors import GoalRejected, ParameterUnknown, ServerLost
+
+Pair = tuple[Any, Any]
+pytestmark = [pytest.mark.only("ros1"), pytest.mark.slow]
+PROGRAM = str(Path(__file__).with_name("native_ros1_tools.py"))
+PATIENCE = 60.0
+
+
+@contextmanager
+def running(graph: Any, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A native program that goes on until it is ended."""
+    process = subprocess.Popen(
+        [sys.executable, PROGRAM, *arguments],
+        env=os.environ | graph.environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    )
+    assert process.stdout is not None
+    try:
+        assert process.stdout.readline() == b"ready\n"
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+
+
+@pytest.fixture
+def native(graph: Any) -> Callable[..., str]:
+    """Run a native program to its end and give the last line that it prints."""
+
+    def run(*arguments: str) -> str:
+        answer = subprocess.run(
+            [sys.executable, PROGRAM, *arguments],
+            env=os.environ | graph.environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            check=False,
+        )
+        assert answer.returncode == 0, answer.stderr
+        return (answer.stdout.strip().splitlines() or [""])[-1]
+
+    return run
+
+
+def test_a_genuine_server_carries_out_our_goals(graph: Any, pair: Pair) -> None:
+    left, _ = pair
+    with running(graph, "serve"):
+        left.send_goal("native", "/native/count", {"target": 4, "period": 0.05}, timeout=20)
+        end = left.outcome("native", timeout=20)
+        assert end == {"status": "succeeded", "result": {"last": 4, "message": ""}, "text": ""}
+        assert left.feedback("native")[:3] == [1, 2, 3]
+        left.send_goal("unlucky", "/native/count", {"target": 13}, timeout=20)
+        end = left.outcome("unlucky", timeout=20)
+        assert (end["status"], end["result"]["last"], end["text"]) == ("aborted", 13, "an unlucky number")
+        left.send_goal("long", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        assert left.cancel_goal("long", timeout=20) is True
+        end = left.outcome("long", timeout=20)
+        assert (end["status"], end["text"]) == ("canceled", "stopped")
+        left.send_goal("older", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        left.send_goal("newer", "/native/count", {"target": 1}, timeout=20)
+        assert left.outcome("older", timeout=20)["status"] == "canceled"  # preempted by the newer one
+        assert left.outcome("newer", timeout=20)["status"] == "succeeded"
+    left.close_action_client("/native/count")
+
+
+def test_a_genuine_server_refuses_and_is_deaf_and_recalls(
+    graph: Any, pair: Pair, native: Callable[..., str]
+) -> None:
+    left, right = pair
+    with running(graph, "crowd"):
+        with pytest.raises(GoalRejected, match="refused the goal: not two"):
+            left.send_goal("two", "/native/count", {"target": 2}, timeout=20)
+        left.send_goal("three", "/native/count", {"target": 3}, timeout=20)
+        # A server that has been asked is PREEMPTING at once, whatever its code does.
+        assert left.cancel_goal("three", timeout=20) is True
+        left.begin_send("one", "/native/count", {"target": 1})
+        graph.wait_until(lambda: right.action_ready("/native/count"), "the other client sees the server")
+        right.send_goal("four", "/native/count", {"target": 4}, timeout=20)
+        assert right.outcome("four", timeout=20)["result"]["last"] == 4
+        assert left.outcome("three", timeout=20)["status"] == "succeeded"
+        native("cancel", "/native/count")  # cancelled before the server has begun with it: recalled
+        left.end_send("one")
+        assert left.outcome("one", timeout=20)["text"] == "never begun"
+        assert left.outcome("one", timeout=20)["status"] == "canceled"
+    for peer in pair:
+        peer.close_action_client("/native/count")
+
+
+def test_a_genuine_server_that_freezes_or_dies_is_lost(graph: Any, pair: Pair) -> None:
+    left, _ = pair
+    with running(graph, "serve") as server:
+        left.send_goal("frozen", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        server.send_signal(signal.SIGSTOP)
+        with pytest.raises(ServerLost):
+            left.outcome("frozen", timeout=20)
+        server.send_signal(signal.SIGCONT)
+        left.send_goal("killed", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        server.kill()
+        with pytest.raises(ServerLost):
+            left.outcome("killed", timeout=20)
+    assert left.action_ready("/native/count") is False
+    with running(graph, "serve"):
+        left.send_goal("again", "/native/count", {"target": 1}, timeout=20)
+        assert left.outcome("again", timeout=20)["status"] == "succeeded"
+    left.close_action_client("/native/count")
+
+
+def test_a_genuine_server_started_again_at_once_does_not_know_our_goal(graph: Any, pair: Pair) -> None:
+    left, _ = pair
+    with running(graph, "serve") as server:
+        left.send_goal("old", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        server.kill()
+    with running(graph, "serve"), pytest.raises(ServerLost):
+        left.outcome("old", timeout=20)
+    left.close_action_client("/native/count")
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "target", "cancel", "end"),
+    [
+        ("count", "3", "", {"state": "SUCCEEDED", "last": 3, "feedback": [1, 2, 3], "text": "counted"}),
+        ("count_and_tell_where", "1000", "cancel", {"state": "PREEMPTED", "feedback": [1, 2, 3]}),
+        ("count", "-1", "", {"state": "REJECTED", "text": "the target is negative", "last": 0}),
+        ("give_up", "5", "", {"state": "ABORTED", "text": "cannot count so far", "last": 1}),
+        ("count", "100", "again", {"state": "SUCCEEDED", "last": 1}),
+    ],
+)
+def test_a_genuine_client_uses_our_server(
+    pair: Pair, native: Callable[..., str], topic: str, behaviour: str, target: str, cancel: str, end: Any
+) -> None:
+    _, right = pair
+    right.serve_action(topic, behaviour, preempt=True)
+    answer = json.loads(native("use", topic, target, cancel))
+    right.unserve_action(topic)
+    assert answer["found"]
+    assert answer["done"]
+    assert {key: answer[key] for key in end} == end
+
+
+def test_a_genuine_request_cancels_all_goals_of_our_server(
+    graph: Any, pair: Pair, native: Callable[..., str], topic: str
+) -> None:
+    left, right = pair
+    right.serve_action(topic, "count")
+    for key in ("a", "b"):
+        left.send_goal(key, topic, {"target": 1000, "period": 0.05}, timeout=20)
+    native("cancel", topic)
+    for key in ("a", "b"):
+        assert left.outcome(key, timeout=20)["status"] == "canceled"
+    right.unserve_action(topic)
+
+
+def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native: Callable[..., str]) -> None:
+    left, right = pair
+    left.set_parameter("wheels/radius", 0.25)
+    left.set_parameter("rooms", ["hall", "kitchen"])
+    assert native("rosparam", "get", "/left/wheels/radius") == "0.25"
+    assert native("rosparam", "get", "/left/rooms") == "- kitchen"
+    right.watch_parameters("left", "/left")
+    graph.wait_until(
+        lambda: (left.set_parameter("ping", 1), right.parameter_changes("left"))[1], "changes are told"
+    )
+    native("rosparam", "set", "/left/wheels", "{radius: 0.5, spokes: {count: 12}}")
+    graph.wait_until(
+        lambda: {"wheels/spokes/count": 12} in right.parameter_changes("left"),
+        "the change made by rosparam is told",
+    )
+    assert right.get_parameter("wheels/spokes/count", "/left") == 12
+    assert {"ping", "rooms", "wheels/radius", "wheels/spokes/count"} <= set(left.parameter_names())
+    with pytest.raises(
+        ParameterUnknown, match="is a mapping; ask for its parts: wheels/radius, wheels/spokes"
+    ):
+        left.get_parameter("wheels")
+    native("rosparam", "delete", "/left/wheels")
+    assert not [name for name in left.parameter_names() if name.startswith("wheels")]
+    left.set_parameter("/everywhere", True)
+    assert right.get_parameter("everywhere", "/") is True
+    right.unwatch_parameters("left")
+
+
+def test_tf2_and_we_see_the_same_frames(graph: Any, pair: Pair, native: Callable[..., str]) -> None:
+    left, right = pair
+    with running(graph, "send_tf"):
+        found = left.wait_for_transform("native_odom", "native_laser", timeout=20)
+        assert found["x"] == pytest.approx(2.5)
+    right.send_transform("our_odom", "our_base", 3.0, static=True)
+    right.send_transform("our_base", "our_laser", 0.25, static=True)
+    assert float(native("look_up_tf", "our_odom", "our_laser")) == pytest.approx(3.25)
