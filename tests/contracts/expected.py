@@ -7,7 +7,7 @@ COMMON = {"topics", "services", "service errors", "transforms", "actions", "para
 
 CAPABILITIES = {
     "memory": COMMON | {"qos", "declared parameters", "parameter events", "deadlines", "qos in the graph"},
-    "ros1": COMMON | {"registration"},
+    "ros1": COMMON | {"registration", "parameter events"},
     "ros2": COMMON - {"service errors"}
     | {"qos", "declared parameters", "parameter events", "deadlines", "qos in the graph"},
 }
@@ -15,7 +15,7 @@ CAPABILITIES = {
 
 NOT_YET = {
     "memory": set[str](),
-    "ros1": {"actions", "parameters", "contents", "events", "deadlines"},
+    "ros1": set[str](),
     "ros2": set[str](),
 }
 """Kind of graph → capabilities, and other words that tests need (marker `needs`), that are still to come."""

@@ -1,7 +1,7 @@
-"""Programs of ROS 1 itself, as others write them: actionlib, rosparam, tf2_ros.  Of ours they have message classes alone.
+"""Programs of ROS 1 itself, as others write them: actionlib, rosparam, tf2_ros.  Of ours they have message classes.
 
 native_ros1_tools.py serve                   a SimpleActionServer at /native/count
-native_ros1_tools.py crowd                   an ActionServer there that keeps many goals and does with each what its target says
+    native_ros1_tools.py crowd                   an ActionServer there that treats goals as their targets say
 native_ros1_tools.py use NAME TARGET CANCEL  a SimpleActionClient; prints state, text, result and feedback
 native_ros1_tools.py cancel NAME             cancels all goals of a server
 native_ros1_tools.py rosparam …              the command of that name
@@ -11,10 +11,7 @@ native_ros1_tools.py send_tf / look_up_tf    tf2_ros
 import json
 import sys
 import threading
-import warnings
 from typing import Any
-
-warnings.filterwarnings("ignore", "notifyAll", DeprecationWarning)
 
 import actionlib
 import rospy

@@ -11,6 +11,8 @@ from graphs import InProcesses
 from masters import Master
 from presence import is_wanted
 
+from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
+
 pytestmark = [pytest.mark.ros1, pytest.mark.slow]
 
 
@@ -79,6 +81,46 @@ def test_a_master_restarted_in_a_moment_learns_everything_again(master: Master, 
     newcomer.subscribe("/before", "std_msgs/msg/Int32")
     exchange(ros1, left, newcomer, 1)
     assert newcomer.call("/add", {"a": 2, "b": 2}, timeout=20) == {"sum": 4}
+
+
+def test_actions_and_parameters_outlive_a_restarted_master(master: Master, ros1: InProcesses) -> None:
+    master.start()
+    left, right = ros1.peer("left"), ros1.peer("right", parameters={"wheels/radius": 0.25})
+    right.serve_action("/count")
+    left.send_goal("before", "/count", {"target": 1000, "period": 0.05}, timeout=20)
+    right.set_parameter("speed", 1, timeout=20)
+    left.watch_parameters("right", "/right")
+
+    master.kill()
+    ros1.wait_until(lambda: not left.connected() and not right.connected(), "both notice the loss")
+    left.send_goal("during", "/count", {"target": 3}, timeout=20)  # the five connections are still there
+    assert left.outcome("during", timeout=20)["status"] == "succeeded"
+    with pytest.raises(ServiceUnavailable, match=r"the ROS master at .* did not answer within 0.3 s"):
+        left.get_parameter("speed", "/right", timeout=0.3)
+    with pytest.raises(ServiceUnavailable, match=r"the ROS master at .* does not answer"):
+        left.contents()
+
+    master.start()
+    ros1.wait_until(lambda: left.connected() and right.connected(), "both notice the return")
+    assert left.cancel_goal("before", timeout=20) is True
+    assert left.outcome("before", timeout=20)["status"] == "canceled"
+    newcomer = ros1.peer("newcomer")
+    newcomer.send_goal("after", "/count", {"target": 2}, timeout=20)
+    assert newcomer.outcome("after", timeout=20)["status"] == "succeeded"
+    assert newcomer.contents()["actions"] == {"/count": "jacaros_interfaces/action/Count"}
+    assert any("the parameters that it kept are lost" in line for line in right.log())
+    with pytest.raises(ParameterUnknown):
+        right.get_parameter("speed", timeout=20)
+    ros1.wait_until(
+        lambda: "wheels/radius" in left.parameter_names("/right"), "those from outside are set again"
+    )
+    assert left.get_parameter("wheels/radius", "/right", timeout=20) == 0.25
+
+    def change_is_told() -> bool:
+        newcomer.set_parameter("speed", 2, "/right", timeout=20)
+        return {"speed": 2} in left.parameter_changes("right")
+
+    ros1.wait_until(change_is_told, "changes are told again")
 
 
 def test_a_late_master_is_awaited_without_blocking_the_loop(master: Master, ros1: InProcesses) -> None:

@@ -185,7 +185,13 @@ class ActionlibWire:
 
     def _take_status(self, sample: Sample) -> None:
         self._note_server()
-        told = {status.goal_id.id: status for status in sample.message.status_list}
+        if not self._goals:
+            return
+        told = {
+            status.goal_id.id: status
+            for status in sample.message.status_list
+            if status.goal_id.id in self._goals
+        }
         for goal_id, goal in list(self._goals.items()):
             status = told.get(goal_id)
             if status is not None:

@@ -8,6 +8,7 @@ from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_serving import ServedGoals
 from jacaros.ros.actionlib_states import (
     COMMANDS,
+    GOAL_STATUS_TYPE,
     ID_TYPE,
     NEWS,
     STATUS,
@@ -36,6 +37,7 @@ class _Goal:
         state: where it is.
         text: what is said about that.
         told_until: when it is dropped from the list; None while it is not over.
+        status: ``actionlib_msgs/GoalStatus`` message that says this, once it was made.
     """
 
     goal_id: str
@@ -43,6 +45,11 @@ class _Goal:
     state: State
     text: str = ""
     told_until: float | None = None
+    status: Any = None
+
+    def change(self, state: State, text: str = "") -> None:
+        """Go to another state."""
+        self.state, self.text, self.status = state, text, None
 
 
 class ActionlibServer:
@@ -106,7 +113,7 @@ class ActionlibServer:
         if refusal is not None:
             self._finish(goal, State.REJECTED, refusal)
             return
-        goal.state = State.ACTIVE
+        goal.change(State.ACTIVE)
         self._served.begin(goal_id, message.goal, _Listener(self, goal))
         self._tell()
 
@@ -122,7 +129,7 @@ class ActionlibServer:
         for goal_id, goal in list(self._goals.items()):
             in_time = until != NO_TIME and time_of(goal.stamp) <= until
             if (everything or goal_id == wanted or in_time) and self._served.cancel(goal_id):
-                goal.state = State.PREEMPTING
+                goal.change(State.PREEMPTING)
         if wanted and wanted not in self._goals:
             self._goals[wanted] = _Goal(
                 wanted, sample.message.stamp, State.RECALLING, told_until=self._later()
@@ -136,7 +143,7 @@ class ActionlibServer:
         """Tell how far a goal is."""
         self._feedback.publish(
             self._feedback.message(
-                header={"stamp": self._node.clock.now()}, status=_status(goal), feedback=feedback
+                header={"stamp": self._node.clock.now()}, status=self._status_of(goal), feedback=feedback
             )
         )
 
@@ -150,12 +157,15 @@ class ActionlibServer:
         self._finish(goal, states[outcome.status], outcome.text, outcome.result)
 
     def _finish(self, goal: _Goal, state: State, text: str, result: Any = None) -> None:
-        goal.state, goal.text, goal.told_until = state, text, self._later()
+        goal.change(state, text)
+        goal.told_until = self._later()
         if self._closed:
             return
         given = result if result is not None else self._node.factory.make(self._result_type)
         self._result.publish(
-            self._result.message(header={"stamp": self._node.clock.now()}, status=_status(goal), result=given)
+            self._result.message(
+                header={"stamp": self._node.clock.now()}, status=self._status_of(goal), result=given
+            )
         )
         self._tell()
 
@@ -172,9 +182,21 @@ class ActionlibServer:
             self._status.publish(
                 self._status.message(
                     header={"stamp": self._node.clock.now()},
-                    status_list=[_status(goal) for goal in self._goals.values()],
+                    status_list=[self._status_of(goal) for goal in self._goals.values()],
                 )
             )
+
+    def _status_of(self, goal: _Goal) -> Any:
+        if goal.status is None:
+            goal.status = self._node.factory.make(
+                GOAL_STATUS_TYPE,
+                {
+                    "goal_id": {"id": goal.goal_id, "stamp": goal.stamp},
+                    "status": goal.state.value,
+                    "text": goal.text,
+                },
+            )
+        return goal.status
 
     def _later(self) -> float:
         return self._node.clock.now() + STATUS_KEPT
@@ -192,11 +214,3 @@ class _Listener:
 
     def ended(self, outcome: Outcome) -> None:
         self._server.end(self._goal, outcome)
-
-
-def _status(goal: _Goal) -> dict[str, Any]:
-    return {
-        "goal_id": {"id": goal.goal_id, "stamp": goal.stamp},
-        "status": goal.state.value,
-        "text": goal.text,
-    }

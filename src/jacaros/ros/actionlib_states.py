@@ -22,6 +22,7 @@ ENOUGH_NEWS = 5
 """After so many messages about a server's goals, what they do not say is not so: one alone may have overtaken others."""
 
 STATUS_TYPE, ID_TYPE = "actionlib_msgs/msg/GoalStatusArray", "actionlib_msgs/msg/GoalID"
+GOAL_STATUS_TYPE = "actionlib_msgs/msg/GoalStatus"
 COMMANDS = QoS(depth=100)
 """For goals and requests for cancelling."""
 NEWS = QoS(depth=100)

@@ -28,7 +28,7 @@ from jacaros.ros.backend import (
 )
 from jacaros.ros.backends.ros1_graph import graph_contents
 from jacaros.ros.backends.ros1_node import Ros1Node
-from jacaros.ros.backends.ros1_parameters import Ros1Parameters
+from jacaros.ros.backends.ros1_parameters import Ros1Parameters, give
 from jacaros.ros.backends.ros1_services import Ros1Client, Ros1Service
 from jacaros.ros.backends.ros1_topics import Feeds, Ros1Publisher, Ros1Subscription
 from jacaros.ros.graph import GraphContents
@@ -60,6 +60,7 @@ class Ros1Backend(Ros1Node):
     def __init__(self, settings: NodeSettings) -> None:
         super().__init__(settings)
         self._feeds = Feeds(self)
+        give(self, settings.parameters)
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Ros1Publisher:
         """Make a publisher."""

@@ -156,7 +156,10 @@ class Ros1Node(Node):
     def parameter_changed(self, name: str, value: Any) -> None:
         """Pass on that a parameter has a new value; on the loop."""
         for callback in list(self.on_parameter):
-            callback(name, value)
+            try:
+                callback(name, value)
+            except Exception as problem:  # the others want to know as well
+                self.log(f"a callback for changed parameters failed: {type(problem).__name__}: {problem}")
 
     def _note_problem(self, problem: Exception) -> None:
         post(self.loop, self.log, f"rospy refused: {type(problem).__name__}: {problem}")

@@ -137,6 +137,28 @@ class Ros1Parameters:
             raise ServiceUnavailable(f"the {what} did not answer within {timeout:g} s") from None
 
 
+def give(node: Ros1Node, values: Mapping[str, ParameterValue]) -> None:
+    """Set parameters of our own node that came from outside, now and after each restart of the master.
+
+    Raises:
+        ParameterRefused: the master cannot keep a value.
+    """
+    keys = {f"{node.node_name}/{name.removeprefix('~')}": value for name, value in values.items()}
+    plain = {key: _plain(key, value) for key, value in keys.items()}
+    master = Master(node.master_uri, node.node_name)
+
+    def set_all() -> None:
+        for key, value in plain.items():
+            master.ask("setParam", key, value)
+
+    def again() -> None:
+        node.link.do(set_all)
+
+    if plain:
+        node.on_return[again] = None
+        again()
+
+
 def _leaves(value: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
     for name, part in value.items():
         where = f"{path}/{name}" if path else name
