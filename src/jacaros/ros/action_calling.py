@@ -278,7 +278,7 @@ class GoalSender:
             for arrival in list(self._arrivals):
                 settle(arrival, None, None)
         elif self._losing is None and self._goals:
-            self._losing = self.clock.call_later(SERVER_LOST_AFTER, lambda: self._lose("went away"))
+            self._losing = self._expect_loss()
 
     # Within:
 
@@ -322,13 +322,18 @@ class GoalSender:
             self._sign()
 
     def _sign(self) -> None:
-        """Something was heard of the server: it is not lost."""
+        """Something was heard of the server: it is not lost, or not yet if it may have been said before the server went."""
+        if self._losing is not None:
+            self._losing.cancel()
+            self._losing = None if self.wire.offered else self._expect_loss()
+
+    def _expect_loss(self) -> Timer:
+        return self.clock.call_later(SERVER_LOST_AFTER, lambda: self._lose("went away"))
+
+    def _lose(self, how: str) -> None:
         if self._losing is not None:
             self._losing.cancel()
             self._losing = None
-
-    def _lose(self, how: str) -> None:
-        self._sign()
         for goal_id in list(self._goals):
             text = f"the server of action {self.name} {how} during goal {goal_id}; whether it goes on is not known"
             self._finish(goal_id, ServerLost(text))

@@ -1,0 +1,239 @@
+"""Agents and an action server on the graph inside the process: an action is one step of a plan."""
+
+import asyncio
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from jacaros.mas.system import System
+from jacaros.ros.action import Abort, ActionPolicy, GoalStatus, Outcome
+from jacaros.testing import RunResult, run_project
+
+ARTIFACTS = Path(__file__).parent / "ros" / "programs" / "counting" / "artifacts.py"
+
+BEGIN = """
+!begin.
++!begin <- makeArtifact("robot", "CountingRobot", [], R); focus(R); !go; .stopMAS.
+-!go[error(E), env_failure_reason(R)] <- .print(E, " ", R).
+"""
+
+
+class Server:
+    """Counts; what it does besides depends on the target.
+
+    13: gives up at 3.  9: its process is gone at 3.  Above 100: refuses.
+
+    Attributes:
+        deeds: what it did, with the seconds since the beginning.
+    """
+
+    def __init__(self) -> None:
+        self.deeds: list[str] = []
+
+    def offer(self, mas: System) -> None:
+        self.clock, self._began = mas.clock, mas.clock.now()
+        self.backend = mas.ros.backend()
+        self.policy = ActionPolicy(lambda goal: "too many" if goal.target > 100 else None)
+        self.come()
+
+    def come(self) -> None:
+        action = "jacaros_interfaces/action/Count"
+        self.server: Any = self.backend.action_server("/count", action, self._count, self.policy)
+
+    def note(self, text: str) -> None:
+        self.deeds.append(f"{text} at {round(self.clock.now() - self._began, 1):g}")
+
+    async def _count(self, goal: Any) -> Any:
+        target = goal.request.target
+        self.note(f"begin {target}")
+        number = 0
+        try:
+            while number < target:
+                await self.clock.sleep(goal.request.period)
+                number += 1
+                goal.feedback(current=number)
+                if target == 13 and number == 3:
+                    raise Abort("unlucky")
+                if target == 9 and number == 3:
+                    self.server.vanish()
+        except asyncio.CancelledError:
+            self.note(f"cancelled {target}")
+            raise
+        self.note(f"done {target}")
+        return {"last": number}
+
+
+def run(folder: Path, program: str, server: Server | None = None, **options: Any) -> RunResult:
+    shutil.copy(ARTIFACTS, folder)
+    file = folder / "counter.asl"
+    file.write_text(BEGIN + program, encoding="utf-8")
+    made = server or Server()
+    return run_project(file, seconds=300, when_started=made.offer, **options)
+
+
+def test_an_action_is_one_step_whose_result_and_feedback_reach_the_plan(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        """
+        +!go <- count(3, 0.5, Last); .print("last ", Last).
+        +current(N) : N > 0 <- .print(N).
+        """,
+    )
+    assert result.of("counter") == ["1", "2", "3", "last 3"]
+    assert result.errors == []
+
+
+@pytest.mark.parametrize(
+    ("step", "reason"),
+    [
+        ("count(101, 1, L)", "rejected"),
+        ("count(13, 1, L)", 'aborted(0,"unlucky")'),
+        ("countWithin(4, 50, 1)", "timeout(4)"),
+        ("count(9, 1, L)", "server_lost"),
+    ],
+)
+def test_each_way_to_fail_reaches_the_plan_with_its_reason(tmp_path: Path, step: str, reason: str) -> None:
+    result = run(tmp_path, f"+!go <- {step}; .print(never).")
+    assert result.of("counter") == [f"action_failed {reason}"]
+    assert result.exit_code == 0
+
+
+class CancelledElsewhere:
+    """A goal that another client cancels."""
+
+    goal_id = "1"
+
+    async def outcome(self, timeout: float | None = None) -> Outcome:
+        return Outcome(GoalStatus.CANCELED, None)
+
+
+def test_a_goal_that_somebody_else_cancels_fails_as_canceled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def send(*arguments: object) -> CancelledElsewhere:
+        return CancelledElsewhere()
+
+    monkeypatch.setattr("jacaros.ros.action_calling.GoalSender.send", send)
+    result = run(tmp_path, "+!go <- count(5, 1, L); .print(never).")
+    assert result.of("counter") == ["action_failed canceled"]
+
+
+def test_nobody_who_offers_the_action_is_server_lost(tmp_path: Path) -> None:
+    server = Server()
+    server.come = lambda: None  # type: ignore[method-assign]
+    result = run(tmp_path, "+!go <- count(5, 1, L); .print(never).", server)
+    assert result.of("counter") == ["action_failed server_lost"]
+    assert 5 <= result.seconds < 6
+
+
+def test_a_dropped_intention_cancels_its_goal(tmp_path: Path) -> None:
+    server = Server()
+    result = run(
+        tmp_path,
+        """
+        +!go <- !!count; .wait(3500); .drop_intention(count); .print(dropped); .wait(2000).
+        +!count <- count(50, 1, L); .print(never).
+        """,
+        server,
+    )
+    assert result.of("counter") == ["dropped"]
+    assert server.deeds == ["begin 50 at 0", "cancelled 50 at 3.5"]
+
+
+def test_a_goal_goes_on_while_its_intention_is_suspended_and_the_end_waits(tmp_path: Path) -> None:
+    server = Server()
+    result = run(
+        tmp_path,
+        """
+        +!go <- !!count; .wait(1500); .suspend(count); .wait(10000); .print(resuming);
+                .resume(count); .wait({+counted}).
+        +!count <- count(5, 1, L); .print(L); +counted.
+        """,
+        server,
+    )
+    assert result.of("counter") == ["resuming", "5"]
+    assert server.deeds == ["begin 5 at 0", "done 5 at 5"]
+
+
+def test_a_goal_that_is_cancelled_while_suspended_is_sent_again(tmp_path: Path) -> None:
+    server = Server()
+    result = run(
+        tmp_path,
+        """
+        +!go <- !!count; .wait(2500); .suspend(count); .wait(10000); .resume(count); .wait({+counted}).
+        +!count <- countOrRest(5, 1); .print(counted); +counted.
+        """,
+        server,
+    )
+    assert result.of("counter") == ["counted"]
+    assert server.deeds == [
+        "begin 5 at 0",
+        "cancelled 5 at 2.5",
+        "begin 5 at 12.5",
+        "done 5 at 17.5",
+    ]
+
+
+def test_two_intentions_have_a_goal_each(tmp_path: Path) -> None:
+    server = Server()
+    result = run(
+        tmp_path,
+        """
+        +!go <- !!count(4); !!count(6); .wait({+counted(6)}).
+        +!count(N) <- count(N, 1, L); .print(L); +counted(N).
+        """,
+        server,
+    )
+    assert result.of("counter") == ["4", "6"]
+    assert server.deeds == ["begin 4 at 0", "begin 6 at 0", "done 4 at 4", "done 6 at 6"]
+
+
+def test_the_limit_of_an_action_cancels_its_goal(tmp_path: Path) -> None:
+    server = Server()
+    result = run(
+        tmp_path,
+        """
+        +!go <- count(50, 1, L)[timeout(2000)].
+        """,
+        server,
+    )
+    assert result.of("counter") == ['action_failed operation_timeout("count/3",2000)']
+    assert server.deeds[:2] == ["begin 50 at 0", "cancelled 50 at 2"]
+
+
+@pytest.mark.parametrize(
+    "ending",
+    [
+        ".stopMAS",
+        "lookupArtifact(robot, R); disposeArtifact(R); .wait(1000)",
+        ".kill_agent(counter); .wait(1000)",
+    ],
+)
+def test_the_end_of_run_artifact_or_agent_cancels_the_goal(tmp_path: Path, ending: str) -> None:
+    server = Server()
+    run(tmp_path, f"+!go <- !!count; .wait(1500); {ending}. +!count <- count(50, 1, L).", server)
+    assert server.deeds == ["begin 50 at 0", "cancelled 50 at 1.5"]
+
+
+def test_a_server_that_comes_late_and_one_that_comes_back_need_no_restart(tmp_path: Path) -> None:
+    server = Server()
+    server.come, come = (lambda: None), server.come  # type: ignore[method-assign]
+
+    def offer(mas: System) -> None:
+        Server.offer(server, mas)
+        mas.clock.call_later(2, come)
+        mas.clock.call_later(20, come)
+
+    server.offer = offer  # type: ignore[method-assign]
+    result = run(
+        tmp_path,
+        """
+        +!go <- !try(3); !try(9); .wait(20000); !try(2).
+        +!try(N) <- count(N, 1, L); .print(L).
+        -!try(N)[env_failure_reason(R)] <- .print(R).
+        """,
+        server,
+    )
+    assert result.of("counter") == ["3", "server_lost", "2"]
