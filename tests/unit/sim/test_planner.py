@@ -1,6 +1,7 @@
 """Planning: against a search without any cleverness, against the walls, and the reasons when there is no way."""
 
 import heapq
+import itertools
 import math
 import random
 from collections.abc import Sequence
@@ -58,7 +59,7 @@ def dijkstra(weights: Sequence[float], width: int, start: int, goal: int) -> flo
 
 def cost_of(path: Sequence[int], weights: Sequence[float], width: int) -> float:
     total = 0.0
-    for before, after in zip(path, path[1:], strict=False):
+    for before, after in itertools.pairwise(path):
         (row, column), (to_row, to_column) = divmod(before, width), divmod(after, width)
         assert max(abs(row - to_row), abs(column - to_column)) == 1
         total += (DIAGONAL if row != to_row and column != to_column else 1.0) * weights[after]
@@ -129,7 +130,7 @@ def test_ways_keep_clear_of_walls_and_end_at_the_goal(name: str) -> None:
     ]
     places = [place for place in places if from_wall(*place, world.segments) > RADIUS + MARGIN + RESOLUTION]
     places = [place for place in places if not any(box.contains(*place) for box in world.boxes)]
-    for start, goal in zip(places, places[1:], strict=False):
+    for start, goal in itertools.pairwise(places):
         points = planner.plan(start, goal)
         assert (points[0], points[-1]) == (start, goal)
         route = Route(points)

@@ -15,7 +15,10 @@ TURN_IN_PLACE = 0.8
 """Tangent of the bearing above which the robot turns on the spot before it drives."""
 _DRIVE_AGAIN = 0.15
 KEEP_OFF = 0.12
-"""Metres that the robot keeps from other robots."""
+"""Metres that the robot keeps from other robots in front of it."""
+PASSING = 0.05
+"""Metres that it keeps from those it passes."""
+_PASSING_SPEED = 0.2
 _SLOWEST = 0.04
 _LOOK_AHEAD = 0.2
 _LOOK_AHEAD_TIME = 0.4
@@ -114,14 +117,18 @@ class Driver:
         return max(_SLOWEST, math.sqrt(2.0 * self.pace.braking * max(0.0, route.remaining)) - 0.05)
 
     def _for_others(self, pose: Placement, others: Sequence[Circle]) -> float:
-        """Slower the nearer another robot is in front; 0 at `KEEP_OFF`."""
+        """Slower the nearer another robot is in front: 0 at `KEEP_OFF`, unless there is room to pass it."""
         speed = self.pace.speed
         for x, y, radius in others:
             forward, left = pose.local(x, y)
+            if forward <= 0.0:
+                continue
             reach = radius + self.planner.radius
-            if forward > 0.0 and abs(left) < reach + KEEP_OFF:
-                gap = math.sqrt(forward * forward + left * left) - reach - KEEP_OFF
-                speed = min(speed, max(0.0, 0.8 * gap))
+            gap = math.sqrt(forward * forward + left * left) - reach
+            if abs(left) < reach + PASSING:
+                speed = min(speed, max(0.0, 0.8 * (gap - KEEP_OFF)))
+            elif gap < 2.0 * KEEP_OFF:
+                speed = min(speed, _PASSING_SPEED)
         return speed
 
     def _for_walls(self, pose: Placement, speed: float, curvature: float) -> float:
@@ -145,5 +152,5 @@ def in_the_way(route: Route, others: Sequence[Circle], radius: float, ahead: flo
         return False
     points = route.samples(ahead)
     return any(
-        distance(point, (x, y)) < radius + other + KEEP_OFF for point in points for x, y, other in others
+        distance(point, (x, y)) < radius + other + PASSING for point in points for x, y, other in others
     )

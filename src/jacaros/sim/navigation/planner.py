@@ -146,13 +146,17 @@ class Planner:
 
     def _line_cost(self, a: Point, b: Point, weights: Sequence[float]) -> float:
         """What the straight way costs, in metres of plain floor; infinite where it is blocked."""
-        length = distance(a, b)
-        pieces = max(1, math.ceil(length / (0.5 * self.grid.resolution)))
-        dx, dy = (b[0] - a[0]) / pieces, (b[1] - a[1]) / pieces
+        grid, length = self.grid, distance(a, b)
+        if grid.cell(*a) is None or grid.cell(*b) is None:
+            return math.inf
+        pieces = max(1, math.ceil(length / (0.5 * grid.resolution)))
+        # In cells; this is the busiest loop of all navigation, so nothing is called in it.
+        scale, width = 1.0 / grid.resolution, grid.width
+        x, y = (a[0] - grid.x_min) * scale + 1.0, (a[1] - grid.y_min) * scale + 1.0
+        dx, dy = (b[0] - a[0]) * scale / pieces, (b[1] - a[1]) * scale / pieces
         total = 0.0
         for piece in range(pieces + 1):
-            cell = self.grid.cell(a[0] + piece * dx, a[1] + piece * dy)
-            weight = weights[cell] if cell is not None else 0.0
+            weight = weights[int(y + piece * dy) * width + int(x + piece * dx)]
             if not weight:
                 return math.inf
             total += weight

@@ -21,17 +21,18 @@ TOLERANCE = 0.05
 """Metres from the goal at which the robot has arrived."""
 YAW_TOLERANCE = 0.05
 """The same for its heading, in radians."""
-PATIENCE = 4.0
-"""Seconds without getting anywhere before something else is tried."""
+PATIENCE = 3.0
+"""Seconds without getting anywhere before something else is tried; a little more for each further robot."""
 MOST_RECOVERIES = 3
 """After so many tries in a row the goal is given up."""
 _MOVED = 0.25
 _AWAY = 0.6
 _LOST = 0.35
-_ROOM = 0.1
+_ROOMS = (0.12, 0.05)
 _KEEP_RIGHT = 0.1
 _BACK = 0.2
 _LEAST_ALLOWANCE = 30.0
+_LATER = 1.3
 _FEEDBACK_EVERY = 2
 
 
@@ -84,6 +85,10 @@ class Trip:
         self._began = self._clock.now()
         self._pose = navigator.pose()
         self._others: list[Circle] = []
+        # Two that stand in each other's way must not step back and come again at the same time.
+        self._patience = PATIENCE + _LATER * (
+            list(navigator.time.world.robots).index(navigator.robot.name) % 4
+        )
         self._recoveries = self._in_a_row = self._cycles = 0
         self._stuck_at: Point = (math.inf, math.inf)
         self._mark = (self._pose.x, self._pose.y)
@@ -96,7 +101,7 @@ class Trip:
         """Drive to the end; see `go`."""
         while not self._arrived():
             self._check()
-            if self._clock.now() - self._marked > PATIENCE:
+            if self._clock.now() - self._marked > self._patience:
                 await self._recover(hold)
             await hold.drive(self._driver.command(self._pose, self._route, self._others))
             self._look()
@@ -179,14 +184,23 @@ class Trip:
         self._drive_along(way)
 
     def _way(self, others: Sequence[Circle]) -> list[Point]:
-        """The way through all goals that are left; `_vias` are set to match."""
+        """The way through all goals that are left, in a wide berth round *others* if there is room for that."""
+        if others:
+            try:
+                return self._way_around(others, _ROOMS[0])
+            except NavigationFailure:
+                pass
+        return self._way_around(others, _ROOMS[1])
+
+    def _way_around(self, others: Sequence[Circle], room: float) -> list[Point]:
+        """The way that keeps *room* metres more from *others* than from walls; `_vias` are set to match."""
         planner, pose = self.navigator.planner, self._pose
         obstacles = []
         for x, y, radius in others:
             # A little to the left of where it is: who meets passes on the right.
             forward, left = pose.local(x, y)
-            shift = _KEEP_RIGHT if forward > 0.0 else 0.0
-            obstacles.append((*pose.point(forward, left + shift), radius + _ROOM))
+            shift = _KEEP_RIGHT if forward > 0.0 and room == _ROOMS[0] else 0.0
+            obstacles.append((*pose.point(forward, left + shift), radius + room))
         points, vias = [(pose.x, pose.y)], []
         for goal in self.goals:
             piece = planner.plan(points[-1], (goal.x, goal.y), obstacles)
