@@ -76,6 +76,16 @@ class RosbagsSchema:
         """Make the goal, result and feedback types of an action known; raises `UnknownInterface`."""
         self._require_parts(type_name, "action", (goal_type, result_type, feedback_type), split_action)
 
+    def offered(self, type_name: str) -> None:
+        """Raise `UnknownInterface` for a service or an action that has no definition.
+
+        The definition is read when the first request or goal comes: that takes milliseconds, and a robot offers many.
+        """
+        kind = type_name.split("/")[1]
+        part = request_type(type_name) if kind == "srv" else goal_type(type_name)
+        if part not in _store().types:
+            self._definition(type_name, "service" if kind == "srv" else "action", kind)
+
     def _require(self, type_name: str) -> None:
         if type_name in _store().types:
             return

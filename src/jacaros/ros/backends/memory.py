@@ -136,7 +136,7 @@ class MemoryBackend(Node):
     def service(self, name: str, type_name: str, handler: Handler) -> MemoryService:
         """Offer a service."""
         full_type = service_type(type_name)
-        self._schema.service(full_type)
+        self._schema.offered(full_type)
         return self._joined(MemoryService(self, self.resolve(name), full_type, handler))
 
     def client(self, name: str, type_name: str) -> MemoryClient:
@@ -156,7 +156,7 @@ class MemoryBackend(Node):
     ) -> MemoryActionServer:
         """Offer an action."""
         full_type = action_type(type_name)
-        self._schema.action(full_type)
+        self._schema.offered(full_type)
         return self._joined(MemoryActionServer(self, self.resolve(name), full_type, execute, policy))
 
     def parameters(self, node: str | None = None) -> MemoryParameters:

@@ -14,7 +14,7 @@ from jacaros.sim.navigation.route import Route
 TURN_IN_PLACE = 0.8
 """Tangent of the bearing above which the robot turns on the spot before it drives."""
 _DRIVE_AGAIN = 0.15
-KEEP_OFF = 0.12
+KEEP_OFF = 0.08
 """Metres that the robot keeps from other robots in front of it."""
 PASSING = 0.05
 """Metres that it keeps from those it passes."""
@@ -127,7 +127,7 @@ class Driver:
             gap = math.sqrt(forward * forward + left * left) - reach
             if abs(left) < reach + PASSING:
                 speed = min(speed, max(0.0, 0.8 * (gap - KEEP_OFF)))
-            elif gap < 2.0 * KEEP_OFF:
+            elif gap < 3.0 * KEEP_OFF:
                 speed = min(speed, _PASSING_SPEED)
         return speed
 

@@ -26,9 +26,10 @@ PATIENCE = 3.0
 MOST_RECOVERIES = 3
 """After so many tries in a row the goal is given up."""
 _MOVED = 0.25
+_TURNED = 0.8
 _AWAY = 0.6
 _LOST = 0.35
-_ROOMS = (0.12, 0.05)
+_ROOMS = (0.12, 0.07)
 _KEEP_RIGHT = 0.1
 _BACK = 0.2
 _LEAST_ALLOWANCE = 30.0
@@ -91,7 +92,7 @@ class Trip:
         )
         self._recoveries = self._in_a_row = self._cycles = 0
         self._stuck_at: Point = (math.inf, math.inf)
-        self._mark = (self._pose.x, self._pose.y)
+        self._mark = self._pose
         self._marked = self._planned = self._began
         self._look()
         self._drive_along(self._first_way())
@@ -144,8 +145,8 @@ class Trip:
         beside = self._route.advance(here)
         while self._vias and self._route.done >= self._vias[0] - TOLERANCE:
             del self._vias[0], self.goals[0]
-        if distance(here, self._mark) > _MOVED:
-            self._mark, self._marked = here, self._clock.now()
+        if self._got_on():
+            self._mark, self._marked = self._pose, self._clock.now()
             if distance(here, self._stuck_at) > _AWAY:
                 self._in_a_row = 0
         radius = self.navigator.robot.description.radius
@@ -155,6 +156,12 @@ class Trip:
         self._cycles += 1
         if self._cycles % _FEEDBACK_EVERY == 0:
             self._report()
+
+    def _got_on(self) -> bool:
+        """Whether the robot has moved or turned since that was last noted."""
+        now, then = self._pose, self._mark
+        turned = now.cosine * then.cosine + now.sine * then.sine < _TURNED
+        return turned or distance((now.x, now.y), (then.x, then.y)) > _MOVED
 
     def _report(self) -> None:
         self._tell(
@@ -229,7 +236,7 @@ class Trip:
                 await hold.drive(STOP)
         self._look()
         self._plan_again()
-        self._mark, self._marked = (self._pose.x, self._pose.y), self._clock.now()
+        self._mark, self._marked = self._pose, self._clock.now()
 
     def _give_up(self) -> None:
         here = told((self._pose.x, self._pose.y))
