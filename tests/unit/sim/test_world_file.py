@@ -127,11 +127,11 @@ def test_robots_may_share_settings_by_a_yaml_merge() -> None:
 
 
 def test_a_world_that_is_not_there_names_the_shipped_ones() -> None:
-    with pytest.raises(WorldError, match="empty, house, patrol, two_robots"):
+    with pytest.raises(WorldError, match="empty, house, patrol, three_robots, two_robots"):
         World.load("nowhere")
 
 
-@pytest.mark.parametrize("name", ["empty", "house", "patrol", "two_robots"])
+@pytest.mark.parametrize("name", ["empty", "house", "patrol", "three_robots", "two_robots"])
 def test_a_shipped_world_loads_and_its_robots_stand_free(name: str) -> None:
     assert name in shipped_worlds()
     world = World.load(name)
