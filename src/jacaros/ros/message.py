@@ -5,6 +5,7 @@ messages, and something indexable and iterable for arrays (numpy arrays, tuples,
 client library likes it).  What differs is done here: stamps, defaults and the checking of values.
 """
 
+import dataclasses
 import difflib
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
@@ -258,7 +259,22 @@ def field_names(message: Any) -> list[str] | None:
     if hasattr(kind, "get_fields_and_field_types"):  # rclpy
         return list(kind.get_fields_and_field_types())
     if hasattr(kind, "__dataclass_fields__"):  # rosbags
-        return [name for name in kind.__dataclass_fields__ if name not in _NO_FIELDS]
+        return _dataclass_fields(kind)
     if hasattr(kind, "_slot_types"):  # genpy
         return list(kind.__slots__)
     return None
+
+
+_names_by_class: dict[type, list[str]] = {}
+
+
+def _dataclass_fields(kind: type) -> list[str]:
+    names = _names_by_class.get(kind)
+    if names is None:
+        # What rosbags marks as a class variable (constants) is a field to Python all the same.
+        names = _names_by_class[kind] = [
+            field.name
+            for field in dataclasses.fields(kind)
+            if field.name not in _NO_FIELDS and not str(field.type).startswith("ClassVar")
+        ]
+    return names

@@ -17,6 +17,10 @@ TF = QoS(depth=100)
 TF_STATIC = QoS(durability="transient_local", depth=1)
 ALL_STATIC = QoS(durability="transient_local", depth=100)
 """For listening: there may be many publishers of static transforms, and each has its last message."""
+QUIET = 1.0
+"""Seconds for which somebody waits without a word: the newest transforms are on their way as a rule."""
+JUMP = 0.1
+"""Seconds by which the clock must go back to mean that time begins again; less is a correction of the machine's clock."""
 MESSAGE = "tf2_msgs/msg/TFMessage"
 
 
@@ -99,7 +103,8 @@ class TransformListener:
             if problem.reason == "too_old":  # the past does not come back
                 raise
         what = f"transform from {source} to {target}"
-        with Waiting(self._node.clock, self._node.log, what, "Is the node that sends it running?"):
+        cure = "Is the node that sends it running?"
+        with Waiting(self._node.clock, self._node.log, what, cure, quiet=QUIET):
             return await self._arrival(target, source, stamp, timeout)
 
     async def _arrival(
@@ -130,7 +135,7 @@ class TransformListener:
 
     def _take(self, sample: Sample, static: bool) -> None:
         now = self._node.clock.now()
-        if now < self._latest:
+        if now < self._latest - JUMP:
             self._buffer.clear(f"the clock went back by {self._latest - now:.3g} s")
         self._latest = now
         for stamped in sample.message.transforms:

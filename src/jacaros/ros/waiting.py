@@ -21,18 +21,25 @@ class Waiting:
         log: takes one line.
         what: the thing, as in ``service /add (example_interfaces/srv/AddTwoInts)``.
         cure: what a person can do about it.
+        quiet: seconds in which nothing is said: for what is awaited again and again, and comes soon as a rule.
     """
 
-    def __init__(self, clock: Clock, log: Callable[[str], None], what: str, cure: str) -> None:
+    def __init__(
+        self, clock: Clock, log: Callable[[str], None], what: str, cure: str, quiet: float = 0.0
+    ) -> None:
         self._clock = clock
         self._log = log
         self._what = what
         self._cure = cure
+        self._quiet = quiet
+        self._told = False
         self._timer: Timer | None = None
 
     def __enter__(self) -> "Waiting":
-        self._log(f"waiting for the {self._what}")
-        self._timer = self._clock.call_later(MISSING_AFTER, self._missing)
+        if self._quiet > 0.0:
+            self._timer = self._clock.call_later(self._quiet, self._tell)
+        else:
+            self._tell()
         return self
 
     def __exit__(
@@ -40,8 +47,13 @@ class Waiting:
     ) -> None:
         if self._timer is not None:
             self._timer.cancel()
-        if kind is None:
+        if kind is None and self._told:
             self._log(f"found the {self._what}")
+
+    def _tell(self) -> None:
+        self._told = True
+        self._log(f"waiting for the {self._what}")
+        self._timer = self._clock.call_later(MISSING_AFTER, self._missing)
 
     def _missing(self) -> None:
         self._log(f"the {self._what} is missing; still trying. {self._cure}")

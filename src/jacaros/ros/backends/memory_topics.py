@@ -6,6 +6,7 @@ Publishing is the innermost loop of every run on this backend: what is rare (fau
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from jacaros.clock import Timer
@@ -166,12 +167,16 @@ class MemorySubscription:
             self.put = put
             return
 
+        def arrive(message: Any) -> None:
+            if not self._closed:
+                put(message)
+
         def suffer(message: Any) -> None:
             for delay in fate(message):
                 if delay <= 0.0:
                     put(message)
                 else:
-                    self._node.clock.call_later(delay, lambda: put(message))
+                    self._node.clock.call_later(delay, partial(arrive, message))
 
         self.put = suffer
 
@@ -189,14 +194,13 @@ class MemorySubscription:
     def _queue(self, message: Any) -> None:
         """Queue *message* for a turn of the loop; the oldest is dropped when the queue is full."""
         loop = self._node.loop
-        if not loop.is_closed() and not self._closed:
+        if not loop.is_closed():
             self._waiting.append(message)
             loop.call_soon(self._deliver_next)
 
     def _queue_in_time(self, message: Any) -> None:
         assert self._deadline is not None
-        if not self._closed:
-            self._deadline.kept()
+        self._deadline.kept()
         self._queue(message)
 
     def _deliver_next(self) -> None:
