@@ -325,7 +325,7 @@ class GoalSender:
         """Something was heard of the server: it is not lost, or not yet if it may have been said before the server went."""
         if self._losing is not None:
             self._losing.cancel()
-            self._losing = None if self.wire.offered else self._expect_loss()
+            self._losing = self._expect_loss() if self._goals and not self.wire.offered else None
 
     def _expect_loss(self) -> Timer:
         return self.clock.call_later(SERVER_LOST_AFTER, lambda: self._lose("went away"))
