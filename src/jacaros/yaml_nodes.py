@@ -13,6 +13,7 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, SequenceNode
 
 from jacaros.errors import JacarosError
 
@@ -99,6 +100,17 @@ class Node:
         cure = f"did you mean '{near[0]}'?" if near else f"known keys: {', '.join(known)}"
         self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", cure))
 
+    def entries(self) -> Iterator[tuple["Node", "Node"]]:
+        """Names and values of a mapping whose keys are names of the author's choice; none for a missing value."""
+        if self.value is None:
+            return
+        if not isinstance(self.value, CommentedMap):
+            self.wrong(f"{self.what} must be a mapping of names to values", "write 'name: ...' lines")
+            return
+        for key in self.value:
+            place = (self.value.lc.data or {}).get(key, (self.line - 1, self.column - 1))
+            yield Node(key, place[0] + 1, place[1] + 1, self.problems, "a name"), self._entry(key)
+
     def sequence(self) -> Iterator["Node"]:
         """The items of a list; a missing value is an empty list."""
         if self.value is None:
@@ -174,9 +186,12 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
         problems: takes the mistakes.
         what: what the document is called in messages, such as ``a world``.
     """
+    reader = YAML(typ="rt")
+    reader.allow_duplicate_keys = True  # they are told below, all of them, and harm nobody till then
     document = None
     try:
-        document = YAML(typ="rt").load(StringIO(text))
+        document = reader.load(StringIO(text))
+        problems += _twice(reader.compose(StringIO(text)))
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
@@ -186,3 +201,21 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
     except YAMLError as error:
         problems.append(Problem(1, 1, f"not YAML: {error}"))
     return Node(document, 1, 1, problems, what)
+
+
+def _twice(node: Any) -> Iterator[Problem]:
+    """The keys that stand in one mapping twice."""
+    if isinstance(node, MappingNode):
+        seen: dict[str, int] = {}
+        for key, value in node.value:
+            line, column = key.start_mark.line + 1, key.start_mark.column + 1
+            if isinstance(key.value, str) and key.value in seen and key.value != "<<":
+                first = seen[key.value]
+                cure = "give it another name, or leave one of them out"
+                yield Problem(line, column, f"'{key.value}' stands here twice: first in line {first}", cure)
+            else:
+                seen[str(key.value)] = line
+            yield from _twice(value)
+    elif isinstance(node, SequenceNode):
+        for item in node.value:
+            yield from _twice(item)

@@ -1,0 +1,193 @@
+"""Mapping files: found, read, and checked for all that can be told without knowing any message type."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, OperationKind, Place, TopicPart, Written
+from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.read_fields import place_of
+from jacaros.artifacts.mapping.read_names import namespace, ros_name
+from jacaros.artifacts.mapping.read_operations import read_operation
+from jacaros.artifacts.mapping.read_topics import read_frame, read_parameter, read_property, read_signal
+from jacaros.yaml_nodes import Node, Problem, read_document
+
+SHIPPED = Path(__file__).parent.parent / "mappings"
+"""Where the mappings are that come with the package."""
+
+ENDINGS = (".yaml", ".yml")
+
+_KEYS = (
+    "description",
+    "namespace",
+    "tf_prefix",
+    "connected",
+    "properties",
+    "signals",
+    "frames",
+    "parameters",
+    "operations",
+)
+
+
+def shipped_mappings() -> list[str]:
+    """File names of the mappings that come with the package."""
+    return sorted(path.name for path in SHIPPED.glob("*.yaml"))
+
+
+def find_mapping(name: str, folders: Sequence[Path] = (Path(),)) -> Path | None:
+    """The file of a mapping, first below *folders*, then among the shipped ones; None when there is none."""
+    for folder in folders:
+        if (path := folder / name).is_file():
+            return path
+    shipped = SHIPPED / name
+    return shipped if "/" not in name and shipped.is_file() else None
+
+
+def load_mapping(path: Path) -> MappingFile:
+    """Read a mapping file.
+
+    Raises:
+        MappingError: with all its mistakes.
+    """
+    mapping, problems = read_with_problems(path)
+    if problems:
+        raise MappingError(mapping.file, mapping.text, problems)
+    return mapping
+
+
+def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
+    """What can be read of a file, and what is wrong with it."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        cure = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
+        return MappingFile(str(path), ""), [Problem(1, 1, "there is no such mapping file", cure)]
+    except (OSError, UnicodeDecodeError) as error:
+        return MappingFile(str(path), ""), [Problem(1, 1, f"it cannot be read: {error}", "save it as UTF-8")]
+    problems: list[Problem] = []
+    artifacts = _read(read_document(text, problems, "a mapping file"), path.stem, problems)
+    return MappingFile(str(path), text, artifacts), sorted(problems, key=lambda each: (each.line, each.column))
+
+
+def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
+    """Read the text of a mapping file called *name*.
+
+    Raises:
+        MappingError: with all its mistakes.
+    """
+    problems: list[Problem] = []
+    artifacts = _read(read_document(text, problems, "a mapping file"), Path(name).stem, problems)
+    if problems:
+        raise MappingError(name, text, problems)
+    return MappingFile(name, text, artifacts)
+
+
+def _read(document: Node, stem: str, problems: list[Problem]) -> dict[str, ArtifactPart]:
+    if document.value is None:
+        if not problems:
+            document.wrong("the file says nothing", "begin with properties: or operations:")
+        return {}
+    if not isinstance(document.value, dict) or "artifacts" not in document.value:
+        return {stem: _artifact(stem, Place(1, 1), document)}
+    entries = document.mapping("artifacts")
+    found = {}
+    for name, node in entries["artifacts"].entries():
+        if not isinstance(name.value, str) or not name.value:
+            name.wrong(f"{name.value!r} is no name of an artifact", "write a word")
+            continue
+        found[str(name.value)] = _artifact(str(name.value), place_of(name), node)
+    if not found and not problems:
+        entries["artifacts"].wrong("there are no artifacts", "write the name of one below 'artifacts'")
+    return found
+
+
+def _artifact(name: str, place: Place, node: Node) -> ArtifactPart:
+    entries = node.mapping(*_KEYS)
+    topics = [read_property(*pair) for pair in _pairs(entries, "properties")]
+    topics += [read_signal(*pair) for pair in _pairs(entries, "signals")]
+    prefix = entries.get("tf_prefix")
+    part = ArtifactPart(
+        name,
+        place,
+        entries["description"].text() if "description" in entries else "",
+        namespace(entries["namespace"]) if "namespace" in entries else "",
+        (str(prefix.value).strip("/") if prefix.value else "") if prefix is not None else None,
+        _connected(entries["connected"]) if "connected" in entries else (),
+        tuple(topics),
+        tuple(read_frame(*pair) for pair in _pairs(entries, "frames")),
+        tuple(read_parameter(*pair) for pair in _pairs(entries, "parameters")),
+        tuple(read_operation(*pair) for pair in _pairs(entries, "operations")),
+    )
+    node.problems += _names(part)
+    node.problems += _references(part)
+    return part
+
+
+def _pairs(entries: dict[str, Node], key: str) -> Iterator[tuple[Node, Node]]:
+    return entries[key].entries() if key in entries else iter(())
+
+
+def _connected(node: Node) -> tuple[Written, ...] | None:
+    if isinstance(node.value, bool):
+        return None if node.value else ()
+    return tuple(ros_name(item) for item in node.sequence())
+
+
+def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
+    """Kind, name and place of all that agents come to believe."""
+    for topic in part.topics:
+        yield ("signal" if topic.signal else "property"), topic.name, topic.place
+    for kind, parts in (("frame", part.frames), ("parameter", part.parameters)):
+        for each in parts:
+            yield kind, each.name, each.place
+    for operation in part.operations:
+        for feedback in operation.feedback:
+            yield "feedback", feedback.name, feedback.place
+
+
+def _names(part: ArtifactPart) -> Iterator[Problem]:
+    """Names that two things of an artifact have; signals may share one with a property, as beliefs and events do not."""
+    seen: dict[str, tuple[str, Place]] = {}
+    for kind, name, place in _observable(part):
+        if name in seen and (kind != "feedback" or seen[name][0] != "feedback"):
+            first, before = seen[name]
+            yield place.problem(
+                f"the {kind} '{name}' has the name of the {first} of line {before.line}", "give it another name"
+            )
+        seen.setdefault(name, (kind, place))
+
+
+def _references(part: ArtifactPart) -> Iterator[Problem]:
+    """Properties that operations and ranges of view mean and that there are not, and properties nobody can ask for."""
+    own: dict[str, TopicPart | None] = {each.name: each for each in part.properties}
+    own |= {each.name: None for each in part.frames}
+    told = ", ".join(own) or "none"
+    asked: Counter[str] = Counter()
+    for operation in part.operations:
+        for wanted in operation.properties:
+            asked[wanted.text] += 1
+            if wanted.text not in own:
+                yield wanted.place.problem(
+                    f"there is no property '{wanted.text}'", f"properties from topics and frames: {told}"
+                )
+                continue
+            topic = own[wanted.text]
+            if topic is not None and topic.each is not None:
+                yield wanted.place.problem(
+                    f"'{wanted.text}' is one property for each element, and always told", "leave it out"
+                )
+            elif operation.kind is OperationKind.READ and topic is not None and topic.fields is None:
+                yield wanted.place.problem(
+                    f"the number of values of '{wanted.text}' is not known", f"give '{wanted.text}' fields"
+                )
+    for topic in part.topics:
+        if topic.view is not None and (origin := topic.view.origin) is not None and origin.text not in own:
+            yield origin.place.problem(
+                f"there is no property '{origin.text}'", f"properties from topics and frames: {told}"
+            )
+        if topic.policy.on_demand and topic.name not in asked:
+            yield topic.place.problem(
+                f"nobody can ask for '{topic.name}', which is told on demand",
+                f"add an operation: look: {{refresh: {topic.name}}}",
+            )

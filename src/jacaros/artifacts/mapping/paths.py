@@ -1,0 +1,152 @@
+"""Paths into messages: ``pose.pose.position.x``, ``ranges[0]``, ``transforms[*].child_frame_id``."""
+
+import difflib
+import keyword
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.ros.fields import FieldType
+
+ALL = "*"
+"""Stands for all elements of an array."""
+HERE = "i"
+"""Stands for the place of the current element, where there is one property for each."""
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
+_INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
+
+Step = str | int
+"""A field's name; or the number of an element, ``"*"`` or ``"[i]"``."""
+
+Fields = Callable[[str], Mapping[str, FieldType]]
+"""Gives the fields of a message type in full form."""
+
+
+class WrongPath(ValueError):
+    """A path that cannot be, with what to write."""
+
+    def __init__(self, message: str, cure: str = "") -> None:
+        super().__init__(message)
+        self.cure = cure
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A path as it was written.
+
+    Attributes:
+        text: as written.
+        steps: names, numbers, `ALL` and `HERE`; names are prefixed by a dot so that ``"*"`` is no name.
+        of_message: it begins at the message although its neighbours begin at an element.
+    """
+
+    text: str
+    steps: tuple[Step, ...]
+    of_message: bool = False
+
+    @property
+    def lists(self) -> int:
+        """How many lists are in each other because of `ALL`."""
+        return self.steps.count(ALL)
+
+
+WHOLE = Path(".", ())
+
+
+def read_path(text: str) -> Path:
+    """Read a path.
+
+    Raises:
+        WrongPath: it is none.
+    """
+    of_message = text.startswith("/")
+    rest = text.removeprefix("/")
+    if rest in (".", ""):
+        if not text:
+            raise WrongPath("a path is empty", "write the path of a field, or . for the whole message")
+        return Path(text, (), of_message)
+    steps: list[Step] = []
+    for part in rest.split("."):
+        found = _PART.fullmatch(part)
+        if found is None:
+            raise WrongPath(
+                f"'{text}' is no path: '{part}' is no field", "write it like pose.position.x or ranges[0]"
+            )
+        steps.append(f".{found['name']}")
+        for index in _INDEX.findall(found["indices"]):
+            steps.append(index if index in (ALL, HERE) else int(index))
+    return Path(text, tuple(steps), of_message)
+
+
+def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
+    """The type that a path leads to.
+
+    Raises:
+        WrongPath: there is no such field.
+        UnknownInterface: a type on the way is not known.
+    """
+    here = root
+    shown = ""
+    for step in path.steps:
+        if isinstance(step, str) and step.startswith("."):
+            here = _field(path, step[1:], here, shown, fields)
+            shown = f"{shown}.{step[1:]}".lstrip(".")
+            continue
+        if not here.array:
+            raise WrongPath(f"'{path.text}': {shown or 'the message'} is {here}, and no array", f"write {shown}")
+        if isinstance(step, int) and here.fixed and not -here.length <= step < here.length:
+            raise WrongPath(
+                f"'{path.text}': {shown} has {here.length} elements",
+                f"elements are {shown}[0] to {shown}[{here.length - 1}]",
+            )
+        here = FieldType(here.base)
+        shown = f"{shown}[{step}]"
+    return here
+
+
+def _field(path: Path, name: str, here: FieldType, shown: str, fields: Fields) -> FieldType:
+    where = shown or "the message"
+    if here.array:
+        raise WrongPath(
+            f"'{path.text}': {where} is an array, {here}", f"write {shown}[0].{name}, or {shown}[*].{name} for all"
+        )
+    if not here.is_message:
+        raise WrongPath(f"'{path.text}': {where} is {here} and has no fields", f"write {shown}")
+    known = fields(here.base)
+    if name not in known:
+        near = difflib.get_close_matches(name, known, 1)
+        listed = ", ".join(f"{field} ({kind})" for field, kind in known.items()) or "none"
+        cure = f"did you mean '{near[0]}'? Its fields: {listed}" if near else f"its fields: {listed}"
+        raise WrongPath(f"'{path.text}': {here.base} has no field '{name}'", cure)
+    return known[name]
+
+
+Getter = Callable[[Any, int], Any]
+"""Takes a message and the place of the current element; gives what stands at a path."""
+
+
+def getter(path: Path) -> Getter:
+    """A function that goes a path, written out as one expression: sensors send a thousand messages a second."""
+    made: Getter = eval(f"lambda m, i: {_expression(path.steps, 'm', 0)}", {})
+    return made
+
+
+def _expression(steps: tuple[Step, ...], value: str, depth: int) -> str:
+    for place, step in enumerate(steps):
+        if step == ALL:
+            each = f"e{depth}"
+            return f"[{_expression(steps[place + 1 :], each, depth + 1)} for {each} in {value}]"
+        if isinstance(step, str) and step != HERE:
+            name = step[1:]
+            value = f"getattr({value}, {name!r})" if keyword.iskeyword(name) else f"{value}.{name}"
+        else:
+            value = f"{value}[{step}]"
+    return value
+
+
+def is_field_name(text: str) -> bool:
+    """Whether a text may be the name of a field."""
+    return _NAME.fullmatch(text) is not None

@@ -1,0 +1,182 @@
+"""Reads ``fields``: what of a message an agent sees, and how it is converted."""
+
+from typing import Any
+
+from jacaros.artifacts.mapping.declared import Conversion, FieldPart, Place
+from jacaros.artifacts.mapping.paths import WHOLE, Path, WrongPath, read_path
+from jacaros.artifacts.mapping.units import UNITS, Line, conversion, usual
+from jacaros.yaml_nodes import Node
+
+ANGLES = ("yaw", "pitch", "roll")
+LISTS = ("count", "min", "max", "mean")
+KINDS = (*ANGLES, "name", "atom", "object", *LISTS)
+CONVERSION = ("as", "prefix", "names", "unit", "message_unit", "scale", "offset")
+FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name")
+
+
+def place_of(node: Node) -> Place:
+    """Where a value stands."""
+    return Place(node.line, node.column)
+
+
+def path_of(node: Node, hint: str = "") -> Path:
+    """A path; the whole message after a mistake."""
+    if not isinstance(node.value, str):
+        node.wrong(
+            f"{node.what} must be a path, not {shown(node.value)}", hint or "write the path of a field, as in pose.x"
+        )
+        return WHOLE
+    try:
+        return read_path(node.value)
+    except WrongPath as error:
+        node.wrong(str(error), error.cure)
+        return WHOLE
+
+
+def shown(value: Any) -> str:
+    """A value of a file in a message."""
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, list):
+        return "a list"
+    return "nothing" if value is None else repr(value)
+
+
+def read_fields(node: Node) -> tuple[FieldPart, ...]:
+    """A list of fields; a single one may stand without brackets."""
+    if isinstance(node.value, list):
+        return tuple(read_field(item) for item in node.sequence())
+    return (read_field(node),)
+
+
+def read_field(node: Node) -> FieldPart:
+    """One field."""
+    place = place_of(node)
+    if not isinstance(node.value, dict):
+        path = path_of(node, "write a path, or a mapping such as {path: pose.orientation, as: yaw}")
+        return FieldPart(path, place, name=_name(path))
+    entries = node.mapping(*FIELD, required=("path",))
+    path = path_of(entries["path"]) if "path" in entries else WHOLE
+    band = entries.get("dead_band")
+    return FieldPart(
+        path,
+        place,
+        read_conversion(entries),
+        _shares(entries["sample"]) if "sample" in entries else None,
+        _otherwise(entries["otherwise"]) if "otherwise" in entries else None,
+        band.number(0.0) if band is not None else None,
+        entries["name"].text() if "name" in entries else _name(path, entries),
+    )
+
+
+def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
+    """A word for a value, for the manual."""
+    kind = entries["as"].value if entries is not None and "as" in entries else ""
+    if kind in ANGLES or kind == "count":
+        return str(kind)
+    names = [step[1:] for step in path.steps if isinstance(step, str) and step.startswith(".")]
+    return names[-1] if names else "value"
+
+
+def read_conversion(entries: dict[str, Node]) -> Conversion:
+    """The keys that are the same for fields of properties and for values of operations."""
+    kind = entries["as"].choice(*KINDS) if "as" in entries else ""
+    digits = entries.get("round")
+    if "prefix" in entries and kind != "name":
+        entries["prefix"].wrong("'prefix' goes with 'as: name'", "add 'as: name'")
+    return Conversion(
+        kind,
+        entries["prefix"].text() if "prefix" in entries else "",
+        _names(entries["names"]) if "names" in entries else (),
+        _line(entries, kind),
+        digits.whole(0, 0) if digits is not None else None,
+    )
+
+
+def _names(node: Node) -> tuple[tuple[object, str], ...]:
+    found = []
+    for key, value in node.entries():
+        if not isinstance(value.value, str):
+            value.wrong(f"the name of {key.value!r} must be a word, not {shown(value.value)}", "write a word")
+            continue
+        found.append((key.value, str(value.value)))
+    return tuple(found)
+
+
+def _line(entries: dict[str, Node], kind: str) -> Line | None:
+    steps = [
+        _units(entries, kind),
+        Line(_factor(entries["scale"])) if "scale" in entries else None,
+        Line(1.0, entries["offset"].number()) if "offset" in entries else None,
+    ]
+    there = [step for step in steps if step is not None]
+    if not there:
+        return None
+    whole = Line()
+    for step in there:
+        whole = whole.then(step)
+    return whole
+
+
+def _factor(node: Node) -> float:
+    factor = node.number(default=1.0)
+    if factor == 0.0:
+        node.wrong("'scale' is 0, so that nothing is left of the value", "write another figure")
+        return 1.0
+    return factor
+
+
+def _units(entries: dict[str, Node], kind: str) -> Line | None:
+    there, here = entries.get("unit"), entries.get("message_unit")
+    if there is None:
+        if here is not None:
+            here.wrong("'message_unit' goes with 'unit'", "say which unit the agent is to get: unit: metres")
+        return None
+    wanted = _unit(there)
+    if wanted is None:
+        return None
+    given = usual(wanted) if here is None else _unit(here)
+    if given is None:
+        return None
+    asked, of_message = UNITS[wanted].kind, UNITS[given].kind
+    if asked != of_message:
+        (here or there).wrong(f"{given} is a unit of {of_message}, {wanted} one of {asked}", _of_kind(asked))
+        return None
+    if kind in ANGLES and asked != "angle":
+        there.wrong(f"'as: {kind}' gives an angle, and {wanted} is a unit of {asked}", _of_kind("angle"))
+        return None
+    return conversion(given, wanted)
+
+
+def _of_kind(kind: str) -> str:
+    return f"units of {kind} are {', '.join(name for name, each in UNITS.items() if each.kind == kind)}"
+
+
+def _unit(node: Node) -> str | None:
+    if isinstance(node.value, str) and node.value in UNITS:
+        return str(node.value)
+    import difflib  # here: only for mistakes
+
+    near = difflib.get_close_matches(str(node.value), UNITS, 1)
+    listed = ", ".join(UNITS)
+    node.wrong(
+        f"there is no unit {shown(node.value)}",
+        f"did you mean '{near[0]}'? Units: {listed}" if near else f"units: {listed}",
+    )
+    return None
+
+
+def _shares(node: Node) -> tuple[float, ...]:
+    if isinstance(node.value, list):
+        found = tuple(item.number(0.0, 1.0) for item in node.sequence())
+        if not found:
+            node.wrong("'sample' is empty", "write how many elements, or their places: [0, 0.5, 1]")
+        return found or (0.0,)
+    count = node.whole(1, 1)
+    return tuple(place / (count - 1) for place in range(count)) if count > 1 else (0.0,)
+
+
+def _otherwise(node: Node) -> float | Path:
+    if isinstance(node.value, str):
+        return path_of(node)
+    return node.number()

@@ -1,0 +1,62 @@
+"""Reads names: of beliefs, of ROS topics and nodes, of types."""
+
+import re
+
+from jacaros.artifacts.mapping.declared import Written
+from jacaros.artifacts.mapping.read_fields import place_of, shown
+from jacaros.ros.errors import NameInvalid
+from jacaros.ros.names import action_type, message_type, service_type
+from jacaros.yaml_nodes import Node
+
+_BELIEF = re.compile(r"[a-z][A-Za-z0-9_]*")
+_ROS = re.compile(r"[~/]?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+_NAMESPACE = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?")
+_READERS = {"msg": message_type, "srv": service_type, "action": action_type}
+_EXAMPLES = {
+    "msg": "nav_msgs/msg/Odometry",
+    "srv": "std_srvs/srv/Trigger",
+    "action": "nav2_msgs/action/NavigateToPose",
+}
+
+
+def belief_name(node: Node) -> str:
+    """The name of a property, signal or operation, as agents write it."""
+    if not isinstance(node.value, str) or not _BELIEF.fullmatch(node.value):
+        near = re.sub(r"\W", "_", str(node.value)).lstrip("_0123456789")
+        cure = f"write {near[0].lower()}{near[1:]}" if near else "begin with a lower-case letter"
+        node.wrong(f"{shown(node.value)} is no name that agents can write", cure)
+        return "unnamed"
+    return str(node.value)
+
+
+def ros_name(node: Node) -> Written:
+    """The name of a topic, service, action or node."""
+    value = node.value
+    if not isinstance(value, str) or not _ROS.fullmatch(value):
+        node.wrong(f"{shown(value)} is no ROS name", "write it like cmd_vel or /robot/cmd_vel")
+        return Written("unnamed", place_of(node))
+    return Written(str(value), place_of(node))
+
+
+def namespace(node: Node) -> str:
+    """A namespace; empty for none."""
+    value = node.value
+    if value in (None, "", "/"):
+        return ""
+    if not isinstance(value, str) or not _NAMESPACE.fullmatch(value):
+        node.wrong(f"{shown(value)} is no ROS namespace", "write it like r1 or fleet/r1")
+        return ""
+    return str(value).strip("/")
+
+
+def type_written(node: Node, kind: str) -> Written:
+    """A type in full form; *kind* is ``msg``, ``srv`` or ``action``."""
+    example = _EXAMPLES[kind]
+    try:
+        full = _READERS[kind](node.value) if isinstance(node.value, str) else None
+    except NameInvalid:
+        full = None
+    if full is None or full.split("/")[1] != kind:
+        node.wrong(f"{shown(node.value)} is no type of this kind", f"write it like {example}")
+        full = example
+    return Written(full, place_of(node))

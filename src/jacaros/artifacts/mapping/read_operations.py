@@ -1,0 +1,216 @@
+"""Reads ``operations``."""
+
+import dataclasses
+import re
+from collections.abc import Callable
+
+from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success, Written
+from jacaros.artifacts.mapping.paths import WHOLE
+from jacaros.artifacts.mapping.read_fields import path_of, place_of, read_fields
+from jacaros.artifacts.mapping.read_names import belief_name, ros_name, type_written
+from jacaros.artifacts.mapping.read_qos import read_qos
+from jacaros.artifacts.mapping.read_topics import read_feedback
+from jacaros.artifacts.mapping.read_values import constant, read_values, whole
+from jacaros.yaml_nodes import Node
+
+_COMMON = ("parameters", "description")
+KEYS: dict[str, tuple[str, ...]] = {
+    "publish": ("type", "fields", "qos", "rate", "duration", "at_end"),
+    "service": ("type", "request", "outputs", "success", "timeout"),
+    "action": ("type", "goal", "outputs", "success", "feedback", "timeout", "suspend"),
+    "set_parameter": ("node", "value", "timeout"),
+    "get_parameter": ("node", "outputs", "timeout"),
+    "refresh": (),
+    "read": (),
+}
+"""What goes with each kind of operation."""
+
+_PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+CALL_TIMEOUT = 10.0
+"""Seconds that a service may take unless the mapping says otherwise."""
+
+Reader = Callable[[OperationPart, dict[str, Node]], OperationPart]
+
+
+def read_operation(name: Node, node: Node) -> OperationPart:
+    """One operation."""
+    part = OperationPart(belief_name(name), place_of(name), OperationKind.REFRESH)
+    kinds = [kind for kind in KEYS if isinstance(node.value, dict) and kind in node.value]
+    if len(kinds) != 1:
+        found = f"has {' and '.join(kinds)}" if kinds else "does not say what it does"
+        name.wrong(f"the operation '{part.name}' {found}", f"write one of {', '.join(KEYS)}")
+        return part
+    kind = OperationKind(kinds[0])
+    entries = node.mapping(kind.value, *_COMMON, *KEYS[kind.value], required=_required(kind))
+    part = dataclasses.replace(
+        part,
+        kind=kind,
+        parameters=_parameters(entries["parameters"]) if "parameters" in entries else (),
+        description=entries["description"].text() if "description" in entries else "",
+    )
+    return _READERS[kind](part, entries)
+
+
+def _required(kind: OperationKind) -> tuple[str, ...]:
+    if kind is OperationKind.SET:
+        return ("node", "value")
+    return ("node",) if kind is OperationKind.GET else ()
+
+
+def _parameters(node: Node) -> tuple[str, ...]:
+    names: list[str] = []
+    for item in node.sequence():
+        name = item.value
+        if not isinstance(name, str) or not _PARAMETER.fullmatch(name):
+            item.wrong(f"{item.what} must be a name, not {name!r}", "write parameters: [x, y]")
+        elif name in names:
+            item.wrong(f"the parameter '{name}' stands here twice", "give it another name")
+        else:
+            names.append(str(name))
+    return tuple(names)
+
+
+def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
+    rate, duration = entries.get("rate"), entries.get("duration")
+    if rate is None and duration is not None:
+        duration.wrong("'duration' goes with 'rate'", "say how often: rate: 10")
+    if rate is not None and duration is None:
+        rate.wrong("'rate' goes with 'duration'", "say how long: duration: 2, or duration: $seconds")
+    spell = whole(duration, part.parameters) if duration is not None else None
+    if spell is not None and spell.source is Source.CONSTANT and not _is_positive(spell.value):
+        assert duration is not None
+        duration.wrong("'duration' must be a number of seconds above zero", "write duration: 2")
+    return dataclasses.replace(
+        part,
+        target=ros_name(entries["publish"]),
+        type_name=_type(entries, "msg"),
+        values=read_values(entries["fields"], part.parameters) if "fields" in entries else (),
+        qos=read_qos(entries["qos"]) if "qos" in entries else None,
+        rate=_seconds(rate) if rate is not None else None,
+        duration=spell,
+        at_end=read_values(entries["at_end"], part.parameters) if "at_end" in entries else None,
+    )
+
+
+def _service(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
+    return dataclasses.replace(
+        _answered(part, entries),
+        target=ros_name(entries["service"]),
+        type_name=_type(entries, "srv"),
+        values=read_values(entries["request"], part.parameters) if "request" in entries else (),
+        timeout=_timeout(entries, CALL_TIMEOUT),
+    )
+
+
+def _action(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
+    feedback = entries["feedback"].entries() if "feedback" in entries else ()
+    return dataclasses.replace(
+        _answered(part, entries),
+        target=ros_name(entries["action"]),
+        type_name=_type(entries, "action"),
+        values=read_values(entries["goal"], part.parameters) if "goal" in entries else (),
+        feedback=tuple(read_feedback(key, value) for key, value in feedback),
+        timeout=_timeout(entries, None),
+        suspend=entries["suspend"].choice("go_on", "cancel") if "suspend" in entries else "go_on",
+    )
+
+
+def _answered(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
+    success = entries.get("success")
+    outputs = read_fields(entries["outputs"]) if "outputs" in entries else ()
+    for field in outputs:
+        if field.path.of_message or "i" in field.path.steps or field.dead_band is not None:
+            entries["outputs"].problems.append(
+                field.place.problem("an output is a path and a conversion alone", "leave the rest out")
+            )
+    nothing = success is not None and success.value == "none"
+    return dataclasses.replace(
+        part,
+        outputs=outputs,
+        any_success=nothing,
+        success=_success(success) if success is not None and not nothing else None,
+    )
+
+
+def _success(node: Node) -> Success:
+    if not isinstance(node.value, dict):
+        return Success(path_of(node, "write the field that is true, or {path: code, is: 0}"), place_of(node))
+    entries = node.mapping("path", "is", required=("path", "is"))
+    return Success(
+        path_of(entries["path"]) if "path" in entries else WHOLE,
+        place_of(node),
+        constant(entries["is"]) if "is" in entries else True,
+    )
+
+
+def _set(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
+    return dataclasses.replace(
+        _of_node(part, entries, "set_parameter"),
+        values=(whole(entries["value"], part.parameters),) if "value" in entries else (),
+    )
+
+
+def _get(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
+    outputs = entries.get("outputs")
+    field = FieldPart(WHOLE, place_of(entries["get_parameter"]), name="value")
+    if outputs is not None:
+        listed = list(outputs.sequence()) if isinstance(outputs.value, list) else [outputs]
+        if len(listed) != 1:
+            outputs.wrong("a parameter has one value, so there is one output", "write outputs: [value]")
+        elif isinstance(listed[0].value, str):
+            field = dataclasses.replace(field, name=str(listed[0].value))
+        else:
+            field = read_fields(listed[0])[0]
+    return dataclasses.replace(_of_node(part, entries, "get_parameter"), outputs=(field,))
+
+
+def _of_node(part: OperationPart, entries: dict[str, Node], key: str) -> OperationPart:
+    node = entries[key]
+    return dataclasses.replace(
+        part,
+        target=Written(node.text(), place_of(node)),
+        node=ros_name(entries["node"]).text if "node" in entries else "",
+        timeout=_timeout(entries, CALL_TIMEOUT),
+    )
+
+
+def _of_properties(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
+    node = entries[part.kind.value]
+    if "parameters" in entries:
+        entries["parameters"].wrong(f"'{part.kind}' takes no parameters", "leave 'parameters' out")
+    items = list(node.sequence()) if isinstance(node.value, list) else [node]
+    if part.kind is OperationKind.READ and len(items) != 1:
+        node.wrong("'read' gives one property", "write an operation for each")
+    named = tuple(Written(item.text(), place_of(item)) for item in items)
+    return dataclasses.replace(part, parameters=(), target=Written("", place_of(node)), properties=named)
+
+
+_READERS: dict[OperationKind, Reader] = {
+    OperationKind.PUBLISH: _publish,
+    OperationKind.SERVICE: _service,
+    OperationKind.ACTION: _action,
+    OperationKind.SET: _set,
+    OperationKind.GET: _get,
+    OperationKind.REFRESH: _of_properties,
+    OperationKind.READ: _of_properties,
+}
+
+
+def _type(entries: dict[str, Node], kind: str) -> Written | None:
+    return type_written(entries["type"], kind) if "type" in entries else None
+
+
+def _timeout(entries: dict[str, Node], usual: float | None) -> float | None:
+    return _seconds(entries["timeout"]) if "timeout" in entries else usual
+
+
+def _seconds(node: Node) -> float:
+    value = node.number(default=1.0)
+    if value <= 0.0:
+        node.wrong(f"{node.what} is {value:g}, but must be above zero")
+        return 1.0
+    return value
+
+
+def _is_positive(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and value > 0

@@ -1,0 +1,256 @@
+"""Reads ``properties``, ``signals``, ``frames`` and ``parameters``."""
+
+import dataclasses
+
+from jacaros.artifacts.mapping.declared import (
+    FieldPart,
+    FramePart,
+    ParameterPart,
+    Place,
+    RangeOfView,
+    TopicPart,
+    Written,
+)
+from jacaros.artifacts.mapping.paths import WHOLE
+from jacaros.artifacts.mapping.read_fields import path_of, place_of, read_field, read_fields, shown
+from jacaros.artifacts.mapping.read_names import belief_name, ros_name, type_written
+from jacaros.artifacts.mapping.read_qos import read_qos
+from jacaros.artifacts.ros.reading import ReadingPolicy
+from jacaros.env.values import Atom
+from jacaros.yaml_nodes import Node
+
+_MESSAGE = ("topic", "type", "fields", "each", "key", "annotations", "qos", "description")
+_POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
+PROPERTY = (*_MESSAGE, *_POLICY, "initial", "range_of_view")
+SIGNAL = (*_MESSAGE, "rate", "when_changed")
+FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
+FRAME = ("target", "source", "fields", "annotations", "description", *_POLICY)
+PARAMETER = ("node", "parameter", "fields", "rate", "dead_band", "description")
+PLACES = ("x", "y", "z", "roll", "pitch", "yaw", "stamp")
+"""What of a transform can be shown."""
+
+
+def read_property(name: Node, node: Node) -> TopicPart:
+    """One property from a topic."""
+    place = place_of(name)
+    if isinstance(node.value, str):
+        return TopicPart(belief_name(name), place, ros_name(node))
+    entries = node.mapping(*PROPERTY, required=("topic",))
+    part = _topic_part(belief_name(name), place, entries)
+    fields, policy = part.fields, read_policy(entries, part.fields)
+    initial = entries.get("initial")
+    if policy.on_demand and part.each is not None:
+        entries["mode"].wrong("a property for each element is always told", "leave 'mode' out")
+    return dataclasses.replace(
+        part,
+        policy=policy,
+        initial=_initial(initial, fields, part.each is not None) if initial is not None else None,
+        view=_view(entries["range_of_view"], part.each is not None) if "range_of_view" in entries else None,
+    )
+
+
+def read_signal(name: Node, node: Node) -> TopicPart:
+    """One signal."""
+    if isinstance(node.value, str):
+        return TopicPart(belief_name(name), place_of(name), ros_name(node), signal=True)
+    entries = node.mapping(*SIGNAL, required=("topic",))
+    part = _topic_part(belief_name(name), place_of(name), entries)
+    if "annotations" in entries:
+        entries["annotations"].wrong("signals have no annotations", "write the field into 'fields'")
+    changed = entries.get("when_changed")
+    return dataclasses.replace(
+        part,
+        policy=read_policy(entries, part.fields, latest_only=False),
+        when_changed=changed is not None and changed.truth(),
+        signal=True,
+    )
+
+
+def read_feedback(name: Node, node: Node) -> TopicPart:
+    """A property from the feedback of an action."""
+    place = place_of(name)
+    if node.value is None or isinstance(node.value, str | list):
+        fields = read_fields(node) if node.value is not None else None
+        return TopicPart(belief_name(name), place, None, fields=fields)
+    entries = node.mapping(*FEEDBACK)
+    part = _topic_part(belief_name(name), place, entries)
+    return dataclasses.replace(part, policy=read_policy(entries, part.fields))
+
+
+def _topic_part(name: str, place: Place, entries: dict[str, Node]) -> TopicPart:
+    each = entries.get("each")
+    key = entries.get("key")
+    if key is not None and each is None:
+        key.wrong("'key' goes with 'each'", "say which array has the elements: each: detections")
+    fields = read_fields(entries["fields"]) if "fields" in entries else None
+    if fields == ():
+        entries["fields"].wrong("'fields' is empty", "name a field, or leave 'fields' out for all of them")
+    for field in fields or ():
+        if each is None and (field.path.of_message or "i" in field.path.steps):
+            entries["fields"].problems.append(
+                field.place.problem(f"'{field.path.text}' goes with 'each'", "without 'each' write the path alone")
+            )
+    return TopicPart(
+        name,
+        place,
+        ros_name(entries["topic"]) if "topic" in entries else None,
+        type_written(entries["type"], "msg") if "type" in entries else None,
+        fields,
+        path_of(each) if each is not None else None,
+        place_of(each) if each is not None else place,
+        read_field(key) if key is not None else None,
+        read_annotations(entries["annotations"]) if "annotations" in entries else (),
+        None,
+        read_qos(entries["qos"]) if "qos" in entries else None,
+        description=entries["description"].text() if "description" in entries else "",
+    )
+
+
+def read_annotations(node: Node) -> tuple[FieldPart, ...]:
+    """Annotations by name; the name of the annotation is that of the field."""
+    return tuple(
+        dataclasses.replace(read_field(value), name=belief_name(name)) for name, value in node.entries()
+    )
+
+
+def read_policy(
+    entries: dict[str, Node], fields: tuple[FieldPart, ...] | None, latest_only: bool = True
+) -> ReadingPolicy:
+    """When to tell."""
+    mode = entries["mode"].choice("verbose", "on_demand") if "mode" in entries else "verbose"
+    rate, expire = entries.get("rate"), entries.get("expire")
+    latest = entries.get("latest_only")
+    return ReadingPolicy(
+        on_demand=mode == "on_demand",
+        rate=_positive(rate) if rate is not None else None,
+        dead_band=_bands(entries.get("dead_band"), fields),
+        latest_only=latest.truth() if latest is not None else latest_only,
+        expire=_positive(expire) if expire is not None else None,
+        finite=False,  # fields say themselves what is to become of such numbers
+    )
+
+
+def _positive(node: Node) -> float:
+    value = node.number(default=1.0)
+    if value <= 0.0:
+        node.wrong(f"{node.what} is {value:g}, but must be above zero")
+        return 1.0
+    return value
+
+
+def _bands(node: Node | None, fields: tuple[FieldPart, ...] | None) -> float | tuple[float, ...]:
+    """A figure for all values, or one for each value."""
+    own = any(field.dead_band is not None for field in fields or ())
+    if node is None:
+        return _each_band(fields or (), 0.0) if own else 0.0
+    if not isinstance(node.value, list):
+        band = node.number(0.0)
+        return _each_band(fields or (), band) if own else band
+    given = tuple(item.number(0.0) for item in node.sequence())
+    if fields is not None and len(given) != (count := sum(field.count for field in fields)):
+        node.wrong(
+            f"'dead_band' has {len(given)} figures, and the property {count} values",
+            "write one figure for all, or one for each value",
+        )
+    return given
+
+
+def _each_band(fields: tuple[FieldPart, ...], usual: float) -> tuple[float, ...]:
+    return tuple(
+        usual if field.dead_band is None else field.dead_band for field in fields for _ in range(field.count)
+    )
+
+
+def _initial(node: Node, fields: tuple[FieldPart, ...] | None, each: bool) -> tuple[object, ...]:
+    if each:
+        node.wrong("a property for each element has no initial values", "leave 'initial' out")
+    values = tuple(map(plain_constant, node.sequence())) if isinstance(node.value, list) else (plain_constant(node),)
+    if fields is not None and len(values) != (count := sum(field.count for field in fields)):
+        node.wrong(f"'initial' has {len(values)} values, and the property {count}", "write one for each value")
+    return values
+
+
+def plain_constant(node: Node) -> object:
+    """A constant that an agent sees: a number, truth value, text or list; plain words in lower case are atoms."""
+    value = node.value
+    if isinstance(value, list):
+        return [plain_constant(item) for item in node.sequence()]
+    if isinstance(value, bool | int | str):
+        return Atom(value) if isinstance(value, str) and value.isidentifier() and value[0].islower() else value
+    if isinstance(value, float):
+        return float(value)
+    node.wrong(f"{node.what} must be a number, a text or a list, not {shown(value)}")
+    return 0
+
+
+def _view(node: Node, each: bool) -> RangeOfView:
+    entries = node.mapping("metres", "distance", "at", "from", required=("metres",))
+    place = place_of(node)
+    if "distance" in entries and ("at" in entries or "from" in entries):
+        node.wrong("'distance' and 'at' say the same thing", "leave one of them out")
+    if "distance" not in entries and "at" not in entries:
+        node.wrong("'range_of_view' needs a place", "add 'at: [position.x, position.y]', or 'distance: range'")
+    at = tuple(path_of(item) for item in entries["at"].sequence()) if "at" in entries else ()
+    if "at" in entries and not 2 <= len(at) <= 3:
+        entries["at"].wrong("'at' must be the paths of two or three coordinates", "write [position.x, position.y]")
+        at = ()
+    origin = entries.get("from")
+    return RangeOfView(
+        _positive(entries["metres"]) if "metres" in entries else 1.0,
+        place,
+        path_of(entries["distance"]) if "distance" in entries else None,
+        at,
+        Written(origin.text(), place_of(origin)) if origin is not None else None,
+    )
+
+
+def read_frame(name: Node, node: Node) -> FramePart:
+    """A property from tf."""
+    entries = node.mapping(*FRAME, required=("target", "source"))
+    place = place_of(name)
+    fields = read_fields(entries["fields"]) if "fields" in entries else _pose(place)
+    annotations = read_annotations(entries["annotations"]) if "annotations" in entries else ()
+    for field in (*fields, *annotations):
+        if field.path.text not in PLACES:
+            node.problems.append(
+                field.place.problem(f"a transform has no '{field.path.text}'", f"it has {', '.join(PLACES)}")
+            )
+    policy = read_policy(entries, fields)
+    return FramePart(
+        belief_name(name),
+        place,
+        entries["target"].text() if "target" in entries else "",
+        entries["source"].text() if "source" in entries else "",
+        fields,
+        annotations,
+        policy.rate or 10.0,
+        policy.expire,
+        dataclasses.replace(policy, rate=None, expire=None),
+        entries["description"].text() if "description" in entries else "",
+    )
+
+
+def _pose(place: Place) -> tuple[FieldPart, ...]:
+    from jacaros.artifacts.mapping.paths import read_path
+
+    return tuple(FieldPart(read_path(name), place, name=name) for name in ("x", "y", "yaw"))
+
+
+def read_parameter(name: Node, node: Node) -> ParameterPart:
+    """A property from a parameter of a node."""
+    entries = node.mapping(*PARAMETER, required=("node",))
+    fields = read_fields(entries["fields"]) if "fields" in entries else ()
+    if len(fields) > 1 or any(field.path.steps for field in fields):
+        entries["fields"].wrong("a parameter has one value and no fields", "write fields: {path: ., unit: degrees}")
+    policy = read_policy({key: value for key, value in entries.items() if key != "rate"}, fields or None)
+    rate = entries.get("rate")
+    return ParameterPart(
+        belief_name(name),
+        place_of(name),
+        ros_name(entries["node"]).text if "node" in entries else "",
+        entries["parameter"].text() if "parameter" in entries else str(name.value),
+        dataclasses.replace(fields[0], path=WHOLE) if fields else None,
+        _positive(rate) if rate is not None else 1.0,
+        policy,
+        entries["description"].text() if "description" in entries else "",
+    )
