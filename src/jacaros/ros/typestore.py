@@ -30,6 +30,11 @@ def _store() -> Any:
     return get_typestore(Stores.ROS2_JAZZY)
 
 
+def stored_types() -> list[str]:
+    """Names of all message types of the store, in full form, sorted."""
+    return sorted(_store().types)
+
+
 class RosbagsSchema:
     """Message classes of ROS 2 Jazzy from ``rosbags``, plus definitions found in folders.
 

@@ -222,8 +222,9 @@ class OperationPart:
         type_name: None: found at run time, or there is none.
         values: fields of the message, request or goal; the value of a parameter.
         outputs: fields of the response or result that go to output parameters.
-        success: None: a field ``success`` if there is one; `False`: nothing is looked at.
-        duration: seconds of repeated publishing: a figure, or the number of a parameter behind ``-1 -``.
+        success: None: a field ``success`` if there is one.
+        any_success: nothing is looked at.
+        duration: seconds of repeated publishing.
         at_end: fields of the last message; None: zero for velocities, else nothing.
         properties: those that are refreshed or read.
         feedback: properties from the feedback.
@@ -253,14 +254,20 @@ class OperationPart:
 
 @dataclass(frozen=True, slots=True)
 class ArtifactPart:
-    """One artifact; ``connected`` are the topics whose connection is shown, None for all of them."""
+    """One artifact.
+
+    Attributes:
+        tf_prefix: None: the namespace.
+        connected: whether it is shown that topics are connected; seconds: they are not when no message came for so long.
+        topics: properties and signals from topics.
+    """
 
     name: str
     place: Place
     description: str = ""
     namespace: str = ""
     tf_prefix: str | None = None
-    connected: tuple[Written, ...] | None = ()
+    connected: bool | float = False
     topics: tuple[TopicPart, ...] = ()
     frames: tuple[FramePart, ...] = ()
     parameters: tuple[ParameterPart, ...] = ()

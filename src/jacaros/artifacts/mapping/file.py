@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, OperationKind, Place, TopicPart, Written
+from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, OperationKind, Place, TopicPart
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.read_fields import place_of
-from jacaros.artifacts.mapping.read_names import namespace, ros_name
+from jacaros.artifacts.mapping.read_names import namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
 from jacaros.artifacts.mapping.read_topics import read_frame, read_parameter, read_property, read_signal
 from jacaros.yaml_nodes import Node, Problem, read_document
@@ -67,7 +67,9 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
         return MappingFile(str(path), ""), [Problem(1, 1, f"it cannot be read: {error}", "save it as UTF-8")]
     problems: list[Problem] = []
     artifacts = _read(read_document(text, problems, "a mapping file"), path.stem, problems)
-    return MappingFile(str(path), text, artifacts), sorted(problems, key=lambda each: (each.line, each.column))
+    return MappingFile(str(path), text, artifacts), sorted(
+        problems, key=lambda each: (each.line, each.column)
+    )
 
 
 def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
@@ -113,7 +115,7 @@ def _artifact(name: str, place: Place, node: Node) -> ArtifactPart:
         entries["description"].text() if "description" in entries else "",
         namespace(entries["namespace"]) if "namespace" in entries else "",
         (str(prefix.value).strip("/") if prefix.value else "") if prefix is not None else None,
-        _connected(entries["connected"]) if "connected" in entries else (),
+        _connected(entries["connected"]) if "connected" in entries else False,
         tuple(topics),
         tuple(read_frame(*pair) for pair in _pairs(entries, "frames")),
         tuple(read_parameter(*pair) for pair in _pairs(entries, "parameters")),
@@ -128,10 +130,14 @@ def _pairs(entries: dict[str, Node], key: str) -> Iterator[tuple[Node, Node]]:
     return entries[key].entries() if key in entries else iter(())
 
 
-def _connected(node: Node) -> tuple[Written, ...] | None:
+def _connected(node: Node) -> bool | float:
     if isinstance(node.value, bool):
-        return None if node.value else ()
-    return tuple(ros_name(item) for item in node.sequence())
+        return node.value
+    seconds = node.number(default=1.0)
+    if seconds <= 0.0:
+        node.wrong("'connected' must be true, false, or a number of seconds above zero")
+        return True
+    return seconds
 
 
 def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
@@ -153,7 +159,8 @@ def _names(part: ArtifactPart) -> Iterator[Problem]:
         if name in seen and (kind != "feedback" or seen[name][0] != "feedback"):
             first, before = seen[name]
             yield place.problem(
-                f"the {kind} '{name}' has the name of the {first} of line {before.line}", "give it another name"
+                f"the {kind} '{name}' has the name of the {first} of line {before.line}",
+                "give it another name",
             )
         seen.setdefault(name, (kind, place))
 

@@ -96,7 +96,9 @@ def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
             shown = f"{shown}.{step[1:]}".lstrip(".")
             continue
         if not here.array:
-            raise WrongPath(f"'{path.text}': {shown or 'the message'} is {here}, and no array", f"write {shown}")
+            raise WrongPath(
+                f"'{path.text}': {shown or 'the message'} is {here}, and no array", f"write {shown}"
+            )
         if isinstance(step, int) and here.fixed and not -here.length <= step < here.length:
             raise WrongPath(
                 f"'{path.text}': {shown} has {here.length} elements",
@@ -111,7 +113,8 @@ def _field(path: Path, name: str, here: FieldType, shown: str, fields: Fields) -
     where = shown or "the message"
     if here.array:
         raise WrongPath(
-            f"'{path.text}': {where} is an array, {here}", f"write {shown}[0].{name}, or {shown}[*].{name} for all"
+            f"'{path.text}': {where} is an array, {here}",
+            f"write {shown}[0].{name}, or {shown}[*].{name} for all",
         )
     if not here.is_message:
         raise WrongPath(f"'{path.text}': {where} is {here} and has no fields", f"write {shown}")

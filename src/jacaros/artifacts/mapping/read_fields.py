@@ -23,7 +23,8 @@ def path_of(node: Node, hint: str = "") -> Path:
     """A path; the whole message after a mistake."""
     if not isinstance(node.value, str):
         node.wrong(
-            f"{node.what} must be a path, not {shown(node.value)}", hint or "write the path of a field, as in pose.x"
+            f"{node.what} must be a path, not {shown(node.value)}",
+            hint or "write the path of a field, as in pose.x",
         )
         return WHOLE
     try:

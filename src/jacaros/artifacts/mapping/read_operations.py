@@ -4,7 +4,14 @@ import dataclasses
 import re
 from collections.abc import Callable
 
-from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success, Written
+from jacaros.artifacts.mapping.declared import (
+    FieldPart,
+    OperationKind,
+    OperationPart,
+    Source,
+    Success,
+    Written,
+)
 from jacaros.artifacts.mapping.paths import WHOLE
 from jacaros.artifacts.mapping.read_fields import path_of, place_of, read_fields
 from jacaros.artifacts.mapping.read_names import belief_name, ros_name, type_written

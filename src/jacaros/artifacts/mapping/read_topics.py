@@ -88,7 +88,9 @@ def _topic_part(name: str, place: Place, entries: dict[str, Node]) -> TopicPart:
     for field in fields or ():
         if each is None and (field.path.of_message or "i" in field.path.steps):
             entries["fields"].problems.append(
-                field.place.problem(f"'{field.path.text}' goes with 'each'", "without 'each' write the path alone")
+                field.place.problem(
+                    f"'{field.path.text}' goes with 'each'", "without 'each' write the path alone"
+                )
             )
     return TopicPart(
         name,
@@ -164,9 +166,15 @@ def _each_band(fields: tuple[FieldPart, ...], usual: float) -> tuple[float, ...]
 def _initial(node: Node, fields: tuple[FieldPart, ...] | None, each: bool) -> tuple[object, ...]:
     if each:
         node.wrong("a property for each element has no initial values", "leave 'initial' out")
-    values = tuple(map(plain_constant, node.sequence())) if isinstance(node.value, list) else (plain_constant(node),)
+    values = (
+        tuple(map(plain_constant, node.sequence()))
+        if isinstance(node.value, list)
+        else (plain_constant(node),)
+    )
     if fields is not None and len(values) != (count := sum(field.count for field in fields)):
-        node.wrong(f"'initial' has {len(values)} values, and the property {count}", "write one for each value")
+        node.wrong(
+            f"'initial' has {len(values)} values, and the property {count}", "write one for each value"
+        )
     return values
 
 
@@ -176,7 +184,9 @@ def plain_constant(node: Node) -> object:
     if isinstance(value, list):
         return [plain_constant(item) for item in node.sequence()]
     if isinstance(value, bool | int | str):
-        return Atom(value) if isinstance(value, str) and value.isidentifier() and value[0].islower() else value
+        return (
+            Atom(value) if isinstance(value, str) and value.isidentifier() and value[0].islower() else value
+        )
     if isinstance(value, float):
         return float(value)
     node.wrong(f"{node.what} must be a number, a text or a list, not {shown(value)}")
@@ -189,10 +199,14 @@ def _view(node: Node, each: bool) -> RangeOfView:
     if "distance" in entries and ("at" in entries or "from" in entries):
         node.wrong("'distance' and 'at' say the same thing", "leave one of them out")
     if "distance" not in entries and "at" not in entries:
-        node.wrong("'range_of_view' needs a place", "add 'at: [position.x, position.y]', or 'distance: range'")
+        node.wrong(
+            "'range_of_view' needs a place", "add 'at: [position.x, position.y]', or 'distance: range'"
+        )
     at = tuple(path_of(item) for item in entries["at"].sequence()) if "at" in entries else ()
     if "at" in entries and not 2 <= len(at) <= 3:
-        entries["at"].wrong("'at' must be the paths of two or three coordinates", "write [position.x, position.y]")
+        entries["at"].wrong(
+            "'at' must be the paths of two or three coordinates", "write [position.x, position.y]"
+        )
         at = ()
     origin = entries.get("from")
     return RangeOfView(
@@ -241,7 +255,9 @@ def read_parameter(name: Node, node: Node) -> ParameterPart:
     entries = node.mapping(*PARAMETER, required=("node",))
     fields = read_fields(entries["fields"]) if "fields" in entries else ()
     if len(fields) > 1 or any(field.path.steps for field in fields):
-        entries["fields"].wrong("a parameter has one value and no fields", "write fields: {path: ., unit: degrees}")
+        entries["fields"].wrong(
+            "a parameter has one value and no fields", "write fields: {path: ., unit: degrees}"
+        )
     policy = read_policy({key: value for key, value in entries.items() if key != "rate"}, fields or None)
     rate = entries.get("rate")
     return ParameterPart(

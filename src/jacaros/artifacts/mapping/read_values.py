@@ -79,7 +79,9 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
     if within_list:
         if name.isdecimal():
             return int(name) - 1
-        node.wrong(f"there is no ${name} in an element", "write $1, $2 and so on for its parts, $0 for all of it")
+        node.wrong(
+            f"there is no ${name} in an element", "write $1, $2 and so on for its parts, $0 for all of it"
+        )
         return ALL_OF_IT
     if name in parameters:
         return parameters.index(name)

@@ -238,6 +238,10 @@ class Reading:
             self._expiry = self._clock.call_later(left, self._look_at_age)
             return
         self._expiry = None
+        self.withdraw()
+
+    def withdraw(self) -> None:
+        """What was passed holds no more; the next values are passed whatever they are."""
         self.newest = self._delivered = self._cause = None
         self._outlet.withdraw()
 

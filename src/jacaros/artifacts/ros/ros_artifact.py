@@ -16,7 +16,7 @@ from jacaros.env.artifact import Artifact, internal_operation
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.values import Structure
 from jacaros.ros.action import ActionClient
-from jacaros.ros.backend import Backend, Client, Publisher, Sample, Subscription
+from jacaros.ros.backend import Backend, Client, Publisher, Sample, Subscription, TopicEvent
 from jacaros.ros.errors import MessageMismatch, RosError
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.trace import Cause
@@ -134,26 +134,45 @@ class RosArtifact(Artifact):
         return self._kept(self.ros.publisher(self.robot_topic(topic), type_name, qos))
 
     def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS = DEFAULT_QOS,
+        on_event: Callable[[TopicEvent], None] | None = None,
     ) -> Subscription:
         """Have *callback* called for the messages of the robot's *topic* until the artifact is disposed.
 
         The callback runs on the loop but outside of any operation: it changes properties by `start`.  A topic
         that nobody publishes is told in the log after a few seconds; listening goes on.  So it does when the callback
         raises an exception, which is logged.
+
+        Args:
+            topic: its name.
+            type_name: of its messages.
+            callback: takes each message.
+            qos: what is asked for.
+            on_event: told of trouble at the topic; without it trouble goes to the log.
         """
         name = self.robot_topic(topic)
         listener = Listener(name, callback, partial(self._steps.setting.log_error, self.name))
         watch = self.options.get("watch_connection", False)
         if watch is False:
-            made = self._kept(self.ros.subscription(name, type_name, listener, qos))
+            made = self._kept(self.ros.subscription(name, type_name, listener, qos, on_event))
         else:
-            made = self._watched(name, type_name, listener, qos, None if watch is True else float(str(watch)))
+            expire = None if watch is True else float(str(watch))
+            made = self._watched(name, type_name, listener, qos, on_event, expire)
         self._kept(MissingTopic(self.ros, self.clock, made, type_name, self.log))
         return made
 
     def _watched(
-        self, name: str, type_name: str, listener: Listener, qos: QoS, expire: float | None
+        self,
+        name: str,
+        type_name: str,
+        listener: Listener,
+        qos: QoS,
+        on_event: Callable[[TopicEvent], None] | None,
+        expire: float | None,
     ) -> Subscription:
         """Listen, and show whether the topic is connected."""
 
@@ -161,7 +180,7 @@ class RosArtifact(Artifact):
             connection.hear(sample)
             listener(sample)
 
-        made = self._kept(self.ros.subscription(name, type_name, take, qos))
+        made = self._kept(self.ros.subscription(name, type_name, take, qos, on_event))
         changed = partial(self.start, self.show_connection, made.topic)
         connection = self._kept(Connection(self.ros, self.clock, made, changed, expire))
         return made

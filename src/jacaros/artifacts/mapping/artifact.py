@@ -1,0 +1,186 @@
+"""The artifact that a mapping file declares, and the making of its class."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+from jacaros.artifacts.mapping.checking import type_problems
+from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
+from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.feeds import Feed, Topic
+from jacaros.artifacts.mapping.frames import FrameFeed
+from jacaros.artifacts.mapping.host import Elements
+from jacaros.artifacts.mapping.manual import documentation
+from jacaros.artifacts.mapping.node_parameters import NodeParameter
+from jacaros.artifacts.mapping.operating import Operations
+from jacaros.artifacts.mapping.operation_methods import methods
+from jacaros.artifacts.mapping.type_search import TypeSearch
+from jacaros.artifacts.ros.options import text
+from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
+from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.env.artifact import internal_operation
+from jacaros.ros.backend import TopicEvent
+from jacaros.yaml_nodes import Problem, shown
+
+GLOBAL_FRAMES = ("map", "earth", "world")
+"""Frames that robots share (REP 105)."""
+
+
+class MappedArtifact(RosArtifact):
+    """An artifact made from a mapping file; `mapped_type` makes a class of its own for each.
+
+    Options:
+        tf_prefix(P): stands before names of frames, in place of the namespace.
+
+    Attributes:
+        mapping: the file.
+        part: what the file says of this artifact.
+    """
+
+    known_options: ClassVar[Mapping[str, Callable[[object], object]]] = {"tf_prefix": text}
+    mapping: ClassVar[MappingFile]
+    part: ClassVar[ArtifactPart]
+
+    def open(self) -> None:
+        """Check the mapping against the types of this middleware, and connect everything."""
+        problems = type_problems(self.part, self.ros)
+        if problems:
+            error = MappingError(self.mapping.file, self.mapping.text, problems)
+            self.fail(str(error), "wrong_mapping", self.mapping.file)
+        if self.part.connected is not False and "watch_connection" not in self.options:
+            self.options = {**self.options, "watch_connection": self.part.connected}
+        self._told: set[object] = set()
+        self._notes: dict[str, tuple[object, ...]] = {}
+        self._followers: dict[str, list[Callable[[Values], None]]] = {}
+        self.readings: dict[str, Reading] = {}
+        self.elements: dict[str, Elements] = {}
+        search = TypeSearch(self)
+        self.operating = Operations(self)
+        topics: dict[object, Topic] = {}
+        for part in self.part.topics:
+            feed = Feed(self, part)
+            assert part.topic is not None
+            key = (part.topic.text, part.type_name and part.type_name.text, part.qos)
+            if key in topics:
+                topics[key].feeds.append(feed)
+            else:
+                topics[key] = Topic(self, part.topic, part.type_name, part.qos, [feed])
+        for topic in topics.values():
+            topic.begin(search)
+        for frame in self.part.frames:
+            self._kept(FrameFeed(self, frame))
+        for parameter in self.part.parameters:
+            self._kept(NodeParameter(self, parameter))
+        search.begin()
+
+    @property
+    def robot_prefix(self) -> str:
+        """What stands before relative names: what ``makeArtifact`` said, or else the file."""
+        given = super().robot_prefix
+        return given or (f"/{self.part.namespace}" if self.part.namespace else "")
+
+    def robot_topic(self, name: str) -> str:
+        """A name below the robot's namespace, which is below that of the node; one with a slash in front stays."""
+        if name.startswith(("/", "~")) or not self.robot_prefix:
+            return name
+        return f"{self.robot_prefix.lstrip('/')}/{name}"
+
+    @property
+    def tf_prefix(self) -> str:
+        """What stands before names of frames."""
+        given = self.options.get("tf_prefix", self.part.tf_prefix)
+        return self.robot_prefix.strip("/") if given is None else str(given).strip("/")
+
+    def frame(self, name: str) -> str:
+        """The name of a frame in the graph."""
+        if name.startswith("/") or name in GLOBAL_FRAMES or not name or not self.tf_prefix:
+            return name.lstrip("/")
+        return f"{self.tf_prefix}/{name}"
+
+    def adapted(self, field: str, value: object) -> object:
+        """A constant for the field of a message: names of frames get their prefix."""
+        if field in ("frame_id", "child_frame_id") and isinstance(value, str):
+            return self.frame(value)
+        return value
+
+    # ---- properties
+
+    def reading_of(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
+        """The reading of a property, also for operations that refresh it."""
+        made = self.readings[name] = self.reading(name, policy, *initial)
+        return made
+
+    def annotate(self, name: str, notes: tuple[object, ...]) -> None:
+        """Give the property *name* these annotations when it is shown next."""
+        if notes or name in self._notes:
+            self._notes[name] = notes
+
+    def follow_property(self, name: str, follower: Callable[[Values], None]) -> None:
+        """Have *follower* told the values of the property *name* whenever it is shown."""
+        self._followers.setdefault(name, []).append(follower)
+
+    def _show_values(self, name: str, values: Values) -> None:
+        notes = self._notes.get(name)
+        if self.has_property(name):
+            self.update_property(name, *values, annotations=notes)
+        else:
+            self.define_property(name, *values, annotations=notes)
+        for follower in self._followers.get(name, ()):
+            follower(values)
+
+    @internal_operation
+    def show_rows(self, name: str) -> None:
+        """Bring the properties of the elements *name* up to date."""
+        self.elements[name].show()
+
+    @internal_operation
+    def send_signals(self, name: str, rows: object) -> None:
+        """Send one signal for each tuple of values."""
+        assert isinstance(rows, list)
+        for values in rows:
+            self.signal(name, *values)
+
+    @internal_operation
+    async def run_process(self, process: object) -> None:
+        """Run what takes its time for as long as the artifact is there."""
+        assert callable(process)
+        await process()
+
+    # ---- reports
+
+    def tell_once(self, key: object, place: Place, message: str, cure: str = "") -> None:
+        """Tell people what is wrong, with the line of the mapping, the first time only."""
+        if key in self._told:
+            return
+        self._told.add(key)
+        self.tell([place.problem(message, cure)])
+
+    def tell(self, problems: list[Problem]) -> None:
+        """Tell people what is wrong."""
+        lines = self.mapping.text.splitlines()
+        for problem in problems:
+            self.log(shown(self.mapping.file, lines, problem))
+
+    def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]:
+        """What is done about trouble at a topic: it is told once for each kind."""
+
+        def tell(event: TopicEvent) -> None:
+            self.tell_once((topic, event.trouble), place, event.text)
+
+        return tell
+
+
+def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
+    """The class of one artifact of a file; its operations are operations like any others."""
+    part = mapping.artifacts[name]
+    members: dict[str, Any] = {
+        "__doc__": documentation(mapping, part),
+        "__module__": __name__,
+        "mapping": mapping,
+        "part": part,
+        **methods(part),
+    }
+    return type(_class_name(name), (MappedArtifact,), members)
+
+
+def _class_name(name: str) -> str:
+    return "".join(c if c.isalnum() or c == "_" else "_" for c in name)

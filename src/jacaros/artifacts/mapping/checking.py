@@ -1,0 +1,137 @@
+"""Checks a mapping against the definitions of its message types."""
+
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.artifacts.mapping.declared import (
+    ArtifactPart,
+    FieldPart,
+    MappingFile,
+    OperationKind,
+    OperationPart,
+    Place,
+    TopicPart,
+    Written,
+)
+from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.extracting import extractor
+from jacaros.artifacts.mapping.filling import filler
+from jacaros.artifacts.mapping.interfaces import Interfaces
+from jacaros.artifacts.mapping.paths import WrongPath
+from jacaros.artifacts.mapping.taking import taker
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.fields import FieldType
+from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
+from jacaros.yaml_nodes import Problem
+
+TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+"""Types of commands that make a robot move."""
+
+UNCERTAIN = "is not known here"
+"""Part of the message for types that only the robot's middleware may know."""
+
+
+def check_mapping(mapping: MappingFile, interfaces: Interfaces) -> None:
+    """Check a whole file.
+
+    Raises:
+        MappingError: with all mistakes.
+    """
+    problems = [problem for part in mapping.artifacts.values() for problem in type_problems(part, interfaces)]
+    if problems:
+        raise MappingError(mapping.file, mapping.text, problems)
+
+
+def type_problems(part: ArtifactPart, interfaces: Interfaces) -> list[Problem]:
+    """What is wrong in an artifact when it is compared with the message types that it names."""
+    problems: list[Problem] = []
+    for topic in part.topics:
+        if topic.type_name is not None and known(topic.type_name, topic.type_name.text, interfaces, problems):
+            check_topic(topic, topic.type_name.text, interfaces, problems)
+    for operation in part.operations:
+        if operation.type_name is not None:
+            _check_operation(operation, operation.type_name, interfaces, problems)
+    return problems
+
+
+def known(written: Written, needed: str, interfaces: Interfaces, problems: list[Problem]) -> bool:
+    """Whether a type is known; tells it if not."""
+    try:
+        interfaces.fields(needed)
+    except UnknownInterface as error:
+        problems.append(
+            written.place.problem(f"the type {written.text} {UNCERTAIN}", _cure(written.text, error))
+        )
+        return False
+    return True
+
+
+def _cure(type_name: str, error: UnknownInterface) -> str:
+    from jacaros.artifacts.mapping.known_types import similar_types  # here: only for mistakes
+
+    near = similar_types(type_name)
+    return f"did you mean {' or '.join(near)}?" if near else str(error)
+
+
+def check_topic(topic: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]) -> None:
+    """Check a property or signal against a type."""
+    extractor(topic, type_name, interfaces, problems)
+    if topic.initial is not None or topic.policy.dead_band:
+        _check_counts(topic, type_name, interfaces, problems)
+
+
+def _check_counts(topic: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]) -> None:
+    if topic.fields is not None:
+        return  # told by the reader
+    count = len(interfaces.fields(type_name))
+    band = topic.policy.dead_band
+    for what, given in (("initial", topic.initial), ("dead_band", band if isinstance(band, tuple) else None)):
+        if given is not None and len(given) != count:
+            problems.append(
+                topic.place.problem(f"'{what}' has {len(given)} values, and {type_name} {count} fields")
+            )
+
+
+def _check_operation(
+    operation: OperationPart, written: Written, interfaces: Interfaces, problems: list[Problem]
+) -> None:
+    types = message_types(operation.kind, written.text)
+    if not all([known(written, each, interfaces, problems) for each in types[:1]]):
+        return
+    filler(operation.values, types[0], interfaces, problems)
+    if operation.at_end is not None:
+        filler(operation.at_end, types[0], interfaces, problems)
+    if len(types) > 1:
+        check_answer(operation, types[1], interfaces, problems)
+    for feedback in operation.feedback:
+        check_topic(feedback, types[2], interfaces, problems)
+
+
+def message_types(kind: OperationKind, type_name: str) -> tuple[str, ...]:
+    """The types of what is sent, what comes back at the end, and what comes back before."""
+    if kind is OperationKind.SERVICE:
+        return request_type(type_name), response_type(type_name)
+    if kind is OperationKind.ACTION:
+        return goal_type(type_name), result_type(type_name), feedback_type(type_name)
+    return (type_name,)
+
+
+def check_answer(
+    operation: OperationPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
+) -> None:
+    """Check outputs and success against a response or result."""
+    for field in operation.outputs:
+        _tried(
+            field.place, lambda field=field: taker(field, FieldType(type_name), None, interfaces), problems
+        )
+    success = operation.success
+    if success is not None:
+        field = FieldPart(success.path, success.place)
+        _tried(success.place, lambda: taker(field, FieldType(type_name), None, interfaces), problems)
+
+
+def _tried(place: Place, make: Callable[..., Any], problems: list[Problem]) -> None:
+    try:
+        make()
+    except (WrongPath, UnknownInterface) as error:
+        problems.append(place.problem(str(error), getattr(error, "cure", "")))

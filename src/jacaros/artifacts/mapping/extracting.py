@@ -1,0 +1,185 @@
+"""From a message to what of it becomes properties or signals: one row, or one for each element of an array."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart
+from jacaros.artifacts.mapping.interfaces import Interfaces
+from jacaros.artifacts.mapping.paths import WHOLE, Getter, Path, WrongPath, follow, getter, read_path
+from jacaros.artifacts.mapping.taking import Take, taker
+from jacaros.env.values import Atom, Structure
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
+from jacaros.yaml_nodes import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """The values of one property or signal.
+
+    Attributes:
+        key: tells an element from others; None where there is one row.
+        values: in the order of the fields.
+        annotations: of the belief.
+        place: where the element is, for the range of view.
+    """
+
+    key: object
+    values: tuple[object, ...]
+    annotations: tuple[object, ...] = ()
+    place: tuple[float, float] = (0.0, 0.0)
+
+
+Extract = Callable[[Any], list[Row]]
+"""Takes a message; raises `Unshowable`."""
+
+
+def extractor(
+    part: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
+) -> Extract | None:
+    """A function that takes the rows of a property or signal out of messages.
+
+    Args:
+        part: what is wanted.
+        type_name: of the messages.
+        interfaces: knows the types.
+        problems: takes what is wrong; the result is None then.
+    """
+    maker = _Maker(part, type_name, interfaces, problems)
+    made = maker.make()
+    return made if maker.good else None
+
+
+class _Maker:
+    def __init__(
+        self, part: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
+    ) -> None:
+        self.part, self.interfaces, self.problems = part, interfaces, problems
+        self.message = FieldType(type_name)
+        self.element = self._element()
+        self.good = True
+
+    def _element(self) -> FieldType | None:
+        each = self.part.each
+        if each is None:
+            return None
+        try:
+            leaf = follow(each, self.message, self.interfaces.fields)
+        except (WrongPath, UnknownInterface) as error:
+            self.wrong(self.part.each_place, error)
+            return FieldType(self.message.base)
+        if not leaf.array or each.lists:
+            self.wrong(self.part.each_place, WrongPath(f"'each' is for arrays, and {each.text} is {leaf}"))
+        return FieldType(leaf.base)
+
+    def wrong(self, place: Any, error: Exception) -> None:
+        """Note what is wrong."""
+        self.good = False
+        self.problems.append(place.problem(str(error), getattr(error, "cure", "")))
+
+    def make(self) -> Extract:
+        """The function; of no use if something is wrong."""
+        before = len(self.problems)
+        fields = self._fields()
+        takes = [take for field in fields if (take := self._taker(field)) is not None]
+        notes = [
+            (field.name, take) for field in self.part.annotations if (take := self._taker(field)) is not None
+        ]
+        view = self._view() if self.part.view is not None else None
+        key = self._key(fields)
+        self.good = len(self.problems) == before and self.good
+        if self.part.each is None:
+            return self._single(takes, notes, view)
+        return self._several(getter(self.part.each), takes, notes, view, key)
+
+    def _fields(self) -> Sequence[FieldPart]:
+        if self.part.fields is not None:
+            return self.part.fields
+        root = self.element or self.message
+        if not root.is_message:
+            return (FieldPart(WHOLE, self.part.place, name="value"),)
+        try:
+            names = list(self.interfaces.fields(root.base))
+        except UnknownInterface as error:
+            self.wrong(self.part.place, error)
+            return ()
+        return [FieldPart(read_path(name), self.part.place, name=name) for name in names]
+
+    def _taker(self, field: FieldPart) -> Take | None:
+        try:
+            return taker(field, self.message, self.element, self.interfaces)
+        except (WrongPath, UnknownInterface) as error:
+            self.wrong(field.place, error)
+            return None
+
+    def _key(self, fields: Sequence[FieldPart]) -> Take | None:
+        if self.part.each is None:
+            return None
+        field = self.part.key or (fields[0] if fields else None)
+        return self._taker(field) if field is not None else None
+
+    def _view(self) -> Callable[[Any, Any, int], tuple[float, float] | None]:
+        """Where an element is; None when it is certainly out of view."""
+        view = self.part.view
+        assert view is not None
+        if view.distance is not None:
+            far = self._number(view.distance, view)
+            return lambda whole, part, i: (0.0, 0.0) if far(whole, part, i) <= view.metres else None
+        across, along = (self._number(path, view) for path in view.at[:2])
+        return lambda whole, part, i: (across(whole, part, i), along(whole, part, i))
+
+    def _number(self, path: Path, view: RangeOfView) -> Callable[[Any, Any, int], float]:
+        root = self.message if self.element is None or path.of_message else self.element
+        try:
+            leaf = follow(path, root, self.interfaces.fields)
+            if leaf.array or path.lists or leaf.base not in (*FLOATS, *INTEGER_RANGES):
+                raise WrongPath(f"'range_of_view' needs numbers, and {path.text} is {leaf}")
+        except (WrongPath, UnknownInterface) as error:
+            self.wrong(view.place, error)
+        get: Getter = getter(path)
+        from_message = self.element is None or path.of_message
+        return lambda whole, part, i: float(get(whole if from_message else part, i))
+
+    def _single(self, takes: list[Take], notes: list[tuple[str, Take]], view: Any) -> Extract:
+        def rows(message: Any) -> list[Row]:
+            place = view(message, message, 0) if view is not None else (0.0, 0.0)
+            if place is None or not all(map(math.isfinite, place)):
+                return []
+            return [Row(None, _values(takes, message, message, 0), _noted(notes, message, message, 0), place)]
+
+        return rows
+
+    def _several(
+        self, get: Getter, takes: list[Take], notes: list[tuple[str, Take]], view: Any, key: Take | None
+    ) -> Extract:
+        def rows(message: Any) -> list[Row]:
+            found = []
+            for place, element in enumerate(get(message, 0)):
+                at = view(message, element, place) if view is not None else (0.0, 0.0)
+                if at is None or not all(map(math.isfinite, at)):
+                    continue
+                values = _values(takes, message, element, place)
+                told = _noted(notes, message, element, place)
+                found.append(Row(_hashable(key(message, element, place)) if key else place, values, told, at))
+            return found
+
+        return rows
+
+
+def _values(takes: list[Take], message: Any, element: Any, place: int) -> tuple[object, ...]:
+    if len(takes) == 1:
+        return takes[0](message, element, place)
+    return tuple([value for take in takes for value in take(message, element, place)])
+
+
+def _noted(notes: list[tuple[str, Take]], message: Any, element: Any, place: int) -> tuple[object, ...]:
+    if not notes:
+        return ()
+    return tuple([Structure(name, tuple(take(message, element, place))) for name, take in notes])
+
+
+def _hashable(key: tuple[object, ...]) -> object:
+    """A key that can be looked up: a list is written out."""
+    return tuple(str(each) if isinstance(each, list | Atom) else each for each in key)

@@ -1,0 +1,181 @@
+"""Topics of a mapped artifact: each message goes to the properties and signals that show something of it."""
+
+import dataclasses
+
+from jacaros.artifacts.mapping.declared import TopicPart, Written
+from jacaros.artifacts.mapping.elements import Elements
+from jacaros.artifacts.mapping.extracting import Extract, Row, extractor
+from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.taking import Unshowable
+from jacaros.artifacts.mapping.type_search import TypeSearch
+from jacaros.artifacts.ros.faults import Faults
+from jacaros.artifacts.ros.reading import Reading
+from jacaros.artifacts.ros.view import RangeOfView
+from jacaros.env.values import Structure
+from jacaros.ros.backend import Sample
+from jacaros.ros.errors import CapabilityMissing
+from jacaros.ros.qos import SENSOR_DATA, QoS
+from jacaros.trace import Cause
+from jacaros.yaml_nodes import Problem
+
+
+class Topic:
+    """One topic, however many properties come from it.
+
+    Args:
+        host: the artifact.
+        written: the topic.
+        type_name: of its messages; None: to be found.
+        qos: what the mapping asks for.
+        feeds: those that take its messages.
+    """
+
+    def __init__(
+        self, host: Host, written: Written, type_name: Written | None, qos: QoS | None, feeds: "list[Feed]"
+    ) -> None:
+        self.feeds = feeds
+        self._host, self._written, self._type_name = host, written, type_name
+        self._qos = qos if qos is not None else SENSOR_DATA
+
+    def begin(self, search: TypeSearch) -> None:
+        """Listen, as soon as the type is known."""
+        if self._type_name is not None:
+            self._listen(self._type_name.text)
+        else:
+            search.want(self._written, self._listen)
+
+    def _listen(self, type_name: str) -> None:
+        host, written = self._host, self._written
+        problems: list[Problem] = []
+        for feed in self.feeds:
+            feed.prepare(type_name, problems)
+        if problems:
+            host.tell(problems)
+        self.feeds = [feed for feed in self.feeds if feed.ready]
+        if not self.feeds:
+            return
+        tell = host.on_topic_event(written.text, written.place)
+        try:
+            host.subscription(written.text, type_name, self._take, self._qos, tell)
+        except CapabilityMissing as error:
+            host.fail(f"{host.mapping.where(written.place)}: {error}", "ros_error", host.name)
+
+    def _take(self, sample: Sample) -> None:
+        for feed in self.feeds:
+            feed.take(sample)
+
+
+class Feed:
+    """A property or signal from messages.
+
+    Args:
+        host: the artifact.
+        part: what the mapping says.
+    """
+
+    def __init__(self, host: Host, part: TopicPart) -> None:
+        self.part = part
+        self._host = host
+        self._extract: Extract | None = None
+        self._reading: Reading | None = None
+        self._faults: Faults | None = None
+        self._sent: dict[object, tuple[object, ...]] = {}
+        self._quiet_until = 0.0
+        if part.each is not None and not part.signal:
+            host.elements[part.name] = Elements(host, part)
+        elif not part.signal:
+            self._reading = host.reading_of(part.name, part.policy, *(part.initial or ()))
+        self._view = self._range_of_view()
+
+    def _range_of_view(self) -> RangeOfView | None:
+        view = self.part.view
+        if view is None or view.distance is not None:
+            return None
+
+        def show(seen: list[tuple[object, ...]], cause: Cause | None) -> None:
+            self._show([row for *_, row in seen if isinstance(row, Row)], cause)
+
+        made = RangeOfView(view.metres, show)
+        if view.origin is None:
+            made.stand(0.0, 0.0)
+        else:
+            self._host.follow_property(view.origin.text, lambda values: _stand(made, values))
+        return made
+
+    @property
+    def ready(self) -> bool:
+        """Whether the type is known, and all that is wanted is in it."""
+        return self._extract is not None
+
+    def prepare(self, type_name: str, problems: list[Problem]) -> None:
+        """Get ready for messages of a type; *problems* takes what does not fit."""
+        self._extract = extractor(self.part, type_name, self._host.ros, problems)
+
+    def take(self, sample: Sample) -> None:
+        """Take a message."""
+        self.take_message(sample.message, sample.cause, sample.topic)
+
+    def take_message(self, message: object, cause: Cause | None, topic: str) -> None:
+        """Take a message, or the feedback of an action."""
+        assert self._extract is not None
+        try:
+            rows = self._extract(message)
+        except Unshowable as error:
+            self._refuse(error, topic)
+            return
+        if self._view is not None:
+            self._view.take([(*row.place, row) for row in rows], cause)
+        else:
+            self._show(rows, cause)
+
+    def _show(self, rows: list[Row], cause: Cause | None) -> None:
+        if self.part.signal:
+            self._signal(rows, cause)
+        elif self._reading is None:
+            self._host.elements[self.part.name].take(rows, cause)
+        elif rows:
+            self._host.annotate(self.part.name, rows[0].annotations)
+            self._reading.take(rows[0].values, cause)
+        elif self._reading.newest is not None:
+            self._reading.withdraw()
+
+    def _signal(self, rows: list[Row], cause: Cause | None) -> None:
+        if self.part.when_changed:
+            before, self._sent = self._sent, {row.key: row.values for row in rows}
+            rows = [row for row in rows if before.get(row.key) != row.values]
+        now = self._host.clock.now()
+        rate = self.part.policy.rate
+        if not rows or (rate is not None and self._quiet_until - 1.0 / rate <= now < self._quiet_until):
+            return
+        if rate is not None:
+            self._quiet_until = now + 1.0 / rate
+        self._host.start(self._host.send_signals, self.part.name, [row.values for row in rows], cause=cause)
+
+    def withdraw(self) -> None:
+        """Have the property no more."""
+        if self._reading is not None:
+            self._reading.withdraw()
+
+    def _refuse(self, error: Unshowable, topic: str) -> None:
+        """Tell that a message was left out: people once, with the line; agents by a signal."""
+        part, host = self.part, self._host
+        host.tell_once((part.name, error.path), part.place, f"{part.name} is not shown: {error}", error.cure)
+        if self._faults is None:
+
+            def tell(why: Structure, text: str) -> None:
+                host.start(host.tell_bad_message, topic, why)
+
+            self._faults = Faults(topic, tell)
+        self._faults.add(Structure(error.functor, (error.path,)), str(error))
+
+
+def _stand(view: RangeOfView, values: tuple[object, ...]) -> None:
+    """Count from the place that a property shows."""
+    x, y = (*values, 0, 0)[:2]
+    if isinstance(x, int | float) and isinstance(y, int | float):
+        view.stand(float(x), float(y))
+
+
+def feedback_feed(host: Host, part: TopicPart) -> Feed:
+    """A property from the feedback of an action: no goal, no property."""
+    return Feed(host, dataclasses.replace(part, initial=None))

@@ -1,0 +1,302 @@
+"""Fills messages with what agents give: the way of `taking`, backwards."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from jacaros.artifacts.mapping.declared import Conversion, Source, ValuePart
+from jacaros.artifacts.mapping.handle import MessageHandle
+from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
+from jacaros.artifacts.mapping.paths import WrongPath, follow
+from jacaros.artifacts.mapping.read_fields import ANGLES
+from jacaros.artifacts.mapping.taking import QUATERNION, owner_of
+from jacaros.env.values import Atom, Structure, text
+from jacaros.ros.errors import MessageMismatch, UnknownInterface
+from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
+from jacaros.ros.message import TIMES
+from jacaros.yaml_nodes import Problem
+
+Fill = Callable[[Sequence[object], float], dict[str, Any]]
+"""Takes the arguments of an operation and the time; gives the fields of a message as nested mappings.
+
+Raises `WrongValue`.
+"""
+
+ALL_OF_IT = -1
+
+
+class WrongValue(ValueError):
+    """An argument does not fit its field; the text says which.
+
+    Attributes:
+        field: path of the field.
+    """
+
+    def __init__(self, message: str, field: str) -> None:
+        super().__init__(message)
+        self.field = field
+
+
+Give = Callable[[Sequence[object], float], Any]
+"""Gives one value."""
+
+
+def filler(
+    values: Sequence[ValuePart],
+    type_name: str,
+    interfaces: Interfaces,
+    problems: list[Problem],
+    adapt: Callable[[str, object], object] = lambda field, value: value,
+) -> Fill | None:
+    """A function that gives the fields of a message.
+
+    Args:
+        values: what the mapping says of them.
+        type_name: of the message.
+        interfaces: knows the types.
+        problems: takes what is wrong; the result is None then.
+        adapt: changes constants, given the name of the field, such as names of frames.
+    """
+    before = len(problems)
+    made: list[tuple[ValuePart, Give]] = []
+    for part in values:
+        try:
+            made.append((part, _give(part, type_name, interfaces, problems, adapt)))
+        except (WrongPath, UnknownInterface, MessageMismatch) as error:
+            problems.append(part.place.problem(str(error), getattr(error, "cure", "")))
+    problems += _gaps(values)
+    if len(problems) > before:
+        return None
+
+    def fill(arguments: Sequence[object], now: float) -> dict[str, Any]:
+        found: dict[Any, Any] = {}
+        for part, give in made:
+            _put(found, part, give(arguments, now))
+        return {name: _lists(value) for name, value in found.items()}
+
+    return fill
+
+
+def _put(into: dict[Any, Any], part: ValuePart, value: Any) -> None:
+    steps = [step[1:] if isinstance(step, str) else step for step in part.target.steps]
+    for step in steps[:-1]:
+        into = into.setdefault(step, {})
+    into[steps[-1]] = value
+
+
+def _lists(value: Any) -> Any:
+    """Mappings whose keys are the numbers of elements, as lists."""
+    if not isinstance(value, dict):
+        return value
+    if value and all(isinstance(key, int) for key in value):
+        return [_lists(value[key]) for key in sorted(value)]
+    return {key: _lists(each) for key, each in value.items()}
+
+
+def _gaps(values: Sequence[ValuePart]) -> list[Problem]:
+    """Elements of a list that are left out, and fields that are said twice."""
+    found: list[Problem] = []
+    numbers: dict[tuple[Any, ...], set[int]] = {}
+    for part in values:
+        for depth, step in enumerate(part.target.steps):
+            if isinstance(step, int):
+                numbers.setdefault(part.target.steps[:depth], set()).add(step)
+    for part in values:
+        for depth, step in enumerate(part.target.steps):
+            if isinstance(step, int) and not 0 <= step < len(numbers[part.target.steps[:depth]]):
+                found.append(
+                    part.place.problem(
+                        f"'{part.target.text}': elements before it are left out", "begin with [0]"
+                    )
+                )
+    return found
+
+
+def _give(
+    part: ValuePart,
+    type_name: str,
+    interfaces: Interfaces,
+    problems: list[Problem],
+    adapt: Callable[[str, object], object],
+) -> Give:
+    root = FieldType(type_name)
+    leaf = follow(part.target, root, interfaces.fields)
+    owner, last = owner_of(part.target, root, interfaces)
+    if part.source is Source.ELEMENTS:
+        return _each(part, leaf, interfaces, problems, adapt)
+    _check(part, leaf)
+    convert = _converter(part.conversion, leaf, owner, last, interfaces)
+    path = part.target.text
+    if part.source is Source.NOW:
+        if leaf.base not in TIMES or leaf.array:
+            raise WrongPath(f"'now' is a time, and {path} is {leaf}", "write another value")
+        return lambda arguments, now: now
+    if part.source is Source.CONSTANT:
+        value = _constant(part, adapt(last, part.value), convert, leaf, owner, interfaces)
+        return lambda arguments, now: value
+    number = part.parameter
+
+    def of_parameter(arguments: Sequence[object], now: float) -> Any:
+        if number == ALL_OF_IT:
+            given: object = arguments[0] if len(arguments) == 1 else list(arguments)
+        elif number < len(arguments):
+            given = arguments[number]
+        else:
+            raise WrongValue(
+                f"{path} is to be part {number + 1} of an element that has {len(arguments)}", path
+            )
+        try:
+            return convert(given)
+        except (TypeError, ValueError) as error:
+            raise WrongValue(f"{path} ({leaf}) cannot be {text(given, quoted=True)}: {error}", path) from None
+
+    return of_parameter
+
+
+def _constant(
+    part: ValuePart,
+    value: object,
+    convert: Callable[[Any], Any],
+    leaf: FieldType,
+    owner: str,
+    interfaces: Interfaces,
+) -> Any:
+    """A constant as the field wants it, tried out on a message."""
+    path = part.target.text
+    if (
+        isinstance(value, str)
+        and (leaf.base in INTEGER_RANGES or leaf.base == "bool")
+        and not part.conversion.kind
+    ):
+        known = constants(interfaces, owner)
+        if value not in known:
+            listed = ", ".join(known)
+            raise WrongPath(
+                f"{path} is {leaf}, and {value!r} is no constant of {owner}",
+                f"its constants: {listed}" if listed else "write a number, or a parameter: $name",
+            )
+        value = known[value]
+        return value[0] if isinstance(value, bytes) else value
+    try:
+        converted = convert(value)
+    except (TypeError, ValueError) as error:
+        raise WrongPath(f"{path} ({leaf}) cannot be {value!r}: {error}", "write another value") from None
+    last = part.target.steps[-1]
+    if isinstance(last, str):
+        try:
+            interfaces.message(owner, **{last[1:]: converted})
+        except MessageMismatch as error:
+            raise WrongPath(str(error), "write another value, or a parameter: $name") from None
+    return converted
+
+
+def _check(part: ValuePart, leaf: FieldType) -> None:
+    kind, path = part.conversion.kind, part.target.text
+    if kind in ANGLES and (leaf.base != QUATERNION or leaf.array):
+        cure = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
+        raise WrongPath(f"'as: {kind}' gives a quaternion, and {path} is {leaf}", cure)
+    number = leaf.base in FLOATS or leaf.base in INTEGER_RANGES or leaf.base in TIMES
+    if part.conversion.line is not None and not number and kind not in ANGLES:
+        raise WrongPath(f"unit, scale or offset needs a number, and {path} is {leaf}", "leave it out")
+
+
+def _converter(
+    conversion: Conversion, leaf: FieldType, owner: str, last: str, interfaces: Interfaces
+) -> Callable[[Any], Any]:
+    steps: list[Callable[[Any], Any]] = []
+    if conversion.names:
+        known = {str(name): value for value, name in conversion.names}
+        steps.append(lambda value: _word(value, known))
+    if (line := conversion.line) is not None:
+        steps.append(
+            lambda value: (
+                [line.back(_number(each)) for each in value] if leaf.array else line.back(_number(value))
+            )
+        )
+    if conversion.kind in ANGLES:
+        axis = {"roll": "x", "pitch": "y", "yaw": "z"}[conversion.kind]
+        steps.append(lambda value: {axis: math.sin(_number(value) / 2), "w": math.cos(_number(value) / 2)})
+    if conversion.kind == "name":
+        meant = chosen(constants(interfaces, owner), last, conversion.prefix)
+        if not meant:
+            raise WrongPath(f"{owner} has no constants for {last}", "write names: {0: ...}")
+        numbers = {name: value[0] if isinstance(value, bytes) else value for name, value in meant.items()}
+        steps.append(lambda value: _word(value, numbers))
+
+    def convert(value: Any) -> Any:
+        for step in steps:
+            value = step(value)
+        return for_field(value, leaf, interfaces)
+
+    return convert
+
+
+def _number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError("a number is wanted")
+    return float(value)
+
+
+def _word(value: object, known: dict[str, Any]) -> Any:
+    if isinstance(value, str):
+        found = known.get(str(value), known.get(str(value).lower()))
+        if found is None:
+            raise ValueError(f"it is to be one of {', '.join(known)}")
+        return found
+    return value
+
+
+def for_field(value: Any, leaf: FieldType, interfaces: Interfaces) -> Any:
+    """What an agent gives, as a field takes it: structures and lists stand for messages, by the order of their fields."""
+    if isinstance(value, MessageHandle):
+        return value.value
+    if leaf.array:
+        if isinstance(value, str) or not isinstance(value, list | tuple):
+            return value
+        return [for_field(each, FieldType(leaf.base), interfaces) for each in value]
+    if leaf.is_message and leaf.base not in TIMES:
+        return _message(value, leaf.base, interfaces)
+    return str(value) if isinstance(value, Atom) else value
+
+
+def _message(value: Any, type_name: str, interfaces: Interfaces) -> Any:
+    parts = value.arguments if isinstance(value, Structure) else value
+    if not isinstance(parts, list | tuple):
+        return value
+    known = interfaces.fields(type_name)
+    if len(parts) != len(known):
+        raise ValueError(f"{type_name} has the {len(known)} fields {', '.join(known)}")
+    return {
+        name: for_field(part, kind, interfaces)
+        for (name, kind), part in zip(known.items(), parts, strict=True)
+    }
+
+
+def _each(
+    part: ValuePart,
+    leaf: FieldType,
+    interfaces: Interfaces,
+    problems: list[Problem],
+    adapt: Callable[[str, object], object],
+) -> Give:
+    """A list of messages from a list of structures, lists or single values."""
+    path = part.target.text
+    if not leaf.array or not leaf.is_message:
+        raise WrongPath(f"'each' fills a list of messages, and {path} is {leaf}", "write a value")
+    fill = filler(part.elements, leaf.base, interfaces, problems, adapt)
+    number = part.parameter
+
+    def of_elements(arguments: Sequence[object], now: float) -> Any:
+        given = arguments[number]
+        if isinstance(given, str) or not isinstance(given, list | tuple):
+            raise WrongValue(f"{path} is to be a list, not {text(given, quoted=True)}", path)
+        assert fill is not None
+        return [fill(_parts(each), now) for each in given]
+
+    return of_elements
+
+
+def _parts(element: object) -> Sequence[object]:
+    if isinstance(element, Structure):
+        return element.arguments
+    return element if isinstance(element, list | tuple) else (element,)

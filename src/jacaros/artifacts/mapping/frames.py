@@ -1,0 +1,98 @@
+"""Frames of tf as properties: looked up so many times a second."""
+
+import math
+from collections.abc import Callable
+
+from jacaros.artifacts.mapping.declared import FramePart
+from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.taking import converted
+from jacaros.env.values import Structure
+from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
+from jacaros.ros.transform import Transform
+from jacaros.ros.waiting import MISSING_AFTER
+
+
+class FrameFeed:
+    """A property from a transform; it is there while the transform is known.
+
+    Args:
+        host: the artifact.
+        part: what the mapping says.
+    """
+
+    def __init__(self, host: Host, part: FramePart) -> None:
+        self._host, self._part = host, part
+        self._target, self._source = host.frame(part.target), host.frame(part.source)
+        self._reading = host.reading_of(part.name, part.policy)
+        self._values = [(field.path.text, converted(field.conversion)) for field in part.fields]
+        self._notes = [(note.name, note.path.text, converted(note.conversion)) for note in part.annotations]
+        self._began = host.clock.now()
+        try:
+            host.ros.tf_listen()
+        except CapabilityMissing as error:
+            host.fail(f"{host.mapping.where(part.place)}: {error}", "ros_error", host.name)
+        self._look()
+
+    def _look(self) -> None:
+        self._timer = self._host.clock.call_later(1.0 / self._part.rate, self._look)
+        try:
+            transform = self._host.ros.tf_lookup(self._target, self._source)
+        except TransformUnavailable as error:
+            self._lose(error)
+            return
+        if self._is_old(transform):
+            self._withdraw()
+            return
+        self._host.annotate(
+            self._part.name,
+            tuple(Structure(name, (convert(_part(transform, what)),)) for name, what, convert in self._notes),
+        )
+        self._reading.take(tuple([convert(_part(transform, what)) for what, convert in self._values]))
+
+    def _lose(self, error: TransformUnavailable) -> None:
+        self._withdraw()
+        part = self._part
+        if self._host.clock.now() - self._began >= MISSING_AFTER:
+            message = f"{part.name} is not known: {error}; still listening"
+            self._host.tell_once(
+                part.name, part.place, message, "are the nodes that send these frames running?"
+            )
+
+    def _is_old(self, transform: Transform) -> bool:
+        oldest = self._part.oldest
+        return (
+            oldest is not None and transform.stamp > 0.0 and self._host.clock.now() - transform.stamp > oldest
+        )
+
+    def _withdraw(self) -> None:
+        if self._reading.newest is not None:
+            self._reading.withdraw()
+
+    def close(self) -> None:
+        """Look no more."""
+        self._timer.cancel()
+
+
+def _roll(transform: Transform) -> float:
+    x, y, z, w = transform.rotation
+    return math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+
+
+def _pitch(transform: Transform) -> float:
+    x, y, z, w = transform.rotation
+    return math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))
+
+
+_PARTS: dict[str, Callable[[Transform], float]] = {
+    "x": lambda transform: transform.translation[0],
+    "y": lambda transform: transform.translation[1],
+    "z": lambda transform: transform.translation[2],
+    "roll": _roll,
+    "pitch": _pitch,
+    "yaw": lambda transform: transform.yaw,
+    "stamp": lambda transform: transform.stamp,
+}
+
+
+def _part(transform: Transform, what: str) -> float:
+    return float(_PARTS[what](transform))

@@ -1,0 +1,300 @@
+"""Operations of a mapped artifact: services, actions, parameters of nodes, and properties on demand."""
+
+import asyncio
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from jacaros.artifacts.mapping.checking import check_answer, message_types
+from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
+from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
+from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler
+from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.paths import getter, read_path
+from jacaros.artifacts.mapping.publishing import Publishing
+from jacaros.artifacts.mapping.taking import Take, Unshowable, converted, taker
+from jacaros.artifacts.mapping.type_search import ask_type
+from jacaros.artifacts.ros.acting import error_code, error_text
+from jacaros.artifacts.ros.calling import MESSAGES
+from jacaros.env.artifact import Out
+from jacaros.env.values import Atom, plain
+from jacaros.ros.action import ActionClient
+from jacaros.ros.backend import Client
+from jacaros.ros.errors import (
+    CallTimedOut,
+    CapabilityMissing,
+    NameInvalid,
+    ParameterRefused,
+    ParameterUnknown,
+    RosError,
+    ServiceUnavailable,
+)
+from jacaros.ros.fields import FieldType
+from jacaros.yaml_nodes import Problem
+
+
+class Runner(Protocol):
+    """Carries out one operation."""
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Do it, within an operation of the artifact."""
+
+
+class Operations:
+    """The operations of one artifact.
+
+    Args:
+        host: the artifact.
+    """
+
+    def __init__(self, host: Host) -> None:
+        self._runners: dict[str, Runner] = {
+            part.name: _RUNNERS[part.kind](host, part) for part in host.part.operations
+        }
+
+    async def run(self, name: str, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Carry out the operation *name*."""
+        await self._runners[name].run(inputs, outs)
+
+
+class _Answered:
+    """What services and actions share: a request that is filled, an answer that is taken apart."""
+
+    what = "service"
+    wrong = "wrong_request"
+
+    def __init__(self, host: Host, part: OperationPart) -> None:
+        self._host, self._part = host, part
+        self._fill: Fill | None = None
+        self._takes: list[Take] = []
+        self._check = part.success
+        if part.type_name is not None:
+            self._open(part.type_name.text)
+
+    def _open(self, type_name: str) -> None:
+        host, part = self._host, self._part
+        types = message_types(part.kind, type_name)
+        problems: list[Problem] = []
+        fill = filler(part.values, types[0], host.ros, problems, host.adapted)
+        check_answer(part, types[1], host.ros, problems)
+        self._more(types, problems)
+        if problems:
+            host.tell(problems)
+            host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
+        answer = FieldType(types[1])
+        self._takes = [taker(field, answer, None, host.ros) for field in part.outputs]
+        if part.success is None and not part.any_success and "success" in host.ros.fields(types[1]):
+            self._check = Success(read_path("success"), part.place)
+        self._connect(type_name)
+        self._fill = fill
+
+    def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
+        """Prepare what else is to fit."""
+
+    def _connect(self, type_name: str) -> None:
+        """Make the client."""
+
+    async def _ready(self) -> None:
+        if self._fill is None:
+            self._open(await ask_type(self._host, self.what, self._part.target))
+
+    def _fields(self, inputs: Sequence[object]) -> dict[str, Any]:
+        assert self._fill is not None
+        try:
+            return self._fill(inputs, self._host.clock.now())
+        except WrongValue as error:
+            self._host.fail(str(error), self.wrong, error.field)
+
+    def _succeeded(self, answer: Any) -> bool:
+        if self._check is None:
+            return True
+        found = plain(getter(self._check.path)(answer, 0))
+        return bool(found == self._check.value)
+
+    def _give(self, answer: Any, outs: Sequence[Out]) -> None:
+        try:
+            values = [value for take in self._takes for value in take(answer, answer, 0)]
+        except Unshowable as error:
+            self._host.fail(str(error), error.functor, error.path)
+        for out, value in zip(outs, values, strict=True):
+            out.set(value)
+
+
+class _Calling(_Answered):
+    """One operation with ``service``."""
+
+    _client: Client
+
+    def _connect(self, type_name: str) -> None:
+        self._client = self._host.client(self._host.robot_topic(self._part.target.text), type_name)
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Call the service."""
+        await self._ready()
+        assert self._part.timeout is not None
+        response = await self._host.call(self._client, self._part.timeout, **self._fields(inputs))
+        if not self._succeeded(response):
+            name = self._client.name
+            text = next(
+                (str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), ""
+            )
+            told = f": {text}" if text else ""
+            self._host.fail(f"service {name} refused{told}", "service_refused", Atom(name.lstrip("/")), text)
+        self._give(response, outs)
+
+
+class _Pursuing(_Answered):
+    """One operation with ``action``."""
+
+    what = "action"
+    wrong = "wrong_goal"
+    _client: ActionClient
+
+    def __init__(self, host: Host, part: OperationPart) -> None:
+        self._feeds: list[Feed] = [feedback_feed(host, each) for each in part.feedback]
+        self._under_way = 0
+        super().__init__(host, part)
+
+    def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
+        for feed in self._feeds:
+            feed.prepare(types[2], problems)
+
+    def _connect(self, type_name: str) -> None:
+        self._client = self._host.action_client(self._part.target.text, type_name)
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Pursue a goal to its end."""
+        await self._ready()
+        host, part = self._host, self._part
+        goal = self._fields(inputs)
+        self._under_way += 1
+        try:
+            result = await host.act(
+                self._client,
+                goal,
+                timeout=part.timeout,
+                on_feedback=self._feed if self._feeds else None,
+                suspend=part.suspend,
+            )
+        finally:
+            self._under_way -= 1
+            if not self._under_way:
+                # Later: what a failing step starts does not begin.
+                asyncio.get_running_loop().call_soon(self._withdraw)
+        if not self._succeeded(result):
+            code, text = error_code(result), error_text(result)
+            told = f": {text}" if text else ""
+            host.fail(f"action {self._client.name} had no success{told}", "aborted", code, text)
+        self._give(result, outs)
+
+    def _feed(self, message: Any) -> None:
+        for feed in self._feeds:
+            feed.take_message(message, None, self._client.name)
+
+    def _withdraw(self) -> None:
+        if not self._under_way:
+            for feed in self._feeds:
+                feed.withdraw()
+
+
+class _OfNode:
+    """What the operations on parameters of nodes share."""
+
+    def __init__(self, host: Host, part: OperationPart) -> None:
+        self._host, self._part = host, part
+        self._name = part.target.text
+        try:
+            self._parameters = host.ros.parameters(host.ros.resolve(host.robot_topic(part.node)))
+        except CapabilityMissing as error:
+            host.fail(f"{part.name}: {error}", "ros_error", host.name)
+
+    def _fail(self, error: RosError) -> None:
+        node = Atom(self._parameters.node.lstrip("/"))
+        timeout = self._part.timeout
+        if isinstance(error, ParameterUnknown):
+            self._host.fail(str(error), "parameter_unknown", Atom(self._name))
+        if isinstance(error, ParameterRefused):
+            self._host.fail(str(error), "parameter_refused", Atom(self._name))
+        if isinstance(error, ServiceUnavailable):
+            self._host.fail(str(error), "service_unavailable", node)
+        if isinstance(error, CallTimedOut):
+            self._host.fail(str(error), "service_timeout", timeout)
+        self._host.fail(str(error), "service_failed", node)
+
+
+class _Setting(_OfNode):
+    """One operation with ``set_parameter``."""
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Set the parameter."""
+        try:
+            await self._host.step(self._set(self._value(inputs)))
+        except RosError as error:
+            self._fail(error)
+
+    async def _set(self, value: Any) -> None:
+        # Agents do not tell 1 from 1.0, nodes do.
+        if isinstance(value, int) and not isinstance(value, bool):
+            try:
+                if isinstance(await self._parameters.get(self._name, self._part.timeout), float):
+                    value = float(value)
+            except ParameterUnknown:
+                pass  # setting it tells more
+        await self._parameters.set(self._name, value, self._part.timeout)
+
+    def _value(self, inputs: Sequence[object]) -> Any:
+        part = self._part.values[0]
+        if part.source is Source.NOW:
+            return self._host.clock.now()
+        value = inputs[part.parameter] if part.source is Source.PARAMETER else part.value
+        known = {name: number for number, name in part.conversion.names}
+        if isinstance(value, str) and value in known:
+            return known[value]
+        if (line := part.conversion.line) is not None:
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                self._host.fail(
+                    f"{self._name} wants a number, not {value!r}", "parameter_refused", Atom(self._name)
+                )
+            return line.back(value)
+        return str(value) if isinstance(value, Atom) else value
+
+
+class _Getting(_OfNode):
+    """One operation with ``get_parameter``."""
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Give the parameter."""
+        field: FieldPart = self._part.outputs[0]
+        try:
+            value = await self._host.step(self._parameters.get(self._name, self._part.timeout))
+        except (RosError, NameInvalid) as error:
+            self._fail(error)
+        else:
+            outs[0].set(converted(field.conversion)(value))
+
+
+class _Asking:
+    """One operation with ``refresh`` or ``read``."""
+
+    def __init__(self, host: Host, part: OperationPart) -> None:
+        self._host, self._part = host, part
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Show the newest values, or give them to the caller."""
+        for wanted in self._part.properties:
+            reading = self._host.readings[wanted.text]
+            if self._part.kind is OperationKind.REFRESH:
+                await self._host.refresh(wanted.text, reading, "no_message")
+            else:
+                for out, value in zip(outs, await self._host.newest(reading, "no_message"), strict=True):
+                    out.set(value)
+
+
+_RUNNERS: dict[OperationKind, Any] = {
+    OperationKind.PUBLISH: Publishing,
+    OperationKind.SERVICE: _Calling,
+    OperationKind.ACTION: _Pursuing,
+    OperationKind.SET: _Setting,
+    OperationKind.GET: _Getting,
+    OperationKind.REFRESH: _Asking,
+    OperationKind.READ: _Asking,
+}

@@ -1,0 +1,84 @@
+"""Operations of a mapping as methods: with names, arities and outputs like those that are written in Python."""
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.artifacts.mapping.declared import ArtifactPart, FieldPart, OperationKind, OperationPart
+from jacaros.env.artifact import Out, operation
+
+
+def methods(part: ArtifactPart) -> dict[str, Callable[..., Any]]:
+    """The operations of an artifact, by names that no method of a class has."""
+    return {f"mapped {each.name}": _method(part, each) for each in part.operations}
+
+
+def _method(artifact: ArtifactPart, part: OperationPart) -> Callable[..., Any]:
+    inputs = len(part.parameters)
+
+    async def run(self: Any, *arguments: object) -> None:
+        outs = [out for out in arguments[inputs:] if isinstance(out, Out)]
+        await self.operating.run(part.name, arguments[:inputs], outs)
+
+    names = [*part.parameters, *unlike(part.parameters, output_names(artifact, part))]
+    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # read by inspect.signature
+        [inspect.Parameter(name, kind) for name in ("self", *names)]
+    )
+    run.__annotations__ = dict.fromkeys(names[inputs:], Out)
+    run.__qualname__ = run.__name__ = part.name
+    run.__doc__ = description(part)
+    return operation(name=part.name, pausable=is_pausable(part))(run)
+
+
+def is_pausable(part: OperationPart) -> bool:
+    """Whether it does something at a pause of its intention."""
+    return part.rate is not None or (part.kind is OperationKind.ACTION and part.suspend != "go_on")
+
+
+def output_names(artifact: ArtifactPart, part: OperationPart) -> list[str]:
+    """Names for the output parameters."""
+    if part.kind is not OperationKind.READ:
+        return values_of(part.outputs)
+    wanted = part.properties[0].text if part.properties else ""
+    fields = {each.name: each.fields or () for each in artifact.properties}
+    fields |= {each.name: each.fields for each in artifact.frames}
+    return values_of(fields.get(wanted, ()))
+
+
+def values_of(fields: tuple[FieldPart, ...]) -> list[str]:
+    """A word for each value that fields give."""
+    return [
+        field.name or "value" if field.shares is None else f"{field.name}{place + 1}"
+        for field in fields
+        for place in range(field.count)
+    ]
+
+
+def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:
+    """The same names, with numbers where one stands twice."""
+    seen, found = set(taken), []
+    for name in names:
+        plain = "".join(c if c.isalnum() or c == "_" else "_" for c in name)
+        wanted, number = plain, 2
+        while wanted in seen or not wanted.isidentifier():
+            wanted, number = f"{plain}{number}" if plain.isidentifier() else f"value{number}", number + 1
+        seen.add(wanted)
+        found.append(wanted)
+    return found
+
+
+def description(part: OperationPart) -> str:
+    """What an operation does, for people."""
+    of_type = f" ({part.type_name.text})" if part.type_name is not None else ""
+    named = ", ".join(each.text for each in part.properties)
+    usual = {
+        OperationKind.PUBLISH: f"Publishes on {part.target.text}{of_type}.",
+        OperationKind.SERVICE: f"Calls the service {part.target.text}{of_type}.",
+        OperationKind.ACTION: f"Pursues a goal of the action {part.target.text}{of_type}.",
+        OperationKind.SET: f"Sets the parameter {part.target.text} of {part.node}.",
+        OperationKind.GET: f"Gives the parameter {part.target.text} of {part.node}.",
+        OperationKind.REFRESH: f"Gives {named} the newest values.",
+        OperationKind.READ: f"Gives the newest values of {named}.",
+    }
+    return part.description or usual[part.kind]

@@ -1,0 +1,158 @@
+"""Operations that publish, once or for a while; a robot that was sent a velocity is always sent zero in the end."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from jacaros.artifacts.mapping.checking import TWISTS
+from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
+from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler
+from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.type_search import ask_type
+from jacaros.artifacts.ros.acting import missing_number
+from jacaros.artifacts.ros.lane import Lane, Ticket, lane_of
+from jacaros.env.artifact import Out
+from jacaros.ros.backend import Publisher
+from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.qos import DEFAULT_QOS
+from jacaros.yaml_nodes import Problem
+
+
+class Publishing:
+    """One operation with ``publish``.
+
+    Args:
+        host: the artifact.
+        part: what the mapping says.
+    """
+
+    def __init__(self, host: Host, part: OperationPart) -> None:
+        self._host, self._part = host, part
+        self._publisher: Publisher | None = None
+        self._fill: Fill | None = None
+        self._fill_end: Fill | None = None
+        self._lane = Lane()
+        self._moves = False
+        self._arguments: Sequence[object] = ()
+        if part.type_name is not None:
+            self._open(part.type_name.text)
+
+    def _open(self, type_name: str) -> None:
+        host, part = self._host, self._part
+        problems: list[Problem] = []
+        self._fill = filler(part.values, type_name, host.ros, problems, host.adapted)
+        if (end := self._end_values(type_name)) is not None:
+            self._fill_end = filler(end, type_name, host.ros, problems, host.adapted)
+        if problems:
+            host.tell(problems)
+            host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
+        self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
+        if type_name in TWISTS:
+            self._lane = lane_of(host.ros, host.robot_prefix)
+            host.at_dispose(host.ros.add_exit_hook(self._halt))
+            host.at_dispose(self._halt)
+
+    def _end_values(self, type_name: str) -> tuple[ValuePart, ...] | None:
+        """What the last message says: unless it is written, velocities end with zero."""
+        if self._part.at_end is not None:
+            return self._part.at_end
+        if type_name not in TWISTS:
+            return None
+        return tuple(each for each in self._part.values if ".header" in each.target.steps)
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Publish, once or for a while."""
+        if self._publisher is None:
+            self._open(await ask_type(self._host, "topic", self._part.target))
+        if self._part.rate is None:
+            self._send(inputs)
+            if self._part.at_end is not None:
+                self._end(inputs)
+            return
+        await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
+
+    def _seconds(self, inputs: Sequence[object]) -> float:
+        duration = self._part.duration
+        assert duration is not None
+        value = inputs[duration.parameter] if duration.source is Source.PARAMETER else duration.value
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
+            self._host.fail(
+                f"the duration is to be a number of seconds, not {value!r}", "wrong_message", "duration"
+            )
+        return float(value)
+
+    async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:
+        """Publish until the time is over; pauses do not count, and one motion of a robot waits for another."""
+        host, lane = self._host, self._lane
+
+        def stop() -> None:
+            lane.leave(ticket)
+            self._end(inputs)
+            ticket.wake()
+
+        ticket = Ticket(lambda: self._end(inputs))
+        host.current.on_pause(stop)
+        left = seconds
+        try:
+            while left > 1e-9:
+                await host.pause_point()
+                if not lane.enter(ticket):
+                    await host.step(ticket.wait(host.clock, None))
+                elif not ticket.aborted:
+                    began = host.clock.now()
+                    self._send(inputs)
+                    await host.step(ticket.wait(host.clock, min(period, left)))
+                    left -= max(0.0, host.clock.now() - began)
+                if ticket.aborted:
+                    host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
+        finally:
+            if lane.holds(ticket):
+                self._end(inputs)
+            lane.leave(ticket)
+
+    def _send(self, inputs: Sequence[object]) -> None:
+        assert self._fill is not None
+        assert self._publisher is not None
+        self._arguments = inputs
+        try:
+            fields = self._fill(inputs, self._host.clock.now())
+            missing = missing_number(fields)
+            if missing is not None:
+                raise WrongValue(f"{missing} is not a number; nothing was sent", missing)
+            moves = self._fill_end is not None and _is_motion(fields)
+            if moves and not _is_finite(fields):
+                raise WrongValue("a velocity is infinite; nothing was sent", "velocity")
+            self._publisher.publish(self._publisher.message(**fields))
+        except WrongValue as error:
+            self._host.fail(str(error), "wrong_message", error.field)
+        except MessageMismatch as error:
+            self._host.fail(str(error), "wrong_message", error.field)
+        self._moves = moves
+
+    def _end(self, inputs: Sequence[object]) -> None:
+        """Publish the last message, if there is to be one."""
+        if self._fill_end is None or self._publisher is None:
+            return
+        self._moves = False
+        self._publisher.publish(self._publisher.message(**self._fill_end(inputs, self._host.clock.now())))
+
+    def _halt(self) -> None:
+        """Stop the robot when the artifact or the process ends."""
+        if self._moves:
+            self._end(self._arguments)
+
+
+def _numbers(fields: Any) -> list[float]:
+    if isinstance(fields, dict):
+        return [number for name, each in fields.items() if name != "header" for number in _numbers(each)]
+    if isinstance(fields, list | tuple):
+        return [number for each in fields for number in _numbers(each)]
+    return [float(fields)] if isinstance(fields, int | float) else []
+
+
+def _is_motion(fields: Any) -> bool:
+    return any(number != 0.0 for number in _numbers(fields))
+
+
+def _is_finite(fields: Any) -> bool:
+    return all(map(math.isfinite, _numbers(fields)))

@@ -1,0 +1,358 @@
+"""Takes the values of a field out of messages: paths, lists and conversions, made into functions once for a type."""
+
+import dataclasses
+import math
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+from jacaros.artifacts.mapping.declared import Conversion, FieldPart
+from jacaros.artifacts.mapping.handle import MessageHandle
+from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
+from jacaros.artifacts.mapping.paths import Path, WrongPath, follow, getter
+from jacaros.artifacts.mapping.read_fields import ANGLES, LISTS
+from jacaros.env.values import Atom, Structure
+from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
+from jacaros.ros.message import TIMES, to_seconds
+
+QUATERNION = "geometry_msgs/msg/Quaternion"
+
+Take = Callable[[Any, Any, int], tuple[object, ...]]
+"""Takes a message, its current element (the message again without ``each``) and the place of that."""
+
+Convert = Callable[[Any], object]
+
+
+class Unshowable(Exception):
+    """A message cannot be shown: a number is not finite, or a list is too short; the text says which.
+
+    Attributes:
+        path: of the field.
+        cure: what to write into the mapping.
+        functor: of the reason for programs.
+    """
+
+    def __init__(self, path: str, message: str, cure: str, functor: str = "not_finite") -> None:
+        super().__init__(message)
+        self.path, self.cure, self.functor = path, cure, functor
+
+
+def taker(field: FieldPart, message: FieldType, element: FieldType | None, interfaces: Interfaces) -> Take:
+    """A function that takes the values of *field*.
+
+    Args:
+        field: what is wanted.
+        message: type of the messages.
+        element: type of the elements, with ``each``.
+        interfaces: knows the types.
+
+    Raises:
+        WrongPath: the path leads nowhere, or the conversion does not fit what is there.
+        UnknownInterface: a type is not known.
+    """
+    from_message = element is None or field.path.of_message
+    root = message if element is None or field.path.of_message else element
+    leaf = follow(field.path, root, interfaces.fields)
+    get = getter(field.path)
+    values = _values(field, leaf, root, message, interfaces)
+
+    def take(whole: Any, part: Any, place: int) -> tuple[object, ...]:
+        try:
+            raw = get(whole if from_message else part, place)
+        except IndexError:
+            raise Unshowable(
+                field.path.text,
+                f"{field.path.text} is not there: the list is shorter",
+                "ask for an element that is always there, such as [0] or [-1]",
+                "no_element",
+            ) from None
+        return values(raw, whole)
+
+    return take
+
+
+def _values(
+    field: FieldPart, leaf: FieldType, root: FieldType, message: FieldType, interfaces: Interfaces
+) -> Callable[[Any, Any], tuple[object, ...]]:
+    """What becomes of what stands at the path; takes the whole message too, for ``otherwise``."""
+    kind = field.conversion.kind
+    if kind == "object":
+        return lambda raw, _: (MessageHandle(raw, str(leaf)),)
+    single = FieldType(leaf.base)
+    levels = field.path.lists + leaf.array
+    if field.shares is not None or kind in LISTS:
+        if levels != 1:
+            what = "sample" if field.shares is not None else f"as: {kind}"
+            raise WrongPath(
+                f"'{what}' is for lists, and {field.path.text} is {leaf}", "name a field that is a list"
+            )
+        return _of_list(field, single, root, message, interfaces)
+    base = _element(field, single, root, message, interfaces)
+    if levels == 0:
+        return lambda raw, whole: (base(raw, whole),)
+
+    def lists(raw: Any, whole: Any, deep: int) -> object:
+        if deep == 1:
+            return [base(each, whole) for each in _items(raw)]
+        return [lists(each, whole, deep - 1) for each in raw]
+
+    return lambda raw, whole: (lists(raw, whole, levels),)
+
+
+_REDUCE: dict[str, Callable[[list[float]], float]] = {
+    "min": min,
+    "max": max,
+    "mean": lambda numbers: sum(numbers) / len(numbers),
+}
+
+
+def _of_list(
+    field: FieldPart, single: FieldType, root: FieldType, message: FieldType, interfaces: Interfaces
+) -> Callable[[Any, Any], tuple[object, ...]]:
+    kind, shares = field.conversion.kind, field.shares
+    if kind == "count":
+        _check_conversion(field, FieldType("int32"))
+        convert = converted(field.conversion)
+        return lambda raw, _: (convert(len(raw)),)
+    element = _element(field, single, root, message, interfaces)
+    if shares is not None:
+
+        def sample(raw: Any, whole: Any) -> tuple[object, ...]:
+            if not len(raw):
+                raise Unshowable(
+                    field.path.text,
+                    f"{field.path.text} is empty",
+                    "a sample needs a list with elements",
+                    "no_element",
+                )
+            return tuple([element(raw[place], whole) for place in _places(len(raw), shares)])
+
+        return sample
+    if single.base not in FLOATS and single.base not in INTEGER_RANGES:
+        raise WrongPath(f"'as: {kind}' is for lists of numbers, and {field.path.text} is of {single}")
+    reduce = _REDUCE[kind]
+
+    def reduced(raw: Any, whole: Any) -> tuple[object, ...]:
+        finite = [value for value in _items(raw) if math.isfinite(value)]
+        return (element(reduce(finite) if finite else math.nan, whole),)
+
+    if single.base in INTEGER_RANGES:
+        element = _element(field, FieldType("float64"), root, message, interfaces)
+    return reduced
+
+
+@lru_cache(64)
+def _places(count: int, shares: tuple[float, ...]) -> tuple[int, ...]:
+    """Which elements of so many are sampled; the others are never touched."""
+    return tuple(round(share * (count - 1)) for share in shares)
+
+
+def _items(raw: Any) -> Any:
+    """The elements as plain Python values: those of numpy are many times slower."""
+    return raw.tolist() if hasattr(raw, "tolist") else raw
+
+
+Element = Callable[[Any, Any], object]
+"""Converts one value; takes the whole message too."""
+
+
+def _element(
+    field: FieldPart, single: FieldType, root: FieldType, message: FieldType, interfaces: Interfaces
+) -> Element:
+    conversion = field.conversion
+    _check_conversion(field, single)
+    after = converted(conversion)
+    fallback = _otherwise(field, message, interfaces)
+    if conversion.kind in ANGLES:
+        angle = _ANGLES[conversion.kind]
+
+        def heading(raw: Any, whole: Any) -> object:
+            value = angle(raw)
+            return after(value) if math.isfinite(value) else fallback(value, whole)
+
+        return heading
+    if conversion.kind == "name":
+        named = _named(field, root, interfaces)
+        return lambda raw, _: after(named(raw))
+    if conversion.kind == "atom":
+        return lambda raw, _: after(Atom(raw))
+    base = _plain(field.path.text, single, interfaces)
+    if single.base in FLOATS:
+
+        def number(raw: Any, whole: Any) -> object:
+            value = float(raw)
+            return after(value) if math.isfinite(value) else fallback(value, whole)
+
+        return number
+    return lambda raw, _: after(base(raw))
+
+
+def _check_conversion(field: FieldPart, single: FieldType) -> None:
+    """Refuse what does not fit the type."""
+    conversion, path = field.conversion, field.path.text
+    kind = conversion.kind
+    number = single.base in FLOATS or single.base in INTEGER_RANGES or single.base in TIMES
+    if kind in ANGLES and single.base != QUATERNION:
+        cure = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
+        raise WrongPath(f"'as: {kind}' is for quaternions, and {path} is {single}", cure)
+    if kind == "atom" and single.base != "string":
+        raise WrongPath(f"'as: atom' is for strings, and {path} is {single}", "leave 'as' out")
+    if kind not in (*ANGLES, "count") and not number:
+        for key, given in (("unit, scale or offset", conversion.line), ("round", conversion.digits)):
+            if given is not None:
+                raise WrongPath(
+                    f"{key} needs a number, and {path} is {single}", "name a field that is a number"
+                )
+    if field.otherwise is not None and single.base not in FLOATS and kind not in ANGLES:
+        raise WrongPath(f"'otherwise' is for floating-point numbers, and {path} is {single}", "leave it out")
+
+
+def converted(conversion: Conversion) -> Convert:
+    """The steps that follow: names, units, rounding."""
+    steps: list[Convert] = []
+    if conversion.names:
+        known = {value: Atom(name) for value, name in conversion.names}
+        steps.append(lambda value: known.get(value, value))
+    if (line := conversion.line) is not None:
+        steps.append(line.there)
+    if (digits := conversion.digits) is not None:
+        steps.append(round if digits == 0 else (lambda value: round(value, digits)))
+    if not steps:
+        return lambda value: value
+    if len(steps) == 1:
+        return steps[0]
+
+    def all_steps(value: Any) -> object:
+        for step in steps:
+            value = step(value)
+        return value
+
+    return all_steps
+
+
+def _otherwise(
+    field: FieldPart, message: FieldType, interfaces: Interfaces
+) -> Callable[[float, Any], object]:
+    """What stands in for a number that is not finite."""
+    otherwise, path = field.otherwise, field.path.text
+    if otherwise is None:
+
+        def refuse(value: float, _: Any) -> object:
+            cure = f"say what to show instead: {{path: {path}, otherwise: 0}}"
+            raise Unshowable(path, f"{path} is {value:g}", cure)
+
+        return refuse
+    if isinstance(otherwise, Path):
+        leaf = follow(otherwise, message, interfaces.fields)
+        if leaf.array or not (leaf.base in FLOATS or leaf.base in INTEGER_RANGES):
+            raise WrongPath(f"'otherwise' is to be a number, and {otherwise.text} is {leaf}")
+        get = getter(otherwise)
+        after = converted(dataclasses.replace(field.conversion, names=()))
+
+        def from_message(value: float, whole: Any) -> object:
+            instead = float(get(whole, 0))
+            if not math.isfinite(instead):
+                raise Unshowable(
+                    path, f"{path} is {value:g}, and so is {otherwise.text}", "write a figure for 'otherwise'"
+                )
+            return after(instead)
+
+        return from_message
+    figure = int(otherwise) if otherwise.is_integer() and field.conversion.digits == 0 else otherwise
+    return lambda value, whole: figure
+
+
+def _named(field: FieldPart, root: FieldType, interfaces: Interfaces) -> Convert:
+    """Names of constants for values."""
+    owner, last = owner_of(field.path, root, interfaces)
+    known = constants(interfaces, owner)
+    meant = chosen(known, last, field.conversion.prefix)
+    if not meant:
+        listed = ", ".join(known) or "none"
+        begin = f"that begins with {field.conversion.prefix}" if field.conversion.prefix else ""
+        raise WrongPath(
+            f"{owner} has no constant {begin}".rstrip(),
+            f"its constants: {listed}; or write names: {{0: ...}}",
+        )
+    names: dict[object, Atom] = {}
+    for name, value in meant.items():
+        plain = value[0] if isinstance(value, bytes) and len(value) == 1 else value
+        if plain in names:
+            raise WrongPath(
+                f"{owner}: the constants {names[plain]} and {name} have the same value {plain}",
+                f"write prefix: ... with which those of '{last}' begin, or names: {{{plain}: {name}}}",
+            )
+        names[plain] = Atom(name)
+    return lambda raw: names.get(value := _octet(raw), value)
+
+
+def owner_of(path: Path, root: FieldType, interfaces: Interfaces) -> tuple[str, str]:
+    """The message type that a path's last field belongs to, and the name of that field."""
+    names = [place for place, step in enumerate(path.steps) if isinstance(step, str) and step.startswith(".")]
+    if not names:
+        raise WrongPath(f"'{path.text}' is no field, so that it has no constants", "name a field")
+    last = path.steps[names[-1]]
+    assert isinstance(last, str)
+    above = Path(path.text, path.steps[: names[-1]], path.of_message)
+    return follow(above, root, interfaces.fields).base, last[1:]
+
+
+def _octet(raw: Any) -> Any:
+    return raw[0] if isinstance(raw, bytes) and len(raw) == 1 else raw
+
+
+def _plain(path: str, single: FieldType, interfaces: Interfaces) -> Convert:
+    """A value of a type as agents get it: numbers, texts, seconds, structures for messages."""
+    if single.base in TIMES:
+        return to_seconds
+    if single.is_message:
+        return _structure(path, single.base, interfaces)
+    if single.base == "byte":
+        return lambda raw: int(_octet(raw))
+    if single.base in FLOATS:
+        return lambda raw: _finite(path, float(raw))
+    if single.base == "bool":
+        return bool
+    return str if single.base == "string" else int
+
+
+def _finite(path: str, value: float) -> float:
+    if math.isfinite(value):
+        return value
+    raise Unshowable(
+        path, f"{path} is {value:g}", "name single fields, and say what to show instead: otherwise: 0"
+    )
+
+
+def _structure(path: str, type_name: str, interfaces: Interfaces) -> Convert:
+    """A message as a structure: ``geometry_msgs/msg/Point`` is ``point(X,Y,Z)``."""
+    name = type_name.rpartition("/")[2]
+    functor = name[:1].lower() + name[1:]
+    parts = [
+        (field, _whole(f"{path}.{field}".removeprefix(".."), kind, interfaces))
+        for field, kind in interfaces.fields(type_name).items()
+    ]
+    if not parts:
+        return lambda raw: Atom(functor)
+    return lambda raw: Structure(functor, tuple([convert(getattr(raw, field)) for field, convert in parts]))
+
+
+def _whole(path: str, kind: FieldType, interfaces: Interfaces) -> Convert:
+    single = _plain(path, FieldType(kind.base), interfaces)
+    return (lambda raw: [single(each) for each in _items(raw)]) if kind.array else single
+
+
+def _yaw(q: Any) -> float:
+    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+
+
+def _pitch(q: Any) -> float:
+    # Rounding may put the sine a little beyond 1.
+    return math.asin(max(-1.0, min(1.0, 2.0 * (q.w * q.y - q.z * q.x))))
+
+
+def _roll(q: Any) -> float:
+    return math.atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))
+
+
+_ANGLES: dict[str, Callable[[Any], float]] = {"yaw": _yaw, "pitch": _pitch, "roll": _roll}

@@ -1,0 +1,120 @@
+"""Types that the mapping leaves out are asked of the graph, as soon as somebody is at the topic."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from jacaros.artifacts.mapping.declared import Written
+from jacaros.artifacts.mapping.host import Host
+from jacaros.ros.errors import CapabilityMissing, RosError
+from jacaros.ros.graph import GraphContents
+from jacaros.ros.waiting import MISSING_AFTER
+
+LOOK = 0.5
+"""Seconds between two looks at the graph."""
+
+_EXAMPLES = {"topic": "msg/Type", "service": "srv/Type", "action": "action/Type"}
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A topic whose type is wanted; *found* takes it."""
+
+    written: Written
+    name: str
+    found: Callable[[str], None]
+
+
+def type_in(contents: GraphContents, kind: str, name: str) -> str:
+    """The type of a topic, service or action by its absolute name; empty when it is not there."""
+    if kind == "service":
+        return contents.services.get(name, "")
+    if kind == "action":
+        return contents.actions.get(name, "")
+    topic = contents.topics.get(name)
+    return topic.types[0] if topic is not None and topic.types else ""
+
+
+class TypeSearch:
+    """Looks at the graph until all types are known.
+
+    Args:
+        host: the artifact.
+    """
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._wanted: list[Wanted] = []
+
+    def want(self, written: Written, found: Callable[[str], None]) -> None:
+        """Have *found* called with the type of a topic."""
+        name = self._host.ros.resolve(self._host.robot_topic(written.text))
+        self._wanted.append(Wanted(written, name, found))
+
+    def begin(self) -> None:
+        """Look until everything is known; a process of the artifact."""
+        if self._wanted:
+            self._host.start(self._host.run_process, self._search)
+
+    async def _search(self) -> None:
+        host, began = self._host, self._host.clock.now()
+        told, missed = False, False
+        while self._wanted:
+            contents = await self._contents()
+            if contents is None:
+                return
+            self._take(contents)
+            if self._wanted and not told:
+                told = True
+                for each in self._wanted:
+                    host.log(f"waiting for the topic {each.name}, to learn its type")
+            if self._wanted and not missed and host.clock.now() - began >= MISSING_AFTER:
+                missed = True
+                for each in self._wanted:
+                    self._miss(each)
+            if self._wanted:
+                await host.sleep(LOOK)
+
+    async def _contents(self) -> GraphContents | None:
+        """What is in the graph; empty while it cannot be asked, None when it never can."""
+        try:
+            return await self._host.step(self._host.ros.contents())
+        except CapabilityMissing as error:
+            for each in self._wanted:
+                self._host.tell_once(
+                    each, each.written.place, str(error), "write the type: type: package/msg/Type"
+                )
+            return None
+        except RosError:
+            return GraphContents()
+
+    def _take(self, contents: GraphContents) -> None:
+        for each in list(self._wanted):
+            if found := type_in(contents, "topic", each.name):
+                self._wanted.remove(each)
+                each.found(found)
+
+    def _miss(self, wanted: Wanted) -> None:
+        self._host.tell_once(
+            wanted,
+            wanted.written.place,
+            f"the topic {wanted.name} is missing, and without it its type is not known; still waiting",
+            "start the node that publishes it, or write its type: type: package/msg/Type",
+        )
+
+
+async def ask_type(host: Host, kind: str, written: Written) -> str:
+    """The type of a topic, service or action that an operation uses; a step boundary.
+
+    Raises:
+        OperationFailed: ``type_unknown(Name)``.
+    """
+    name = host.ros.resolve(host.robot_topic(written.text))
+    try:
+        found = type_in(await host.step(host.ros.contents()), kind, name)
+    except RosError as error:
+        host.fail(str(error), "type_unknown", name)
+    if not found:
+        where = host.mapping.where(written.place)
+        cure = f"start the node that has it, or write its type in {where}: type: package/{_EXAMPLES[kind]}"
+        host.fail(f"there is no {kind} {name}, so that its type is not known; {cure}", "type_unknown", name)
+    return found
