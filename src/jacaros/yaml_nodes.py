@@ -195,9 +195,10 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-        problems.append(
-            Problem(line, column, f"not YAML: {error.problem}", "mind indents, colons and quotes")
-        )
+        # Such as ranges[0] in a list in brackets.
+        quotes = 'write a text with brackets in quotes: "ranges[0]"'
+        cure = quotes if "but got '['" in str(error.problem) else "mind indents, colons and quotes"
+        problems.append(Problem(line, column, f"not YAML: {error.problem}", cure))
     except YAMLError as error:
         problems.append(Problem(1, 1, f"not YAML: {error}"))
     return Node(document, 1, 1, problems, what)

@@ -59,6 +59,8 @@ ARTIFACTS = "artifacts"
 ALIASES = ("jason.architecture.", "jacaros.")
 """Package names under which the thesis's programs ask for the built-in artifacts."""
 
+MAPPING_ENDINGS = (".yaml", ".yml")
+"""What names of mapping files end with."""
 
 TOOLS: Mapping[str, type[Artifact]] = MappingProxyType(
     {
@@ -87,7 +89,12 @@ def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], 
         return find_type
     own = project
     modules = own.load(ARTIFACTS)
-    return lambda name: _of_project(name, own) or find_type(name, (*_beside(name, own), *modules))
+
+    def find(name: str) -> type[Artifact]:
+        mapped = _mapped(name, own.folders)
+        return mapped or _of_project(name, own) or find_type(name, (*_beside(name, own), *modules))
+
+    return find
 
 
 def find_type(
@@ -97,7 +104,8 @@ def find_type(
 ) -> type[Artifact]:
     """Find the artifact type called *name*.
 
-    In this order: a dotted Python path (``my_robot.gripper.Gripper``); a class of the project's own
+    A mapping file's name (``turtlebot.yaml``, ``fleet.yaml#arm``) gives the type that it declares.  Any other is, in this
+    order: a dotted Python path (``my_robot.gripper.Gripper``); a class of the project's own
     modules, where a package in front of the name (``tools.Counter``, as Java programs write) is ignored;
     a built-in by its bare name; a built-in by the thesis's name (``jason.architecture.ArtOdometry``).
     What begins with ``cartago.tools.`` is a tool of CArtAgO in any case.
@@ -106,7 +114,8 @@ def find_type(
         UnknownArtifactType: there is none.
     """
     found = (
-        TOOLS.get(name)
+        _mapped(name, (Path(),))
+        or TOOLS.get(name)
         or _by_path(name)
         or _of_modules(name.rpartition(".")[2], search_modules)
         or built_in.get(name)
@@ -116,6 +125,16 @@ def find_type(
         text = _other_class(name.rpartition(".")[2], search_modules)
         raise UnknownArtifactType(name, () if text else _candidates(name, search_modules, built_in), text)
     return found
+
+
+def _mapped(name: str, folders: Sequence[Path]) -> type[Artifact] | None:
+    """The type of a mapping file; None for any other name."""
+    if not name.partition("#")[0].endswith(MAPPING_ENDINGS):
+        return None
+    # Imported here: a project without mapping files need not know how to read them.
+    from jacaros.artifacts.mapping.types import find_mapped_type
+
+    return find_mapped_type(name, folders)
 
 
 def _other_class(name: str, modules: Iterable[ModuleType]) -> str:

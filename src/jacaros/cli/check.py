@@ -15,7 +15,7 @@ from jacaros.cli.reports import as_json, as_sarif
 from jacaros.errors import UsageError
 from jacaros.mas.checking import Findings, check_files
 
-_KINDS = (".asl", ".mas2j", ".jcm", ".py")
+_KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
@@ -38,7 +38,7 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
 )
 def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str, ...]) -> int:
     """Tell what is wrong in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
-    with the programs of its agents, or a folder with all of them.
+    with the programs of its agents, a mapping file (.yaml), or a folder with all of them.
 
     All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
     `// jacaros: ignore CODE` switches a warning off for its line, or, on a line of its own, for the clause below

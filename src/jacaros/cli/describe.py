@@ -2,7 +2,7 @@
 
 import dataclasses
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,20 +30,38 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 )
 @click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
 def command(what: str, project: Path, as_json: bool) -> None:
-    """Tell what WHAT offers: an artifact type, a Python file of them, or a project file."""
+    """Tell what WHAT offers: an artifact type, a Python file or a mapping file of them, or a project file."""
     if what.endswith(PROJECT_FILES):
         described = _Project(load_deployment(what))
         click.echo(_json(described.data()) if as_json else "\n".join(described.lines()))
         return
-    manuals = [
-        describe(kind) for kind in (_types_in(Path(what)) if what.endswith(".py") else [_find(what, project)])
-    ]
+    manuals = [describe(kind) for kind in _kinds(what, project)]
     if as_json:
         click.echo(
             _json([dataclasses.asdict(manual) for manual in manuals] if len(manuals) != 1 else manuals[0])
         )
     else:
         click.echo("\n\n".join(map(str, manuals)))
+
+
+def _kinds(what: str, project: Path) -> Sequence[type[Artifact]]:
+    """The artifact types that are meant."""
+    if what.endswith(".py"):
+        return _types_in(Path(what))
+    if what.endswith((".yaml", ".yml")):
+        return _mapped_types(what, project)
+    return [_find(what, project)]
+
+
+def _mapped_types(name: str, folder: Path) -> list[type[Artifact]]:
+    """The artifact types of a mapping file, in their order."""
+    # Imported here: mappings bring their own reader.
+    from jacaros.artifacts.mapping.file import find_mapping, load_mapping
+
+    path = find_mapping(name, (folder,))
+    if path is None:
+        raise UsageError(f"there is no mapping file {name}")
+    return [_find(f"{path}#{each}", folder) for each in load_mapping(path).artifacts]
 
 
 def _json(data: Any) -> str:

@@ -32,6 +32,13 @@ from jacaros.mas.system import System
     help="The ROS graph: inside the process, or a real one.",
 )
 @click.option("--world", metavar="FILE", help="World file, or the name of a world that comes with jacaros.")
+@click.option(
+    "--mapping",
+    "mappings",
+    metavar="FILE",
+    multiple=True,
+    help="Mapping file of a robot; a lone program focuses its artifacts. May be given more often.",
+)
 @click.option("--until-idle", is_flag=True, help="End when no agent has anything to do or to wait for.")
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds of the run's clock.")
 @graph_options
@@ -68,6 +75,7 @@ def command(
     seed: int | None,
     ros: str,
     world: str | None,
+    mappings: tuple[str, ...],
     until_idle: bool,
     seconds: float | None,
     domain_id: int | None,
@@ -106,6 +114,7 @@ def command(
         remap=read_remaps(remap) if remap else {},
         rosout=rosout,
         diagnostics=diagnostics,
+        mappings=mappings,
     )
     console = StandardConsole("warning" if quiet else "info")
     if not watched:

@@ -121,7 +121,7 @@ def _section(doc: str, wanted: str) -> str:
     for part in re.split(r"\n\s*\n", doc):
         head, _, rest = part.partition("\n")
         if head == f"{wanted}:":
-            return inspect.cleandoc(rest)
+            return textwrap.dedent(rest).strip()
     return ""
 
 

@@ -31,6 +31,9 @@ _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWor
 _OPEN_ACTIONS: Final = frozenset({".create_agent", ".clone", ".include", ".add_plan", ".load_agent"})
 """Internal actions that bring programs in which are not those of the project file."""
 
+_CLOSED: Final = ("jacaros.env.", "jacaros.artifacts.")
+"""Modules whose artifacts offer what their classes declare."""
+
 _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
 """What an artifact's Python code does when it offers more than its class declares."""
 
@@ -71,6 +74,12 @@ def _steps(program: nodes.Program) -> Iterator[nodes.Literal]:
     for node in walk(*clauses_of(program)):
         if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
             yield node.action
+
+
+def artifact_types(program: nodes.Program) -> list[str]:
+    """The types of artifacts that a program makes, as far as they are written in it."""
+    makes = [step for step in _steps(program) if _name(step) == _MAKES]
+    return [name for step in makes if (name := _type_of(step)) is not None]
 
 
 def _is_open(program: nodes.Program) -> bool:
@@ -140,7 +149,7 @@ def _types(
 def _offers_more(artifact_type: "type[Artifact]") -> bool:
     """Whether artifacts of a type may define operations, or make other artifacts, at run time."""
     for each in artifact_type.__mro__:
-        if each.__module__.startswith("jacaros.env.") or each is object:
+        if each.__module__.startswith(_CLOSED) or each is object:
             continue
         try:
             source = inspect.getsource(each)

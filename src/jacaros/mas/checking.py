@@ -22,6 +22,7 @@ from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 
 PROJECTS: Final = (".mas2j", ".jcm")
+MAPPINGS: Final = (".yaml", ".yml")
 _SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
 
 
@@ -51,6 +52,8 @@ def check_files(paths: Sequence[Path]) -> Findings:
             _check_project(path, findings)
         elif path.suffix == ".py":
             _check_python_agent(path, findings)
+        elif path.suffix in MAPPINGS:
+            _check_mapping(path, findings)
         else:
             _check_program(path, (path.parent,), findings)
     findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
@@ -119,6 +122,8 @@ def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
             program = _check_program(agent.source_path, folders, findings, agent)
             if program is not None:
                 programs.append((agent, program))
+    for mapping in _mapping_files(deployment, programs, folders):
+        _check_mapping(mapping, findings)
     if deployment.artifact_environment:
         # What agents in Python make, and what programs with errors would make, is not known.
         known = programs if len(programs) == len(different) else []
@@ -144,6 +149,31 @@ def _of_artifacts(
     except ProjectError as error:
         return [_of_project(each) for each in error.diagnostics]
     return check_actions(deployment, programs, find_type)
+
+
+def _check_mapping(path: Path, findings: Findings) -> None:
+    """Check a mapping file; once, however many artifacts of a project come from it."""
+    if path.resolve() in findings.files:
+        return
+    from jacaros.mas.mappings import check_mapping_file  # here: programs are checked without
+
+    findings.files.add(path.resolve())
+    findings.diagnostics += check_mapping_file(path)
+
+
+def _mapping_files(
+    deployment: Deployment, programs: list[tuple[AgentSpec, nodes.Program]], folders: tuple[Path, ...]
+) -> Iterator[Path]:
+    """The mapping files that a project names, or its agents in ``makeArtifact``."""
+    from jacaros.mas.action_check import artifact_types  # here: see `_of_artifacts`
+
+    names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
+    for _, program in programs:
+        names += artifact_types(program)
+    for name in dict.fromkeys(names):
+        file = name.partition("#")[0]
+        if file.endswith(MAPPINGS):
+            yield from [folder / file for folder in folders if (folder / file).is_file()][:1]
 
 
 def _check_python_agent(path: Path, findings: Findings) -> None:

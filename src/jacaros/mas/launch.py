@@ -46,6 +46,10 @@ def launch(
         # Before the programs are read: their syntax trees are many objects that all stay.
         gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
     deployment = project if isinstance(project, Deployment) else load_deployment(project)
+    if options.mappings:
+        from jacaros.mas.mappings import with_mappings  # here: most runs have none
+
+        deployment = with_mappings(deployment, options.mappings)
     clock = _clock(options, console)
 
     async def main() -> int:

@@ -29,6 +29,7 @@ class RunOptions:
         ros_clock: time is that of the graph's ``/clock``, as a simulator publishes it.
         domain_id, master, bridge, node_name, remap: see `jacaros.ros.address.GraphAddress`.
         rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
+        mappings: mapping files whose artifacts are made at the start.
         diagnostics: publish the state of agents and connection on ``/diagnostics``; None: on real graphs.
     """
 
@@ -48,6 +49,7 @@ class RunOptions:
     remap: Mapping[str, str] = field(default_factory=dict)
     rosout: bool | None = None
     diagnostics: bool | None = None
+    mappings: tuple[str, ...] = ()
 
     @property
     def real_graph(self) -> bool:

@@ -96,7 +96,7 @@ def _check_operation(
     operation: OperationPart, written: Written, interfaces: Interfaces, problems: list[Problem]
 ) -> None:
     types = message_types(operation.kind, written.text)
-    if not all([known(written, each, interfaces, problems) for each in types[:1]]):
+    if not known(written, types[0], interfaces, problems):
         return
     filler(operation.values, types[0], interfaces, problems)
     if operation.at_end is not None:

@@ -10,6 +10,9 @@ from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.ros.qos import QoS
 from jacaros.yaml_nodes import Problem
 
+ALWAYS = ReadingPolicy()
+"""Every change is told."""
+
 
 class Place(NamedTuple):
     """A place in the file, counted from 1."""
@@ -22,12 +25,19 @@ class Place(NamedTuple):
         return Problem(self.line, self.column, message, cure)
 
 
+START = Place(1, 1)
+"""The first character of the file."""
+
+
 @dataclass(frozen=True, slots=True)
 class Written:
     """A piece of text and its place."""
 
     text: str
     place: Place
+
+
+NOTHING = Written("", START)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +59,10 @@ class Conversion:
     digits: int | None = None
 
 
+AS_IT_IS = Conversion()
+"""No conversion."""
+
+
 @dataclass(frozen=True, slots=True)
 class FieldPart:
     """One entry of ``fields`` of a property: a path, and what becomes of it.
@@ -62,7 +76,7 @@ class FieldPart:
 
     path: Path
     place: Place
-    conversion: Conversion = Conversion()
+    conversion: Conversion = AS_IT_IS
     shares: tuple[float, ...] | None = None
     otherwise: float | Path | None = None
     dead_band: float | None = None
@@ -112,12 +126,12 @@ class TopicPart:
     type_name: Written | None = None
     fields: tuple[FieldPart, ...] | None = None
     each: Path | None = None
-    each_place: Place = Place(1, 1)
+    each_place: Place = START
     key: FieldPart | None = None
     annotations: tuple[FieldPart, ...] = ()
     initial: tuple[object, ...] | None = None
     qos: QoS | None = None
-    policy: ReadingPolicy = ReadingPolicy()
+    policy: ReadingPolicy = ALWAYS
     view: RangeOfView | None = None
     when_changed: bool = False
     signal: bool = False
@@ -143,7 +157,7 @@ class FramePart:
     annotations: tuple[FieldPart, ...] = ()
     rate: float = 10.0
     oldest: float | None = None
-    policy: ReadingPolicy = ReadingPolicy()
+    policy: ReadingPolicy = ALWAYS
     description: str = ""
 
 
@@ -157,7 +171,7 @@ class ParameterPart:
     parameter: str
     field: FieldPart | None = None
     rate: float = 1.0
-    policy: ReadingPolicy = ReadingPolicy()
+    policy: ReadingPolicy = ALWAYS
     description: str = ""
 
 
@@ -187,7 +201,7 @@ class ValuePart:
     source: Source = Source.CONSTANT
     value: object = None
     parameter: int = 0
-    conversion: Conversion = Conversion()
+    conversion: Conversion = AS_IT_IS
     elements: "tuple[ValuePart, ...]" = ()
 
 
@@ -234,7 +248,7 @@ class OperationPart:
     place: Place
     kind: OperationKind
     parameters: tuple[str, ...] = ()
-    target: Written = Written("", Place(1, 1))
+    target: Written = NOTHING
     type_name: Written | None = None
     values: tuple[ValuePart, ...] = ()
     outputs: tuple[FieldPart, ...] = ()

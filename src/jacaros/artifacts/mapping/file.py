@@ -58,18 +58,23 @@ def load_mapping(path: Path) -> MappingFile:
 
 def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
     """What can be read of a file, and what is wrong with it."""
+    name = _shown(path)
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         cure = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
-        return MappingFile(str(path), ""), [Problem(1, 1, "there is no such mapping file", cure)]
+        return MappingFile(name, ""), [Problem(1, 1, "there is no such mapping file", cure)]
     except (OSError, UnicodeDecodeError) as error:
-        return MappingFile(str(path), ""), [Problem(1, 1, f"it cannot be read: {error}", "save it as UTF-8")]
+        return MappingFile(name, ""), [Problem(1, 1, f"it cannot be read: {error}", "save it as UTF-8")]
     problems: list[Problem] = []
     artifacts = _read(read_document(text, problems, "a mapping file"), path.stem, problems)
-    return MappingFile(str(path), text, artifacts), sorted(
-        problems, key=lambda each: (each.line, each.column)
-    )
+    return MappingFile(name, text, artifacts), sorted(problems, key=lambda each: (each.line, each.column))
+
+
+def _shown(path: Path) -> str:
+    """A path as people write it: from the current folder on, if it is below that."""
+    whole, here = path.resolve(), Path.cwd()
+    return str(whole.relative_to(here)) if whole.is_relative_to(here) else str(path)
 
 
 def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:

@@ -30,8 +30,6 @@ def _properties(part: ArtifactPart) -> Iterator[str]:
         for feedback in operation.feedback:
             told = feedback.description or f"feedback of {operation.name}"
             yield f"{usage(feedback.name, feedback.fields)}: {told}."
-    if part.connected is not False:
-        yield "connected(Topic): messages can come."
 
 
 def _signals(part: ArtifactPart) -> Iterator[str]:
@@ -44,5 +42,8 @@ def usage(name: str, fields: tuple[FieldPart, ...] | None) -> str:
     """A property as agents write it."""
     if fields is None:
         return f"{name}(...)"
-    words = [word[:1].upper() + word[1:] for word in unlike((), values_of(fields))]
+    words = [
+        "".join(part[:1].upper() + part[1:] for part in word.split("_"))
+        for word in unlike((), values_of(fields))
+    ]
     return f"{name}({', '.join(words)})" if words else name

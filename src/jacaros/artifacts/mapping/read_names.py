@@ -49,8 +49,8 @@ def namespace(node: Node) -> str:
     return str(value).strip("/")
 
 
-def type_written(node: Node, kind: str) -> Written:
-    """A type in full form; *kind* is ``msg``, ``srv`` or ``action``."""
+def type_written(node: Node, kind: str) -> Written | None:
+    """A type in full form; *kind* is ``msg``, ``srv`` or ``action``.  None after a mistake."""
     example = _EXAMPLES[kind]
     try:
         full = _READERS[kind](node.value) if isinstance(node.value, str) else None
@@ -58,5 +58,5 @@ def type_written(node: Node, kind: str) -> Written:
         full = None
     if full is None or full.split("/")[1] != kind:
         node.wrong(f"{shown(node.value)} is no type of this kind", f"write it like {example}")
-        full = example
+        return None
     return Written(full, place_of(node))

@@ -88,10 +88,8 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
     import difflib  # here: only for mistakes
 
     near = difflib.get_close_matches(name, parameters, 1)
-    if near:
-        cure = f"did you mean ${near[0]}?"
-    else:
-        cure = f"write it into 'parameters': [{', '.join((*parameters, name))}]"
+    listed = ", ".join((*parameters, name))
+    cure = f"did you mean ${near[0]}?" if near else f"write it into 'parameters': [{listed}]"
     node.wrong(f"the operation has no parameter '{name}'", cure)
     return 0
 

@@ -1,7 +1,7 @@
 """`.jcm` project files.
 
 Accepted beyond the reference: sections in any order, blocks on one line, negative and boolean parameters of
-artifacts, lists and structures as such, ``parent:`` of workspaces, workspaces named by paths, and ``world:``.
+artifacts, lists and structures as such, ``parent:`` of workspaces, workspaces named by paths, ``world:`` and ``mapping:``.
 """
 
 from contextlib import suppress
@@ -17,7 +17,7 @@ from jacaros.mas.project.jcm_workspaces import ENTRIES, JcmWorkspaces
 from jacaros.mas.project.parts import ProjectPart, Written
 from jacaros.mas.project.unsupported import NODES, PACKAGES, PATHS, PLATFORMS
 
-_KEYS: Final = ("asl-path", "org-path", "java-path", "class-path", "platform", "world")
+_KEYS: Final = ("asl-path", "org-path", "java-path", "class-path", "platform", "world", "mapping")
 _OWN_PLATFORMS: Final = ("cartago", "local", "centralised", "jacamo.platform.Cartago")
 """Platforms whose work is done here anyway."""
 
@@ -120,6 +120,8 @@ class _JcmReader(JcmValues):
             if cursor.token.kind not in NAME:
                 cursor.fail("the name of a world file is expected")
             self.part.world = text_of(cursor.advance())
+        elif key.text == "mapping":
+            self.part.mappings += self._some(key)
         elif key.text == "platform":
             self._platforms(key)
         else:

@@ -19,6 +19,7 @@ _SECTIONS: Final = (
     "classpath",
     "aslSourcePath",
     "world",
+    "mapping",
 )
 _AGENT_KEYS: Final = ("agentArchClass", "agentClass", "beliefBaseClass", "at")
 _OWN_INFRASTRUCTURES: Final = ("local", "centralised", "centralized")
@@ -72,6 +73,10 @@ class _Mas2jReader:
                 self.source_path()
             case "world":
                 self.part.world = text_of(self.value("the name of a world file"))
+                cursor.accept(";")
+            case "mapping":
+                token = self.value("the name of a mapping file")
+                self.part.mappings.append((text_of(token), cursor.span_of(token)))
                 cursor.accept(";")
             case "environment":
                 self.environment()

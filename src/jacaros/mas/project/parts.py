@@ -100,7 +100,7 @@ class OrganisationPart:
 
 @dataclass
 class ProjectPart:
-    """One project file."""
+    """One project file; ``mapped`` are the artifacts of its mapping files."""
 
     name: str = "mas"
     uses: list[Written] = field(default_factory=list)
@@ -110,6 +110,8 @@ class ProjectPart:
     environment: str | None = None
     infrastructure: list[str] = field(default_factory=list)
     world: str | None = None
+    mappings: list[Written] = field(default_factory=list)
+    mapped: list[ArtifactPart] = field(default_factory=list)
     source_paths: list[str] = field(default_factory=list)
     code_paths: list[str] = field(default_factory=list)
     folders: tuple[Path, ...] = ()

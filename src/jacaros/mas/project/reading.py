@@ -9,7 +9,7 @@ from jacaros.asl.source import SourceFile
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, AgentSpec, Deployment, ProjectError
 from jacaros.mas.project.agents import ProjectAgents
 from jacaros.mas.project.cursor import ProjectCursor
-from jacaros.mas.project.parts import ProjectPart
+from jacaros.mas.project.parts import ArtifactPart, FocusPart, ProjectPart, WorkspacePart
 from jacaros.mas.project.places import ProjectPlaces
 from jacaros.mas.project.remarks import Remarks
 from jacaros.mas.project.unsupported import condensed, each
@@ -80,6 +80,7 @@ class _Files:
         cursor = ProjectCursor(SourceFile(str(path), _text(path)), self.diagnostics)
         part = _read_part(path.suffix, cursor)
         _complete(path, part)
+        self._map(path, part)
         for file, span in reversed(part.uses):
             used = path.parent / (file if file.endswith(_JCM) else file + _JCM)
             if not used.is_file():
@@ -92,6 +93,21 @@ class _Files:
                 except ProjectError as error:
                     cursor.report(error.diagnostics[0].message, span)
         return part
+
+    def _map(self, path: Path, part: ProjectPart) -> None:
+        """Read the mapping files that a project names."""
+        if not part.mappings:
+            return
+        from jacaros.mas.mappings import MAIN, read_mapping_file  # here: most projects name none
+
+        for name, span in part.mappings:
+            specs, wrong = read_mapping_file(name, (path.parent,), span)
+            self.diagnostics += wrong
+            part.mapped += map(ArtifactPart, specs)
+        if path.suffix != _JCM:
+            # Here no agent can say what it focuses.
+            for agent in part.agents:
+                agent.focus += [FocusPart(each.spec.name, MAIN, None, agent.span) for each in part.mapped]
 
 
 def _text(path: Path) -> str:
@@ -141,9 +157,11 @@ def _import(part: ProjectPart, used: ProjectPart) -> None:
     part.folders = tuple(dict.fromkeys([*part.folders, *used.folders]))
     part.infrastructure = part.infrastructure or used.infrastructure
     part.world = part.world or used.world
+    part.mapped[:0] = used.mapped
 
 
 def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
+    _furnish(part)
     places = ProjectPlaces(part, remarks)
     agents = ProjectAgents(part, places, remarks)
     instances: list[AgentSpec] = [each for agent in part.agents for each in agents.instances(agent)]
@@ -155,11 +173,26 @@ def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
         agents=tuple(instances),
         workspaces=places.specs(),
         environment=part.environment,
-        artifact_environment=path.suffix == _JCM or cartago,
+        artifact_environment=path.suffix == _JCM or cartago or bool(part.mapped),
         infrastructure=tuple(part.infrastructure),
         world=part.world,
         source_paths=part.folders,
     )
+
+
+def _furnish(part: ProjectPart) -> None:
+    """Put the mapped artifacts into the workspace main."""
+    if not part.mapped:
+        return
+    main = next(
+        (space for space in part.workspaces if space.name in ("main", "/main") and not space.parent), None
+    )
+    if main is None:
+        span = part.mapped[0].spec.span
+        assert span is not None
+        main = WorkspacePart("main", span)
+        part.workspaces.insert(0, main)
+    main.artifacts[:0] = part.mapped
 
 
 def _place(diagnostic: Diagnostic) -> tuple[str, int, int]:

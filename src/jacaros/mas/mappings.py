@@ -1,0 +1,129 @@
+"""Mapping files of a run: their artifacts as if the project had declared them, and what is wrong with them."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from jacaros.artifacts.mapping.checking import UNCERTAIN, type_problems
+from jacaros.artifacts.mapping.declared import MappingFile
+from jacaros.artifacts.mapping.file import find_mapping, read_with_problems, shipped_mappings
+from jacaros.artifacts.mapping.interfaces import stored_interfaces
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.source import SourceFile, Span
+from jacaros.asl.spelling import close_matches
+from jacaros.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
+from jacaros.yaml_nodes import Problem
+
+MAIN = "main"
+"""The workspace of mapped artifacts."""
+
+WRONG = "wrong-mapping"
+UNKNOWN_TYPE = "unknown-message-type"
+
+
+def read_mapping_file(
+    name: str, folders: Sequence[Path], span: Span | None = None
+) -> tuple[list[ArtifactSpec], list[Diagnostic]]:
+    """The artifacts of a mapping file, and what is wrong with it.
+
+    Args:
+        name: path below one of the folders, or file name of a mapping that comes with the package.
+        folders: where it is looked for.
+        span: where it is named.
+    """
+    path = find_mapping(name, folders)
+    if path is None:
+        known = [each.name for folder in folders for each in folder.glob("*.y*ml")] + shipped_mappings()
+        near = close_matches(name, known)
+        hint = f"did you mean {near[0]}?" if near else f"it is looked for in {folders[0]}"
+        return [], [Diagnostic("error", f"there is no mapping file {name}", span, hint)]
+    mapping, problems = read_with_problems(path)
+    specs = [
+        ArtifactSpec(each, f"{path.resolve()}#{each}", span=span, type_span=span)
+        for each in mapping.artifacts
+    ]
+    return specs, [] if not problems else diagnostics_of(mapping, problems)
+
+
+def diagnostics_of(mapping: MappingFile, problems: Iterable[Problem]) -> list[Diagnostic]:
+    """What is wrong with a file, as the rest of a project tells it."""
+    source = SourceFile(mapping.file, mapping.text)
+    return [_diagnostic(source, problem) for problem in problems]
+
+
+def _diagnostic(source: SourceFile, problem: Problem) -> Diagnostic:
+    end = problem.column + 1
+    if 0 < problem.line <= len(source.lines):
+        rest = source.lines[problem.line - 1][problem.column - 1 :]
+        word = rest.split("#")[0].split(",")[0].rstrip()
+        end = problem.column + max(1, len(word))
+    span = Span(source, problem.line, problem.column, problem.line, end)
+    # The robot's own middleware may know more types than the package.
+    uncertain = UNCERTAIN in problem.message and "did you mean" not in problem.cure
+    level, code = ("warning", UNKNOWN_TYPE) if uncertain else ("error", WRONG)
+    return Diagnostic(
+        "warning" if level == "warning" else "error", problem.message, span, problem.cure or None, code
+    )
+
+
+def check_mapping_file(path: Path) -> list[Diagnostic]:
+    """What is wrong with a mapping file, also when it is compared with the message types that are known without a robot."""
+    mapping, problems = read_with_problems(path)
+    interfaces = stored_interfaces()
+    # What a wrong line says is made up, so its types are not looked at.
+    wrong = {problem.line for problem in problems}
+    told = [each for part in mapping.artifacts.values() for each in type_problems(part, interfaces)]
+    problems += [each for each in told if each.line not in wrong]
+    return diagnostics_of(mapping, problems)
+
+
+def with_mappings(deployment: Deployment, names: Sequence[str]) -> Deployment:
+    """A deployment with the artifacts of further mapping files; a lone program focuses all of them.
+
+    Raises:
+        ProjectError: with all that is wrong.
+    """
+    artifacts: list[ArtifactSpec] = []
+    wrong: list[Diagnostic] = []
+    for name in names:
+        found, told = read_mapping_file(name, (Path(), deployment.base_path))
+        artifacts += found
+        wrong += told
+    wrong += _repeated(deployment, artifacts)
+    if wrong:
+        raise ProjectError(wrong)
+    agents = deployment.agents
+    if len(agents) == 1 and agents[0].span is None:
+        focus = tuple(FocusSpec(artifact.name, MAIN) for artifact in artifacts)
+        agents = (replace(agents[0], focus=(*agents[0].focus, *focus)),)
+    return replace(
+        deployment,
+        agents=agents,
+        workspaces=added(deployment.workspaces, artifacts),
+        artifact_environment=True,
+    )
+
+
+def _repeated(deployment: Deployment, artifacts: Sequence[ArtifactSpec]) -> list[Diagnostic]:
+    seen = {each.name for space in deployment.workspaces if space.name == MAIN for each in space.artifacts}
+    found = []
+    for artifact in artifacts:
+        if artifact.name in seen:
+            hint = "name the artifacts of a file below 'artifacts:'"
+            found.append(Diagnostic("error", f"two artifacts have the name '{artifact.name}'", None, hint))
+        seen.add(artifact.name)
+    return found
+
+
+def added(
+    workspaces: Sequence[WorkspaceSpec], artifacts: Sequence[ArtifactSpec]
+) -> tuple[WorkspaceSpec, ...]:
+    """The workspaces with more artifacts in ``main``."""
+    if not any(space.name == MAIN and space.parent is None for space in workspaces):
+        workspaces = (WorkspaceSpec(MAIN), *workspaces)
+    return tuple(
+        replace(space, artifacts=(*artifacts, *space.artifacts))
+        if space.name == MAIN and space.parent is None
+        else space
+        for space in workspaces
+    )
