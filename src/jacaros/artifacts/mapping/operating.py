@@ -60,7 +60,6 @@ class _Answered:
     """What services and actions share: a request that is filled, an answer that is taken apart."""
 
     what = "service"
-    wrong = "wrong_request"
 
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
@@ -102,7 +101,7 @@ class _Answered:
         try:
             return self._fill(inputs, self._host.clock.now())
         except WrongValue as error:
-            self._host.fail(str(error), self.wrong, error.field)
+            self._host.fail(str(error), "wrong_value", error.field)
 
     def _succeeded(self, answer: Any) -> bool:
         if self._check is None:
@@ -146,7 +145,6 @@ class _Pursuing(_Answered):
     """One operation with ``action``."""
 
     what = "action"
-    wrong = "wrong_goal"
     _client: ActionClient
 
     def __init__(self, host: Host, part: OperationPart) -> None:

@@ -77,7 +77,7 @@ class Publishing:
         value = inputs[duration.parameter] if duration.source is Source.PARAMETER else duration.value
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
             self._host.fail(
-                f"the duration is to be a number of seconds, not {value!r}", "wrong_message", "duration"
+                f"the duration is to be a number of seconds, not {value!r}", "wrong_value", "duration"
             )
         return float(value)
 
@@ -124,9 +124,9 @@ class Publishing:
                 raise WrongValue("a velocity is infinite; nothing was sent", "velocity")
             self._publisher.publish(self._publisher.message(**fields))
         except WrongValue as error:
-            self._host.fail(str(error), "wrong_message", error.field)
+            self._host.fail(str(error), "wrong_value", error.field)
         except MessageMismatch as error:
-            self._host.fail(str(error), "wrong_message", error.field)
+            self._host.fail(str(error), "wrong_value", error.field)
         self._moves = moves
 
     def _end(self, inputs: Sequence[object]) -> None:

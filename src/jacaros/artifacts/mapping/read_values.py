@@ -40,6 +40,12 @@ def read_value(node: Node, target: Path, parameters: tuple[str, ...], within_lis
         return ValuePart(target, place, source, value, parameter)
     if "each" in node.value:
         return _list(node, target, parameters)
+    if node.value and not set(node.value) & {*_VALUE, *_LIST}:
+        inner = next(iter(node.value))
+        node.wrong(
+            f"'{target.text}' has no fields of its own here", f"write their paths: {target.text}.{inner}: ..."
+        )
+        return ValuePart(target, place)
     entries = node.mapping(*_VALUE, required=("value",))
     conversion = read_conversion(entries)
     if conversion.kind not in _WRITTEN:

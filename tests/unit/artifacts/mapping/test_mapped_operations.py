@@ -1,0 +1,443 @@
+"""Operations of mapped artifacts: publishing, services, actions, parameters, on the graph inside the process."""
+
+import asyncio
+from typing import Any
+
+import pytest
+from mapped_lab import settle, with_mapped
+from robot_lab import STANDSTILL, Lab
+
+from jacaros.env import ArtifactId, Out
+from jacaros.ros.action import Abort, ActionPolicy, ServerGoal
+from jacaros.ros.parameter import Declaration
+
+DRIVE = """
+operations:
+  drive:
+    parameters: [speed, turn, seconds]
+    publish: cmd_vel
+    type: geometry_msgs/msg/Twist
+    fields: {linear.x: $speed, angular.z: {value: $turn, unit: degrees}}
+    rate: 10
+    duration: $seconds
+  go: {parameters: [speed], publish: cmd_vel, type: geometry_msgs/msg/Twist, fields: {linear.x: $speed}}
+"""
+
+
+# ---- publishing
+
+
+def test_publishing_once() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        await lab.do(artifact, "go", 0.5)
+        await settle()
+        assert lab.last_command == (0.5, 0.0)
+
+    with_mapped(DRIVE, body)
+
+
+def test_publishing_for_a_while_ends_with_zero() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        await lab.do(artifact, "drive", 0.5, 180, 1)
+        await settle()
+        times = [time for time, *_ in lab.commands]
+        assert times == [round(0.1 * n, 6) for n in range(11)]
+        assert lab.commands[0][1:] == pytest.approx((0.5, 3.141592653589793))
+        assert lab.last_command == STANDSTILL
+
+    with_mapped(DRIVE, body)
+
+
+def test_a_robot_stops_when_its_operation_is_cancelled() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        run = lab.begin(artifact, "drive", 0.5, 0, 10)
+        await lab.sleep(1)
+        run.execution.cancel()
+        await settle()
+        assert lab.last_command == STANDSTILL
+
+    with_mapped(DRIVE, body)
+
+
+def test_a_pause_stops_the_robot_and_does_not_count() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        run = lab.begin(artifact, "drive", 0.5, 0, 2)
+        await lab.sleep(1.05)
+        run.execution.pause()
+        await settle()
+        assert lab.last_command == STANDSTILL
+        count = len(lab.commands)
+        await lab.sleep(5)
+        assert len(lab.commands) == count
+        run.execution.resume()
+        await run.done
+        assert lab.clock.elapsed == pytest.approx(7.0)
+        assert lab.last_command == STANDSTILL
+
+    with_mapped(DRIVE, body)
+
+
+def test_one_motion_waits_for_another() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        first = lab.begin(artifact, "drive", 0.5, 0, 1)
+        second = lab.begin(artifact, "drive", -0.5, 0, 1)
+        await first.done
+        await second.done
+        assert lab.clock.elapsed == pytest.approx(2.0)
+        signs = [speed for _, speed, _ in lab.commands if speed]
+        assert signs == sorted(signs, reverse=True)
+
+    with_mapped(DRIVE, body)
+
+
+def test_a_robot_that_was_sent_a_velocity_stops_when_the_artifact_goes() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        await lab.do(artifact, "go", 0.5)
+        lab.workspace.dispose_artifact(artifact)
+        await settle()
+        assert lab.last_command == STANDSTILL
+
+    with_mapped(DRIVE, body)
+
+
+def test_a_robot_that_was_sent_a_velocity_stops_when_the_process_ends() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        await lab.do(artifact, "go", 0.5)
+        lab.backend.exit_hooks.run()  # type: ignore[attr-defined]  # what a signal of the system does
+        await settle()
+        assert lab.last_command == STANDSTILL
+
+    with_mapped(DRIVE, body)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("fast",), 'wrong_value("linear.x")'),
+        ((float("nan"),), 'wrong_value("linear.x")'),
+        ((float("inf"),), 'wrong_value("velocity")'),
+    ],
+)
+def test_a_value_that_does_not_fit_fails_and_sends_nothing(
+    arguments: tuple[object, ...], reason: str
+) -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        assert (await lab.call(artifact, "go", *arguments)).reason == reason
+        await settle()
+        assert lab.commands == []
+
+    with_mapped(DRIVE, body)
+
+
+def test_a_type_that_is_left_out_is_that_of_the_listener() -> None:
+    text = "operations: {go: {parameters: [v], publish: cmd_vel, fields: {linear.x: $v}}}"
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        failed = await lab.call(artifact, "go", 1)
+        assert failed.reason == 'type_unknown("/cmd_vel")'
+        assert failed.outcome is not None
+        assert "write its type in m.yaml:1" in (failed.outcome.message or "")
+        lab.record()
+        await lab.do(artifact, "go", 1)
+        await settle()
+        assert lab.last_command == (1.0, 0.0)
+
+    with_mapped(text, body)
+
+
+def test_a_last_message_of_ones_own() -> None:
+    text = """
+operations:
+  horn:
+    publish: horn
+    type: std_msgs/msg/Bool
+    fields: {data: true}
+    at_end: {data: false}
+    rate: 4
+    duration: 1
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        heard: list[bool] = []
+        lab.backend.subscription(
+            "horn", "std_msgs/msg/Bool", lambda sample: heard.append(sample.message.data)
+        )
+        await lab.do(artifact, "horn")
+        await settle()
+        assert heard == [True] * 4 + [False]
+
+    with_mapped(text, body)
+
+
+# ---- services
+
+ADD = """
+operations:
+  add: {parameters: [x, y], service: add, type: example_interfaces/srv/AddTwoInts, request: {a: $x, b: $y}, outputs: [sum]}
+"""
+
+
+def test_a_service_with_request_and_output() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.backend.service("/r1/add", "example_interfaces/srv/AddTwoInts", lambda r: {"sum": r.a + r.b})
+        out = Out()
+        await lab.do(artifact, "add", 2, 3, out)
+        assert out.value == 5
+
+    with_mapped(ADD, body, "r1")
+
+
+def test_a_service_that_is_not_there() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        assert (await lab.call(artifact, "add", 2, 3, Out())).reason == "service_unavailable(add)"
+        assert lab.clock.elapsed == pytest.approx(10.0)
+
+    with_mapped(ADD, body)
+
+
+def test_a_request_that_does_not_fit() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        assert (await lab.call(artifact, "add", 2.5, 3, Out())).reason == 'wrong_value("a")'
+
+    with_mapped(ADD, body)
+
+
+@pytest.mark.parametrize(
+    ("more", "reason"),
+    [
+        ("", 'service_refused(s,"not now")'),
+        (", success: none", "None"),
+        (", success: success", 'service_refused(s,"not now")'),
+        (", success: {path: message, is: not now}", "None"),
+    ],
+)
+def test_a_service_that_refuses(more: str, reason: str) -> None:
+    text = f"operations: {{go: {{service: s, type: std_srvs/srv/Trigger{more}}}}}"
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.backend.service("s", "std_srvs/srv/Trigger", lambda _: {"success": False, "message": "not now"})
+        assert (await lab.call(artifact, "go")).reason == reason
+
+    with_mapped(text, body)
+
+
+def test_the_type_of_a_service_is_found() -> None:
+    text = "operations: {go: {service: s, outputs: [message]}}"
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        assert (await lab.call(artifact, "go", Out())).reason == 'type_unknown("/s")'
+        lab.backend.service("s", "std_srvs/srv/Trigger", lambda _: {"success": True, "message": "done"})
+        out = Out()
+        await lab.do(artifact, "go", out)
+        assert out.value == "done"
+
+    with_mapped(text, body)
+
+
+# ---- actions
+
+COUNT = """
+operations:
+  count:
+    parameters: [n, period]
+    action: count
+    type: jacaros_interfaces/action/Count
+    goal: {target: $n, period: $period}
+    feedback: {at: [current]}
+    outputs: [last]
+    MORE
+"""
+
+
+async def counting(goal: ServerGoal, lab: Lab) -> dict[str, Any]:
+    """Count, one number each period."""
+    for number in range(1, int(goal.request.target) + 1):
+        await lab.clock.sleep(float(goal.request.period))
+        goal.feedback(current=number)
+        if number == 13:
+            raise Abort("unlucky")
+    return {"last": int(goal.request.target)}
+
+
+def offer(lab: Lab, policy: ActionPolicy | None = None) -> list[str]:
+    """Offer the action; the events of its goals."""
+    events: list[str] = []
+
+    async def execute(goal: ServerGoal) -> Any:
+        events.append("begin")
+        try:
+            return await counting(goal, lab)
+        except asyncio.CancelledError:
+            events.append("cancelled")
+            raise
+
+    lab.backend.action_server("count", "jacaros_interfaces/action/Count", execute, policy or ActionPolicy())
+    return events
+
+
+def test_a_goal_with_feedback_and_result() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab)
+        watcher, out = lab.watch(artifact), Out()
+        await lab.do(artifact, "count", 3, 1, out)
+        await settle()
+        assert out.value == 3
+        assert watcher.values("at") == [(1,), (2,), (3,)]
+        assert watcher.holds("at") == []
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_a_cancelled_operation_cancels_its_goal() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        events = offer(lab)
+        watcher = lab.watch(artifact)
+        run = lab.begin(artifact, "count", 9, 1, Out())
+        await lab.sleep(1.5)
+        assert watcher.holds("at") == [(1,)]
+        run.execution.cancel()
+        await lab.sleep(0.1)
+        assert events == ["begin", "cancelled"]
+        assert watcher.holds("at") == []
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_an_aborted_goal_fails_with_the_reason() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab)
+        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == 'aborted(0,"unlucky")'
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_a_goal_that_is_rejected() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab, ActionPolicy(accept=lambda goal: "no"))
+        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == "rejected"
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_a_goal_that_takes_too_long() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        events = offer(lab)
+        assert (await lab.call(artifact, "count", 20, 1, Out())).reason == "timeout(3)"
+        await lab.sleep(0.1)
+        assert events == ["begin", "cancelled"]
+
+    with_mapped(COUNT.replace("MORE", "timeout: 3"), body)
+
+
+def test_a_goal_without_success_fails() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab)
+        assert (await lab.call(artifact, "count", 2, 1, Out())).reason == 'aborted(0,"")'
+        await lab.do(artifact, "count", 3, 1, Out())
+
+    with_mapped(COUNT.replace("MORE", "success: {path: last, is: 3}"), body)
+
+
+def test_a_suspended_goal_is_cancelled_and_sent_again() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        events = offer(lab)
+        out = Out()
+        run = lab.begin(artifact, "count", 3, 1, out)
+        await lab.sleep(1.5)
+        run.execution.pause()
+        await lab.sleep(1)
+        assert events == ["begin", "cancelled"]
+        run.execution.resume()
+        await run.done
+        assert events == ["begin", "cancelled", "begin"]
+        assert out.value == 3
+
+    with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
+
+
+def test_frames_in_goals_get_the_prefix_of_the_robot() -> None:
+    text = """
+operations:
+  look:
+    publish: p
+    type: geometry_msgs/msg/PointStamped
+    fields: {header.frame_id: base_link, header.stamp: now}
+  far: {publish: p, type: geometry_msgs/msg/PointStamped, fields: {header.frame_id: map}}
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        heard: list[str] = []
+        lab.backend.subscription(
+            "/r1/p",
+            "geometry_msgs/msg/PointStamped",
+            lambda sample: heard.append(sample.message.header.frame_id),
+        )
+        await lab.do(artifact, "look")
+        await lab.do(artifact, "far")
+        await settle()
+        assert heard == ["r1/base_link", "map"]
+
+    with_mapped(text, body, "r1")
+
+
+# ---- parameters, and properties on demand
+
+PARAMETERS = """
+operations:
+  limit: {parameters: [v], set_parameter: speed, node: lab, value: {value: $v, unit: centimetres}}
+  limited: {get_parameter: speed, node: lab, outputs: [v]}
+  set: {parameters: [v], set_parameter: speed, node: lab, value: $v}
+  lost: {get_parameter: spede, node: lab}
+"""
+
+
+def test_parameters_of_nodes_are_set_and_given() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        own = lab.backend.parameters()
+        own.declare("speed", Declaration(0.5, maximum=2.0))
+        await lab.do(artifact, "limit", 75)
+        assert await own.get("speed") == 0.75
+        await lab.do(artifact, "set", 1)
+        out = Out()
+        await lab.do(artifact, "limited", out)
+        assert out.value == 1.0
+        assert (await lab.call(artifact, "set", 3)).reason == "parameter_refused(speed)"
+        assert (await lab.call(artifact, "lost", Out())).reason == "parameter_unknown(spede)"
+
+    with_mapped(PARAMETERS, body)
+
+
+def test_read_gives_the_newest_values() -> None:
+    text = """
+properties:
+  pose: {topic: odom, fields: [pose.pose.position.x, {path: pose.pose.orientation, as: yaw, unit: degrees}]}
+operations:
+  where: {read: pose}
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        x, yaw = Out(), Out()
+        await lab.do(artifact, "where", x, yaw)
+        assert (x.value, yaw.value) == (0.0, 0.0)
+
+    with_mapped(text, body, world="empty")
+
+
+def test_operations_have_their_arities_and_names_of_parameters() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        interface = lab.workspace.interface(artifact)
+        assert {key for key in interface.operations if not key.startswith("observe")} == {"add/3"}
+        found = interface.operations.find("add", 3)
+        assert found is not None
+        assert str(found.signature) == "x: any value, y: any value, -sum"
+        assert (await lab.call(artifact, "add", 1)).reason != "None"
+
+    with_mapped(ADD, body)

@@ -1,0 +1,479 @@
+"""Properties and signals of mapped artifacts, on the graph inside the process."""
+
+import math
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from mapped_lab import mapped, settle, with_mapped
+from robot_lab import Lab, Watcher, in_lab
+
+from jacaros.artifacts.mapping.handle import MessageHandle
+from jacaros.env import ArtifactId, OperationFailed
+from jacaros.env.values import Atom, Structure
+from jacaros.ros.qos import LATCHED, QoS
+
+POINT = "geometry_msgs/msg/Point"
+
+
+class Talk:
+    """A mapped artifact that somebody watches, and a publisher beside it."""
+
+    def __init__(self, lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
+        self.lab, self.artifact, self.watcher = lab, artifact, watcher
+        self.publishers: dict[str, Any] = {}
+
+    async def say(self, topic: str, type_name: str, qos: QoS | None = None, **fields: Any) -> None:
+        key = f"{topic} {type_name}"
+        if key not in self.publishers:
+            self.publishers[key] = self.lab.backend.publisher(topic, type_name, *([qos] if qos else []))
+        self.publishers[key].publish(self.publishers[key].message(**fields))
+        await settle()
+
+    async def points(self, *xs: float, pause: float = 0.0) -> None:
+        for x in xs:
+            await self.say("p", POINT, x=x)
+            if pause:
+                await self.lab.sleep(pause)
+
+    def values(self, name: str = "a") -> list[tuple[object, ...]]:
+        return self.watcher.values(name)
+
+    @property
+    def held(self) -> list[tuple[object, ...]]:
+        return self.watcher.holds("a")
+
+
+def talk(
+    text: str, body: Callable[[Talk], Awaitable[None]], *arguments: object, world: str | None = None
+) -> Lab:
+    async def in_it(lab: Lab, artifact: ArtifactId) -> None:
+        await body(Talk(lab, artifact, lab.watch(artifact)))
+
+    return with_mapped(text, in_it, *arguments, world=world)
+
+
+def points(text: str) -> str:
+    return f"properties: {{a: {{topic: p, type: {POINT}, fields: [x], {text}}}}}"
+
+
+def test_a_property_is_there_from_the_first_message_on() -> None:
+    async def body(t: Talk) -> None:
+        await settle()
+        assert t.held == []
+        await t.points(1, 1, 2)
+        assert t.values() == [(1,), (2,)]
+
+    talk(points(""), body)
+
+
+def test_initial_values() -> None:
+    async def body(t: Talk) -> None:
+        assert t.held == [(0,)]
+        await t.points(1)
+        assert t.held == [(1,)]
+
+    talk(points("initial: [0]"), body)
+
+
+def test_rate_dead_band_and_on_demand() -> None:
+    async def rate(t: Talk) -> None:
+        await t.points(1, 2, 3)
+        await t.lab.sleep(1)
+        assert t.values() == [(1,), (3,)]
+
+    async def band(t: Talk) -> None:
+        await t.points(1, 1.4, 1.6)
+        assert t.values() == [(1,), (1.6,)]
+
+    talk(points("rate: 2, latest_only: false"), rate)
+    talk(points("dead_band: 0.5"), band)
+
+
+def test_on_demand_only_operations_tell() -> None:
+    text = points("mode: on_demand") + "\noperations: {look: {refresh: a}, get: {read: a}}"
+
+    async def body(t: Talk) -> None:
+        await t.points(1, 2)
+        assert t.held == []
+        await t.lab.do(t.artifact, "look")
+        assert t.held == [(2,)]
+
+    talk(text, body)
+
+
+def test_refresh_fails_when_no_message_comes() -> None:
+    async def body(t: Talk) -> None:
+        assert (await t.lab.call(t.artifact, "look")).reason == "no_message(5)"
+
+    talk(points("mode: on_demand") + "\noperations: {look: {refresh: a}}", body)
+
+
+def test_a_property_expires() -> None:
+    async def body(t: Talk) -> None:
+        await t.points(1)
+        await t.lab.sleep(1.9)
+        assert t.held == [(1,)]
+        await t.lab.sleep(0.2)
+        assert t.held == []
+        await t.points(1)
+        assert t.held == [(1,)]
+
+    talk(points("expire: 2"), body)
+
+
+def test_one_subscription_serves_all_properties_of_a_topic() -> None:
+    text = f"""
+properties:
+  a: {{topic: p, type: {POINT}, fields: x}}
+  b: {{topic: p, type: {POINT}, fields: [y, z]}}
+signals:
+  c: {{topic: p, type: {POINT}, fields: [x, y]}}
+"""
+
+    async def body(t: Talk) -> None:
+        await t.say("p", POINT, x=1, y=2, z=3)
+        assert (t.values("a"), t.values("b")) == ([(1,)], [(2, 3)])
+        assert t.watcher.signals == [("c", (1, 2))]
+        assert t.publishers[f"p {POINT}"].subscription_count == 1
+
+    talk(text, body)
+
+
+def test_annotations_of_the_belief() -> None:
+    text = """
+properties:
+  a:
+    topic: p
+    type: geometry_msgs/msg/PointStamped
+    fields: [point.x]
+    annotations: {frame: header.frame_id, at: {path: header.stamp}}
+"""
+
+    async def body(t: Talk) -> None:
+        header = {"frame_id": "map", "stamp": 3.5}
+        await t.say("p", "geometry_msgs/msg/PointStamped", point={"x": 1}, header=header)
+        [added] = t.watcher.observations[-1].added
+        assert added.annotations == (Structure("frame", ("map",)), Structure("at", (3.5,)))
+        await t.say("p", "geometry_msgs/msg/PointStamped", point={"x": 2}, header={**header, "stamp": 4})
+        [(_, now)] = t.watcher.observations[-1].changed
+        assert now.annotations[1] == Structure("at", (4.0,))
+
+    talk(text, body)
+
+
+def test_a_number_that_is_not_finite_is_told_once_with_the_line() -> None:
+    async def body(t: Talk) -> None:
+        await t.points(1, math.nan, math.nan)
+        assert t.held == [(1,)]
+        [line] = t.lab.logged
+        assert "m.yaml:1:14: a is not shown: x is nan" in line
+        assert "cure: say what to show instead: {path: x, otherwise: 0}" in line
+        assert t.watcher.signals == [("bad_message", ("/p", Structure("not_finite", ("x",))))]
+
+    talk(points(""), body)
+
+
+JOINTS = """
+properties:
+  a:
+    topic: j
+    type: sensor_msgs/msg/JointState
+    each: name
+    fields: [., '/position[i]']
+    {}
+"""
+
+
+async def joints(t: Talk, **positions: float) -> None:
+    await t.say("j", "sensor_msgs/msg/JointState", name=list(positions), position=list(positions.values()))
+
+
+def test_one_property_for_each_element() -> None:
+    async def body(t: Talk) -> None:
+        await joints(t, left=1, right=2)
+        assert t.held == [("left", 1), ("right", 2)]
+        await joints(t, left=1, right=3, top=4)
+        last = t.watcher.observations[-1]
+        assert [new.values for _, new in last.changed] == [("right", 3)]
+        assert [new.values for new in last.added] == [("top", 4)]
+        await joints(t, right=3)
+        assert t.held == [("right", 3)]
+
+    talk(JOINTS.format(""), body)
+
+
+def test_elements_that_are_not_seen_expire() -> None:
+    async def body(t: Talk) -> None:
+        await joints(t, left=1)
+        await t.lab.sleep(1.5)
+        await joints(t, right=2)
+        assert t.held == [("left", 1), ("right", 2)]
+        await t.lab.sleep(0.6)
+        assert t.held == [("right", 2)]
+        await t.lab.sleep(1.5)
+        assert t.held == []
+
+    talk(JOINTS.format("expire: 2"), body)
+
+
+def test_dead_band_of_elements() -> None:
+    async def body(t: Talk) -> None:
+        await joints(t, left=1, right=2)
+        await joints(t, left=1.1, right=3)
+        assert t.held == [("left", 1), ("right", 3)]
+
+    talk(JOINTS.format("dead_band: 0.5"), body)
+
+
+POSES = """
+properties:
+  here: {topic: p, type: geometry_msgs/msg/Point, fields: [x, y]}
+  a:
+    topic: seen
+    type: geometry_msgs/msg/PoseArray
+    each: poses
+    fields: [position.x, position.y]
+    range_of_view: {metres: 2, at: [position.x, position.y]FROM}
+"""
+
+
+async def seen(t: Talk, *xs: float) -> None:
+    await t.say("seen", "geometry_msgs/msg/PoseArray", poses=[{"position": {"x": x}} for x in xs])
+
+
+def test_only_what_is_near_the_robot_is_in_view() -> None:
+    async def body(t: Talk) -> None:
+        await seen(t, 1, 2, 3)
+        assert t.held == [(1, 0), (2, 0)]
+
+    talk(POSES.replace("FROM", ""), body)
+
+
+def test_the_view_moves_with_a_property() -> None:
+    async def body(t: Talk) -> None:
+        await seen(t, 1, 4, 9)
+        assert t.held == []
+        await t.say("p", POINT, x=5)
+        assert t.held == [(4, 0)]
+        await t.say("p", POINT, x=8)
+        assert t.held == [(9, 0)]
+
+    talk(POSES.replace("FROM", ", from: here"), body)
+
+
+def test_the_view_by_a_distance() -> None:
+    view = "range_of_view: {metres: 1, distance: range}"
+    text = f"properties: {{a: {{topic: r, type: sensor_msgs/msg/Range, fields: range, {view}}}}}"
+
+    async def body(t: Talk) -> None:
+        for distance in (0.5, 2, 0.75):
+            await t.say("r", "sensor_msgs/msg/Range", range=distance)
+            assert t.held == ([] if distance == 2 else [(distance,)])
+
+    talk(text, body)
+
+
+def test_signals_for_each_element_and_for_changes_alone() -> None:
+    text = """
+signals:
+  part: {topic: j, type: sensor_msgs/msg/JointState, each: name, fields: [., "/position[i]"], when_changed: true}
+"""
+
+    async def body(t: Talk) -> None:
+        await joints(t, left=1, right=2)
+        await joints(t, left=1, right=3)
+        assert t.watcher.signals == [("part", ("left", 1)), ("part", ("right", 2)), ("part", ("right", 3))]
+
+    talk(text, body)
+
+
+def test_signals_at_most_so_often() -> None:
+    text = f"signals: {{a: {{topic: p, type: {POINT}, fields: x, rate: 1}}}}"
+
+    async def body(t: Talk) -> None:
+        await t.points(1, 2, 3, pause=0.6)
+        assert [arguments for _, arguments in t.watcher.signals] == [(1,), (3,)]
+
+    talk(text, body)
+
+
+def test_names_are_below_the_namespace_unless_they_begin_with_a_slash() -> None:
+    text = f"""
+namespace: usual
+properties:
+  a: {{topic: p, type: {POINT}, fields: x}}
+  b: {{topic: /p, type: {POINT}, fields: x}}
+"""
+
+    async def body(t: Talk) -> None:
+        for topic, x in (("/usual/p", 1), ("/r1/p", 2), ("/p", 3)):
+            await t.say(topic, POINT, x=x)
+        assert t.values("b") == [(3,)]
+        t.lab.logged.append(str(t.values("a")))
+
+    assert talk(text, body).logged[-1] == "[(1.0,)]"
+    assert talk(text, body, "r1").logged[-1] == "[(2.0,)]"
+    assert talk(text, body, Structure("namespace", ("r1",))).logged[-1] == "[(2.0,)]"
+
+
+def test_a_type_that_is_left_out_is_found_when_somebody_publishes() -> None:
+    async def body(t: Talk) -> None:
+        await t.lab.sleep(4)
+        assert any("waiting for the topic /p, to learn its type" in line for line in t.lab.logged)
+        assert any("m.yaml:1:25: the topic /p is missing" in line for line in t.lab.logged)
+        assert any("write its type: type: package/msg/Type" in line for line in t.lab.logged)
+        await t.points(1)
+        await t.lab.sleep(1)
+        await t.points(2)
+        assert t.held == [(2,)]
+
+    talk("properties: {a: {topic: p, fields: x}}", body)
+
+
+def test_a_type_that_was_found_and_does_not_fit_is_told_with_the_line() -> None:
+    async def body(t: Talk) -> None:
+        await t.say("p", "std_msgs/msg/String")
+        await t.lab.sleep(1)
+        [line] = [line for line in t.lab.logged if "no field" in line]
+        assert "m.yaml:1:36: 'x': std_msgs/msg/String has no field 'x'" in line
+        assert "cure: its fields: data (string)" in line
+
+    talk("properties: {a: {topic: p, fields: x}}", body)
+
+
+def test_another_type_at_the_topic_is_told_once_with_the_line() -> None:
+    async def body(t: Talk) -> None:
+        for _ in range(3):
+            await t.say("p", "std_msgs/msg/String", data="x")
+        [line] = [line for line in t.lab.logged if "std_msgs/msg/String" in line]
+        assert "m.yaml:1:25: " in line
+        assert POINT in line
+
+    talk(points(""), body)
+
+
+def test_a_quality_of_service_that_does_not_suit_is_told_once_with_the_line() -> None:
+    async def body(t: Talk) -> None:
+        for _ in range(3):
+            await t.say("p", POINT, x=1)
+        [line] = [line for line in t.lab.logged if "transient_local" in line]
+        assert "m.yaml:1:25: " in line
+        assert t.held == []
+
+    talk(points("qos: latched"), body)
+
+
+def test_the_last_message_of_a_latched_topic_waits() -> None:
+    async def body(lab: Lab) -> None:
+        publisher = lab.backend.publisher("p", POINT, LATCHED)
+        publisher.publish(publisher.message(x=4))
+        artifact = await lab.make(mapped(points("qos: latched")))
+        watcher = lab.watch(artifact)
+        await settle()
+        assert watcher.holds("a") == [(4,)]
+
+    in_lab(body, None)
+
+
+def test_images_are_handles() -> None:
+    text = "properties: {a: {topic: i, type: sensor_msgs/msg/Image, fields: {path: ., as: object}}}"
+
+    async def body(t: Talk) -> None:
+        await t.say("i", "sensor_msgs/msg/Image", data=[1, 2])
+        [(found,)] = t.held
+        assert isinstance(found, MessageHandle)
+        assert list(found.value.data) == [1, 2]
+
+    talk(text, body)
+
+
+def test_names_of_constants_are_atoms() -> None:
+    text = "properties: {a: {topic: b, type: sensor_msgs/msg/BatteryState, fields: {path: power_supply_status, as: name}}}"
+
+    async def body(t: Talk) -> None:
+        await t.say("b", "sensor_msgs/msg/BatteryState", power_supply_status=4)
+        assert t.held == [(Atom("full"),)]
+        assert isinstance(t.held[0][0], Atom)
+
+    talk(text, body)
+
+
+def test_a_wrong_mapping_cannot_be_made_into_an_artifact() -> None:
+    async def body(lab: Lab) -> None:
+        try:
+            await lab.make(mapped(f"properties: {{a: {{topic: p, type: {POINT}, fields: [u, v]}}}}"))
+        except OperationFailed as failure:
+            lab.logged.append(failure.message)
+
+    [message] = in_lab(body, None).logged
+    assert f"m.yaml:1:68: 'u': {POINT} has no field 'u'" in message
+    assert "'v'" in message
+
+
+def test_connected_topics_are_shown() -> None:
+    async def body(t: Talk) -> None:
+        assert t.watcher.holds("connected") == []
+        await t.points(1)
+        await t.lab.sleep(1)
+        assert t.watcher.holds("connected") == [("/p",)]
+
+    talk(f"connected: true\n{points('')}", body)
+
+
+def test_frames_are_properties_while_they_are_known() -> None:
+    text = """
+frames:
+  pose: {target: odom, source: base_link, rate: 4}
+  heading: {target: odom, source: base_link, fields: {path: yaw, unit: degrees}, expire: 1}
+"""
+
+    async def body(t: Talk) -> None:
+        await t.lab.sleep(1)
+        assert t.watcher.holds("pose") == [(0.0, 0.0, 0.0)]
+        assert t.watcher.holds("heading") == [(0.0,)]
+
+    talk(text, body, world="empty")
+
+
+def test_frames_get_the_prefix_of_the_robot() -> None:
+    text = "frames: {a: {target: map, source: base_link}, b: {target: /odom, source: base_link}}"
+
+    async def transform(lab: Lab, parent: str, child: str, x: float) -> None:
+        lab.backend.tf_broadcast(
+            {
+                "header": {"stamp": lab.clock.now(), "frame_id": parent},
+                "child_frame_id": child,
+                "transform": {"translation": {"x": x}},
+            }
+        )
+        await settle()
+
+    async def body(t: Talk) -> None:
+        await transform(t.lab, "map", "r1/base_link", 1)
+        await t.lab.sleep(0.5)
+        assert t.held == [(1, 0, 0)]
+        await transform(t.lab, "odom", "other/base_link", 2)
+        await t.lab.sleep(4)
+        assert t.watcher.holds("b") == []
+        assert any("m.yaml:1:47: b is not known: " in line for line in t.lab.logged)
+
+    talk(text, body, "r1")
+
+
+def test_parameters_of_nodes_are_properties_that_follow() -> None:
+    from jacaros.ros.parameter import Declaration
+
+    text = "parameters: {a: {node: lab, parameter: speed, fields: {path: ., unit: centimetres}}}"
+
+    async def body(t: Talk) -> None:
+        await t.lab.sleep(3)
+        assert t.held == []
+        own = t.lab.backend.parameters()
+        own.declare("speed", Declaration(0.5))
+        await t.lab.sleep(2)
+        assert t.held == [(50.0,)]
+        await own.set("speed", 0.75)
+        await settle()
+        assert t.held == [(75.0,)]
+
+    talk(text, body)

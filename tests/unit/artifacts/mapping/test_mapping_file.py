@@ -1,0 +1,287 @@
+"""Mapping files: what is read, and what is told of mistakes that need no message type."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.artifacts.mapping.declared import MappingFile
+from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.file import find_mapping, load_mapping, read_mapping
+from jacaros.ros.qos import LATCHED, SENSOR_DATA, QoS
+
+MESSAGE = "std_msgs/msg/Float64"
+
+
+def told(text: str) -> list[str]:
+    """What is told of a file: `line:column: message | cure`."""
+    with pytest.raises(MappingError) as caught:
+        read_mapping(text, "m.yaml")
+    return [f"{p.line}:{p.column}: {p.message} | {p.cure}" for p in caught.value.problems]
+
+
+def properties(text: str) -> MappingFile:
+    return read_mapping(f"properties:\n{text}", "m.yaml")
+
+
+def test_a_file_without_artifacts_is_one_that_is_called_like_it() -> None:
+    mapping = read_mapping("properties: {chatter: chatter}", "talker.yaml")
+    [part] = mapping.artifacts.values()
+    assert part.name == "talker"
+    [chatter] = part.properties
+    assert chatter.topic is not None
+    assert (chatter.name, chatter.topic.text, chatter.type_name, chatter.fields) == (
+        "chatter",
+        "chatter",
+        None,
+        None,
+    )
+
+
+def test_several_artifacts_keep_their_order() -> None:
+    mapping = read_mapping("artifacts:\n  b: {namespace: /r1/}\n  a: {tf_prefix: x, connected: 2}")
+    assert list(mapping.artifacts) == ["b", "a"]
+    assert mapping.artifacts["b"].namespace == "r1"
+    assert (mapping.artifacts["a"].tf_prefix, mapping.artifacts["a"].connected) == ("x", 2.0)
+
+
+@pytest.mark.parametrize(
+    ("written", "qos"),
+    [
+        ("sensor_data", SENSOR_DATA),
+        ("latched", LATCHED),
+        ("{depth: 3}", QoS(depth=3)),
+        ("{reliability: best_effort, deadline: 0.5}", QoS("best_effort", deadline=0.5)),
+    ],
+)
+def test_qos_is_a_profile_or_its_parts(written: str, qos: QoS) -> None:
+    [part] = properties(f"  a: {{topic: a, qos: {written}}}").artifacts["m"].properties
+    assert part.qos == qos
+
+
+def test_policies_of_a_property() -> None:
+    text = "  a: {topic: a, fields: [x, {path: y, dead_band: 2}], rate: 5, dead_band: 1, expire: 3, latest_only: false}"
+    [part] = properties(text).artifacts["m"].properties
+    policy = part.policy
+    assert (policy.rate, policy.dead_band, policy.expire, policy.latest_only) == (5.0, (1.0, 2.0), 3.0, False)
+
+
+WRONG = {
+    "nothing": ("", "1:1: the file says nothing | begin with properties: or operations:"),
+    "no YAML": ("a: [", "1:5: not YAML: "),
+    "brackets in brackets": (
+        "properties: {a: {topic: t, fields: [x[0]]}}",
+        "1:38: not YAML: expected ',' or ']', but got '[' | write a text with brackets in quotes: \"ranges[0]\"",
+    ),
+    "a list": ("- a", "1:1: a mapping file must be a mapping of keys to values | "),
+    "unknown key": (
+        "propertys: {}",
+        "1:1: a mapping file has no key 'propertys' | did you mean 'properties'?",
+    ),
+    "no topic": ("properties: {a: {rate: 1}}", "1:17: 'a' lacks the key 'topic' | add 'topic: ...'"),
+    "twice": (
+        "properties:\n  a: t\n  a: u",
+        "3:3: 'a' stands here twice: first in line 2 | give it another name, or leave one of them out",
+    ),
+    "one name": (
+        "properties: {a: t}\nsignals: {a: u}",
+        "2:11: the signal 'a' has the name of the property of line 1 | give it another name",
+    ),
+    "capital": ("properties: {Pose: t}", "1:14: 'Pose' is no name that agents can write | write pose"),
+    "topic name": (
+        "properties: {a: 'my topic'}",
+        "1:17: 'my topic' is no ROS name | write it like cmd_vel or /robot/cmd_vel",
+    ),
+    "namespace": ("namespace: 'a b'", "1:12: 'a b' is no ROS namespace | write it like r1 or fleet/r1"),
+    "type name": (
+        "properties: {a: {topic: t, type: Odometry}}",
+        "1:34: 'Odometry' is no type of this kind | write it like nav_msgs/msg/Odometry",
+    ),
+    "service type for a topic": (
+        "properties: {a: {topic: t, type: std_srvs/srv/Trigger}}",
+        "1:34: 'std_srvs/srv/Trigger' is no type of this kind | write it like nav_msgs/msg/Odometry",
+    ),
+    "path": (
+        "properties: {a: {topic: t, fields: ['pose..x']}}",
+        "1:37: 'pose..x' is no path: '' is no field | write it like pose.position.x or ranges[0]",
+    ),
+    "unit": (
+        "properties: {a: {topic: t, fields: {path: x, unit: meters}}}",
+        (
+            "1:52: there is no unit 'meters' | did you mean 'metres'? Units: radians, degrees, metres, centimetres, "
+            "millimetres, metres_per_second, kilometres_per_hour, seconds, milliseconds, minutes, celsius, kelvin, share, "
+            "percent"
+        ),
+    ),
+    "units of two kinds": (
+        "properties: {a: {topic: t, fields: {path: x, unit: metres, message_unit: celsius}}}",
+        (
+            "1:74: celsius is a unit of temperature, metres one of length | units of length are metres, centimetres, "
+            "millimetres"
+        ),
+    ),
+    "unit of an angle": (
+        "properties: {a: {topic: t, fields: {path: q, as: yaw, unit: percent}}}",
+        "1:61: 'as: yaw' gives an angle, and percent is a unit of share | units of angle are radians, degrees",
+    ),
+    "as": (
+        "properties: {a: {topic: t, fields: {path: q, as: jaw}}}",
+        "1:50: 'as' is 'jaw' | choose one of: yaw, pitch, roll, name, atom, object, count, min, max, mean",
+    ),
+    "scale": (
+        "properties: {a: {topic: t, fields: {path: x, scale: 0}}}",
+        "1:53: 'scale' is 0, so that nothing is left of the value | write another figure",
+    ),
+    "share": (
+        "properties: {a: {topic: t, fields: {path: x, sample: [0, 2]}}}",
+        "1:58: item 2 of 'sample' is 2, but must lie between 0 and 1 | ",
+    ),
+    "dead bands": (
+        "properties: {a: {topic: t, fields: [x, y], dead_band: [1]}}",
+        "1:55: 'dead_band' has 1 figures, and the property 2 values | write one figure for all, or one for each value",
+    ),
+    "initial": (
+        "properties: {a: {topic: t, fields: [x, y], initial: [1]}}",
+        "1:53: 'initial' has 1 values, and the property 2 | write one for each value",
+    ),
+    "mode": (
+        "properties: {a: {topic: t, mode: lazy}}",
+        "1:34: 'mode' is 'lazy' | choose one of: verbose, on_demand",
+    ),
+    "rate": ("properties: {a: {topic: t, rate: 0}}", "1:34: 'rate' is 0, but must be above zero | "),
+    "on demand of nobody": (
+        "properties: {a: {topic: t, mode: on_demand}}",
+        "1:14: nobody can ask for 'a', which is told on demand | add an operation: look: {refresh: a}",
+    ),
+    "key without each": (
+        "properties: {a: {topic: t, key: id}}",
+        "1:33: 'key' goes with 'each' | say which array has the elements: each: detections",
+    ),
+    "element without each": (
+        "properties: {a: {topic: t, fields: ['x[i]']}}",
+        "1:37: 'x[i]' goes with 'each' | without 'each' write the path alone",
+    ),
+    "qos": (
+        "properties: {a: {topic: t, qos: fast}}",
+        (
+            "1:33: there is no QoS profile 'fast' | write sensor_data, default, latched, or {reliability: ..., "
+            "durability: ..., depth: ..., deadline: ...}"
+        ),
+    ),
+    "view": (
+        "properties: {a: {topic: t, range_of_view: {metres: 3}}}",
+        "1:43: 'range_of_view' needs a place | add 'at: [position.x, position.y]', or 'distance: range'",
+    ),
+    "view from nowhere": (
+        "properties: {a: {topic: t, range_of_view: {metres: 3, at: [x, y], from: pose}}}",
+        "1:73: there is no property 'pose' | properties from topics and frames: a",
+    ),
+    "frame": ("frames: {a: {target: map}}", "1:13: 'a' lacks the key 'source' | add 'source: ...'"),
+    "part of a frame": (
+        "frames: {a: {target: map, source: s, fields: [x, w]}}",
+        "1:50: a transform has no 'w' | it has x, y, z, roll, pitch, yaw, stamp",
+    ),
+    "kind": (
+        "operations: {go: {topic: t}}",
+        (
+            "1:14: the operation 'go' does not say what it does | write one of publish, service, action, set_parameter, "
+            "get_parameter, refresh, read"
+        ),
+    ),
+    "two kinds": (
+        "operations: {go: {publish: t, service: s}}",
+        (
+            "1:14: the operation 'go' has publish and service | write one of publish, service, action, set_parameter, "
+            "get_parameter, refresh, read"
+        ),
+    ),
+    "key of another kind": (
+        "operations: {go: {publish: t, request: {}}}",
+        (
+            "1:31: 'go' has no key 'request' | known keys: publish, parameters, description, type, fields, qos, rate, "
+            "duration, at_end"
+        ),
+    ),
+    "parameter": (
+        "operations: {go: {parameters: [speed], publish: t, fields: {x: $sped}}}",
+        "1:64: the operation has no parameter 'sped' | did you mean $speed?",
+    ),
+    "parameter missing": (
+        "operations: {go: {publish: t, fields: {x: $v}}}",
+        "1:43: the operation has no parameter 'v' | write it into 'parameters': [v]",
+    ),
+    "parameter twice": (
+        "operations: {go: {parameters: [v, v], publish: t}}",
+        "1:35: the parameter 'v' stands here twice | give it another name",
+    ),
+    "rate alone": (
+        "operations: {go: {publish: t, rate: 3}}",
+        "1:37: 'rate' goes with 'duration' | say how long: duration: 2, or duration: $seconds",
+    ),
+    "duration alone": (
+        "operations: {go: {publish: t, duration: 3}}",
+        "1:41: 'duration' goes with 'rate' | say how often: rate: 10",
+    ),
+    "field of a field": (
+        "operations: {go: {publish: t, fields: {linear: {x: 1}}}}",
+        "1:48: 'linear' has no fields of its own here | write their paths: linear.x: ...",
+    ),
+    "read by writing": (
+        "operations: {go: {publish: t, fields: {x: {value: 1, as: mean}}}}",
+        "1:58: 'as: mean' is for fields that an agent reads | here: yaw, pitch, roll, name",
+    ),
+    "suspend": (
+        "operations: {go: {action: a, suspend: stop}}",
+        "1:39: 'suspend' is 'stop' | choose one of: go_on, cancel",
+    ),
+    "refresh": (
+        "operations: {look: {refresh: pose}}",
+        "1:30: there is no property 'pose' | properties from topics and frames: none",
+    ),
+    "read without fields": (
+        "properties: {a: t}\noperations: {look: {read: a}}",
+        "2:27: the number of values of 'a' is not known | give 'a' fields",
+    ),
+    "node": (
+        "operations: {go: {get_parameter: a}}",
+        "1:18: 'go' lacks the key 'node' | add 'node: ...'",
+    ),
+    "no artifacts": (
+        "artifacts: {}",
+        "1:12: there are no artifacts | write the name of one below 'artifacts'",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_mistake_is_told_with_place_and_cure(name: str) -> None:
+    text, expected = WRONG[name]
+    found = told(text)
+    assert any(each.startswith(expected) for each in found), found
+
+
+def test_all_mistakes_are_told_at_once_in_the_order_of_the_lines() -> None:
+    found = told("properties:\n  A: t\n  b: {topic: t, mode: lazy}\noperations:\n  go: {}\n")
+    assert [each.split(":")[0] for each in found] == ["2", "3", "5"]
+
+
+def test_a_mistake_is_shown_with_its_line() -> None:
+    with pytest.raises(MappingError) as caught:
+        read_mapping("properties:\n  pose: {topic: odom, unit: 3}\n", "m.yaml")
+    assert str(caught.value).startswith(
+        "m.yaml:2:23: 'pose' has no key 'unit'\n"
+        "    2 |   pose: {topic: odom, unit: 3}\n"
+        "                              ^\n"
+        "  cure: known keys: topic, type, fields, "
+    )
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    assert find_mapping("no.yaml", (tmp_path,)) is None
+    with pytest.raises(MappingError, match="there is no such mapping file"):
+        load_mapping(tmp_path / "no.yaml")
+
+
+def test_a_file_that_is_no_text(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_bytes(b"\xff\xfe")
+    with pytest.raises(MappingError, match="it cannot be read"):
+        load_mapping(tmp_path / "m.yaml")

@@ -1,0 +1,186 @@
+"""Mapping files compared with message types: what does not fit is told with place and cure."""
+
+import pytest
+
+from jacaros.artifacts.mapping.checking import check_mapping
+from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.mapping.interfaces import stored_interfaces
+
+ODOMETRY = "properties: {{a: {{topic: t, type: nav_msgs/msg/Odometry, {}}}}}"
+BATTERY = "properties: {{a: {{topic: t, type: sensor_msgs/msg/BatteryState, {}}}}}"
+TWIST = "operations: {{go: {{publish: t, type: geometry_msgs/msg/Twist, parameters: [v], {}}}}}"
+GOAL = "operations: {{go: {{action: t, type: nav2_msgs/action/NavigateToPose, parameters: [v], {}}}}}"
+
+WRONG = {
+    "type": (
+        "properties: {a: {topic: t, type: nav_msgs/msg/Odometri}}",
+        "1:34: the type nav_msgs/msg/Odometri is not known here | did you mean nav_msgs/msg/Odometry?",
+    ),
+    "service type": (
+        "operations: {a: {service: t, type: std_srvs/srv/Triger}}",
+        "1:36: the type std_srvs/srv/Triger is not known here | did you mean std_srvs/srv/Trigger?",
+    ),
+    "action type": (
+        "operations: {a: {action: t, type: nav2_msgs/action/NavigateToPos}}",
+        "1:35: the type nav2_msgs/action/NavigateToPos is not known here | did you mean nav2_msgs/action/NavigateToPose",
+    ),
+    "field": (
+        ODOMETRY.format("fields: [pose.pose.positon.x]"),
+        (
+            "1:66: 'pose.pose.positon.x': geometry_msgs/msg/Pose has no field 'positon' | did you mean 'position'? "
+            "Its fields: position (geometry_msgs/msg/Point), orientation (geometry_msgs/msg/Quaternion)"
+        ),
+    ),
+    "field of a number": (
+        ODOMETRY.format("fields: [pose.pose.position.x.y]"),
+        "1:66: 'pose.pose.position.x.y': pose.pose.position.x is float64 and has no fields | write pose.pose.position.x",
+    ),
+    "element of a number": (
+        ODOMETRY.format("fields: ['pose.pose.position.x[0]']"),
+        "1:66: 'pose.pose.position.x[0]': pose.pose.position.x is float64, and no array | write pose.pose.position.x",
+    ),
+    "element that is not there": (
+        ODOMETRY.format("fields: ['pose.covariance[36]']"),
+        (
+            "1:66: 'pose.covariance[36]': pose.covariance has 36 elements | elements are pose.covariance[0] to "
+            "pose.covariance[35]"
+        ),
+    ),
+    "field of an array": (
+        "properties: {a: {topic: t, type: tf2_msgs/msg/TFMessage, fields: [transforms.header]}}",
+        (
+            "1:67: 'transforms.header': transforms is an array, geometry_msgs/msg/TransformStamped[] | write "
+            "transforms[0].header, or transforms[*].header for all"
+        ),
+    ),
+    "yaw": (
+        ODOMETRY.format("fields: {path: pose.pose.position, as: yaw}"),
+        (
+            "1:65: 'as: yaw' is for quaternions, and pose.pose.position is geometry_msgs/msg/Point | name the field that is "
+            "a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
+        ),
+    ),
+    "unit": (
+        ODOMETRY.format("fields: {path: header.frame_id, unit: degrees}"),
+        "1:65: unit, scale or offset needs a number, and header.frame_id is string | name a field that is a number",
+    ),
+    "atom": (
+        ODOMETRY.format("fields: {path: pose.pose.position.x, as: atom}"),
+        "1:65: 'as: atom' is for strings, and pose.pose.position.x is float64 | leave 'as' out",
+    ),
+    "sample": (
+        ODOMETRY.format("fields: {path: pose.pose.position.x, sample: 5}"),
+        "1:65: 'sample' is for lists, and pose.pose.position.x is float64 | name a field that is a list",
+    ),
+    "otherwise": (
+        BATTERY.format("fields: {path: percentage, otherwise: location}"),
+        "1:72: 'otherwise' is to be a number, and location is string | ",
+    ),
+    "constants": (
+        BATTERY.format("fields: {path: present, as: name, prefix: X_}"),
+        (
+            "1:72: sensor_msgs/msg/BatteryState has no constant that begins with X_ | its constants: "
+            "POWER_SUPPLY_STATUS_UNKNOWN, "
+        ),
+    ),
+    "ambiguous constants": (
+        BATTERY.format("fields: {path: present, as: name}"),
+        (
+            "1:72: sensor_msgs/msg/BatteryState: the constants power_supply_status_unknown and power_supply_health_unknown "
+            "have the same value 0 | write prefix: ... with which those of 'present' begin, or names: "
+            "{0: power_supply_health_unknown}"
+        ),
+    ),
+    "each": (
+        BATTERY.format("each: percentage"),
+        "1:70: 'each' is for arrays, and percentage is float32 | ",
+    ),
+    "range of view": (
+        BATTERY.format("range_of_view: {metres: 1, distance: location}"),
+        "1:79: 'range_of_view' needs numbers, and location is string | ",
+    ),
+    "dead bands of all fields": (
+        "properties: {a: {topic: t, type: geometry_msgs/msg/Point, dead_band: [1]}}",
+        "1:14: 'dead_band' has 1 values, and geometry_msgs/msg/Point 3 fields | ",
+    ),
+    "target": (
+        TWIST.format("fields: {linear.w: 1}"),
+        "1:98: 'linear.w': geometry_msgs/msg/Vector3 has no field 'w' | its fields: x (float64), y (float64), z (float64)",
+    ),
+    "constant": (
+        TWIST.format("fields: {linear.x: fast}"),
+        (
+            "1:98: geometry_msgs/msg/Vector3: field x is float64, but 'fast' is given | write another value, or a "
+            "parameter: $name"
+        ),
+    ),
+    "constant by name": (
+        "operations: {go: {publish: t, type: sensor_msgs/msg/Joy, fields: {header.stamp: now, 'buttons[0]': UP}}}",
+        (
+            "1:100: buttons[0] is int32, and 'UP' is no constant of sensor_msgs/msg/Joy | write a number, or a "
+            "parameter: $name"
+        ),
+    ),
+    "now": (
+        TWIST.format("fields: {linear.x: now}"),
+        "1:98: 'now' is a time, and linear.x is float64 | write another value",
+    ),
+    "quaternion": (
+        TWIST.format("fields: {angular: {value: $v, as: yaw}}"),
+        (
+            "1:97: 'as: yaw' gives a quaternion, and angular is geometry_msgs/msg/Vector3 | name the field that is a "
+            "geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
+        ),
+    ),
+    "goal": (
+        GOAL.format("goal: {pose.pose.position: 3}"),
+        (
+            "1:113: geometry_msgs/msg/Pose: field position is geometry_msgs/msg/Point, but 3 is given | write another value, "
+            "or a parameter: $name"
+        ),
+    ),
+    "output": (
+        GOAL.format("outputs: [error]"),
+        "1:96: 'error': nav2_msgs/action/NavigateToPose_Result has no field 'error' | did you mean 'error_msg'?",
+    ),
+    "feedback": (
+        GOAL.format("feedback: {left: [distance]}"),
+        (
+            "1:104: 'distance': nav2_msgs/action/NavigateToPose_Feedback has no field 'distance' | did you mean "
+            "'distance_remaining'? Its fields: current_pose"
+        ),
+    ),
+    "success": (
+        GOAL.format("success: ok"),
+        "1:95: 'ok': nav2_msgs/action/NavigateToPose_Result has no field 'ok' | its fields: ",
+    ),
+    "elements": (
+        GOAL.format("goal: {pose: {each: $v, fields: {pose.x: $1}}}"),
+        "1:99: 'each' fills a list of messages, and pose is geometry_msgs/msg/PoseStamped | write a value",
+    ),
+}
+
+
+def told(text: str) -> list[str]:
+    with pytest.raises(MappingError) as caught:
+        check_mapping(read_mapping(text, "m.yaml"), stored_interfaces())
+    return [f"{p.line}:{p.column}: {p.message} | {p.cure}" for p in caught.value.problems]
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_does_not_fit_is_told_with_place_and_cure(name: str) -> None:
+    text, expected = WRONG[name]
+    found = told(text)
+    assert any(each.startswith(expected) for each in found), found
+
+
+def test_all_of_it_is_told_at_once() -> None:
+    found = told(ODOMETRY.format("fields: [a, b]") + "\n" + TWIST.format("fields: {c: 1, d: 2}"))
+    assert len(found) == 4
+
+
+def test_types_that_only_the_robot_knows_are_told_as_such() -> None:
+    [found] = told("properties: {a: {topic: t, type: acme_msgs/msg/Gripper}}")
+    assert "the type acme_msgs/msg/Gripper is not known here" in found
+    assert "interface_paths" in found
