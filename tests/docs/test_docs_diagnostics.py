@@ -12,7 +12,15 @@ from jacaros.cli.main import call
 
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
 EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]
-OF_FILES = {"no-effect", "unknown-artifact-type", "unknown-operation", "unreadable-file", "wrong-project"}
+OF_FILES = {
+    "no-effect",
+    "unknown-artifact-type",
+    "unknown-message-type",
+    "unknown-operation",
+    "unreadable-file",
+    "wrong-mapping",
+    "wrong-project",
+}
 TOO_LONG = {"nested-too-deeply"}
 LEVELS = {"Errors": "error", "Warnings": "warning", "Notes": "note"}
 

@@ -128,7 +128,7 @@ def test_files_that_cannot_be_read_are_told(folder: Path, capsys: pytest.Capture
     [
         (["godo.asl"], "did you mean good.asl?"),
         (["good.asl", "--ignore", "nonsense"], "there is no code nonsense"),
-        (["notes.txt"], "is no .asl, .mas2j, .jcm, .py file"),
+        (["notes.txt"], "is no .asl, .mas2j, .jcm, .py, .yaml, .yml file"),
         ([], "FILE"),
     ],
 )

@@ -83,7 +83,7 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
     ("text", "message"),
     [
         ("name: [unclosed", "not YAML"),
-        ("a: 1\na: 2", "not YAML"),
+        ("a: 1\na: 2", "'a' stands here twice: first in line 1"),
         ("", "must be a mapping"),
         ("name: a", "lacks the key 'robots'"),
         ("just a text", "must be a mapping"),

@@ -5,6 +5,9 @@ import difflib
 from jacaros.ros.interfaces import BUILT_IN
 from jacaros.ros.typestore import stored_types
 
+PARTS = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
+"""What names of messages end with that are parts of services and actions."""
+
 
 def known_types(kind: str) -> list[str]:
     """Types of a kind, ``msg``, ``srv`` or ``action``."""
@@ -12,7 +15,8 @@ def known_types(kind: str) -> list[str]:
         f"{path.parent.parent.name}/{kind}/{path.stem}"
         for path in sorted(BUILT_IN.glob(f"*/{kind}/*.{kind}"))
     ]
-    return [*own, *(name for name in stored_types() if f"/{kind}/" in name)]
+    whole = [name for name in stored_types() if not name.endswith(PARTS)]
+    return [*own, *(name for name in whole if f"/{kind}/" in name)]
 
 
 def similar_types(type_name: str) -> list[str]:

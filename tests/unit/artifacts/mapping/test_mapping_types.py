@@ -57,8 +57,8 @@ WRONG = {
     "yaw": (
         ODOMETRY.format("fields: {path: pose.pose.position, as: yaw}"),
         (
-            "1:65: 'as: yaw' is for quaternions, and pose.pose.position is geometry_msgs/msg/Point | name the field that is "
-            "a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
+            "1:65: 'as: yaw' is for quaternions, and pose.pose.position is geometry_msgs/msg/Point | name the field that "
+            "is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
         ),
     ),
     "unit": (
@@ -136,8 +136,8 @@ WRONG = {
     "goal": (
         GOAL.format("goal: {pose.pose.position: 3}"),
         (
-            "1:113: geometry_msgs/msg/Pose: field position is geometry_msgs/msg/Point, but 3 is given | write another value, "
-            "or a parameter: $name"
+            "1:113: geometry_msgs/msg/Pose: field position is geometry_msgs/msg/Point, but 3 is given | write another "
+            "value, or a parameter: $name"
         ),
     ),
     "output": (

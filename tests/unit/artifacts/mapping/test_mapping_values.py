@@ -101,7 +101,7 @@ def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
         (
             "tf2_msgs/msg/TFMessage",
             {"transforms": [{"transform": {"rotation": QUARTER}}]},
-            "{path: 'transforms[*].transform.rotation', as: yaw, unit: degrees}",
+            "{path: 'transforms[*].transform.rotation', as: yaw, unit: degrees, round: 6}",
             ([90.0],),
         ),
         (
