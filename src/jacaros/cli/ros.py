@@ -1,4 +1,4 @@
-"""``jacaros ros list|show|map``: looking at a live ROS graph."""
+"""``jacaros ros list|show|map|check``: looking at a live ROS graph."""
 
 import sys
 from collections.abc import Awaitable, Callable
@@ -50,7 +50,7 @@ def _asking(command: F) -> F:
 
 @click.group("ros", short_help="Look at a live ROS graph, and write mapping files for it.")
 def command() -> None:
-    """Look at a live ROS graph, and write mapping files for it.
+    """Look at a live ROS graph, and write and check mapping files for it.
 
     Without --ros it is the graph of the embedded world.
     """  # fmt: skip
@@ -156,6 +156,38 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
         return
     output.write_text(text, encoding="utf-8")
     click.echo(f"{output} is written; see `jacaros describe {output}`")
+
+
+@command.command("check")
+@click.argument("file", type=click.Path(path_type=Path))
+@_asking
+def check_command(file: Path, **graph: Any) -> int:
+    """Compare the mapping FILE with the graph: are its topics, servers, frames and parameters there and as it says?
+
+    Each problem is told with its line, what was found, and what to write. The exit code is 1 if there is one.
+    """  # fmt: skip
+    from jacaros.artifacts.mapping.file import find_mapping, load_mapping
+    from jacaros.cli.graph import listening
+    from jacaros.cli.graph.joining import Joined
+    from jacaros.cli.graph.verifying import problems_of
+    from jacaros.yaml_nodes import Problem, shown
+
+    mapping = load_mapping(find_mapping(str(file)) or file)
+
+    async def look(joined: Joined) -> list[Problem]:
+        wanted = any(part.frames for part in mapping.artifacts.values())
+        frames = await listening.frames(joined) if wanted else {}
+        return [
+            each for part in mapping.artifacts.values() for each in await problems_of(joined, part, frames)
+        ]
+
+    problems = _in_graph(look, **graph)
+    lines = mapping.text.splitlines()
+    for problem in problems:
+        click.echo(shown(mapping.file, lines, problem))
+    count = f"{len(problems)} problem{'s' if len(problems) != 1 else ''}"
+    click.echo(f"{count} with this graph" if problems else f"{file} suits this graph", err=bool(problems))
+    return 1 if problems else 0
 
 
 def _in_graph(

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "scenarios"))
 from graphs import InProcesses, ProcessPeer
 from masters import Master
 from presence import is_wanted, need
-from processes import Agents, WorldProcess
+from processes import JACAROS, Agents, Program, WorldProcess
 
 KINDS = ("ros1", "ros2")
 PROGRAMS = Path(__file__).parent / "programs"
@@ -112,12 +112,30 @@ def world(run_world: Callable[[str | Path], WorldProcess]) -> WorldProcess:
 
 
 @pytest.fixture
-def run_agents(kind: str, environment: dict[str, str]) -> Iterator[Callable[[str | Path], Agents]]:
-    """Starts agents, given by a project file or a program of the folder `programs`, as a process of their own."""
+def run_agents(kind: str, environment: dict[str, str]) -> Iterator[Callable[..., Agents]]:
+    """Starts agents, given by a project file or a program of the folder `programs`, as a process of their own.
+
+    What follows are further options of ``jacaros run``.
+    """
     started: list[Agents] = []
 
-    def run(project: str | Path) -> Agents:
-        started.append(Agents(PROGRAMS / project, kind, environment))
+    def run(project: str | Path, *options: str) -> Agents:
+        started.append(Agents(PROGRAMS / project, kind, environment, *options))
+        return started[-1]
+
+    yield run
+    for each in started:
+        each.stop()
+
+
+@pytest.fixture
+def ask(kind: str, environment: dict[str, str]) -> Iterator[Callable[..., Program]]:
+    """Runs ``jacaros ros ...`` to its end."""
+    started: list[Program] = []
+
+    def run(*words: str) -> Program:
+        started.append(Program([JACAROS, "ros", *words, "--ros", kind, "--timeout", "30"], environment))
+        started[-1].code = started[-1].end()
         return started[-1]
 
     yield run

@@ -32,7 +32,10 @@ class Program:
 
     Attributes:
         lines, errors: what it wrote so far to standard output and standard error.
+        code: the exit code, once somebody has noted it.
     """
+
+    code: int | None = None
 
     def __init__(self, command: Sequence[str], environment: dict[str, str]) -> None:
         self._process = subprocess.Popen(
@@ -140,8 +143,10 @@ def read(stream: IO[str], lines: list[str]) -> None:
 class Agents(Program):
     """``jacaros run`` on a real graph."""
 
-    def __init__(self, project: Path, kind: str, environment: dict[str, str]) -> None:
-        super().__init__([JACAROS, "run", str(project), "--ros", kind, "--clock", "real"], environment)
+    def __init__(self, project: Path, kind: str, environment: dict[str, str], *options: str) -> None:
+        super().__init__(
+            [JACAROS, "run", str(project), "--ros", kind, "--clock", "real", *options], environment
+        )
 
 
 class WorldProcess(Program):

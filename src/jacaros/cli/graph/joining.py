@@ -21,6 +21,13 @@ PAUSE = 0.5
 """Seconds between two looks; when they see the same, that is all."""
 
 
+_WORLDS = {
+    "memory": "give it a world: --world house",
+    "ros1": "a world: jacaros sim house --ros ros1",
+    "rosbridge": "a world in the graph of the bridge: jacaros sim house --ros ros1 (or ros2)",
+}
+
+
 class NothingThere(JacarosError):
     """The graph cannot be reached, or nobody else is in it; the text says what to do."""
 
@@ -80,7 +87,8 @@ async def _look(backend: Backend, clock: Clock, options: RunOptions, timeout: fl
     except RosError as error:
         raise NothingThere(f"{error}. {_cure(options)}") from error
     if not (seen.topics or seen.services or seen.actions or seen.nodes):
-        raise NothingThere(f"nobody else is in the {_graph_name(options)}. {_cure(options)}")
+        cure = _cure(options) if options.ros == "ros2" else f"Start the robot, or {_WORLDS[options.ros]}"
+        raise NothingThere(f"nobody else is in the {_graph_name(options)}. {cure}")
     return seen
 
 
@@ -136,6 +144,4 @@ def _cure(options: RunOptions) -> str:
         )
     if options.ros == "ros1":
         return "Start the robot or `roscore`, or say where its master is: --master http://robot.lab.example:11311"
-    if options.ros == "rosbridge":
-        return "Start rosbridge on the robot, or say where it is: --bridge ws://robot.lab.example:9090"
-    return "Give it a world: --world house"
+    return "Start rosbridge on the robot, or say where it is: --bridge ws://robot.lab.example:9090"

@@ -1,0 +1,240 @@
+"""``jacaros ros check``: a mapping file compared with the graph in which it is to be used."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from jacaros.artifacts.mapping.checking import check_topic, type_problems
+from jacaros.artifacts.mapping.declared import (
+    ArtifactPart,
+    FramePart,
+    OperationKind,
+    OperationPart,
+    Place,
+    TopicPart,
+    Written,
+)
+from jacaros.cli.graph.joining import Joined
+from jacaros.cli.graph.kinds import near_names
+from jacaros.cli.graph.listening import root
+from jacaros.ros.backend import PARAMETERS
+from jacaros.ros.errors import RosError
+from jacaros.ros.graph import Endpoint, TopicInfo
+from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, QoS, incompatibility
+from jacaros.yaml_nodes import Problem
+
+_SHARED_FRAMES = ("map", "earth", "world")
+"""Frames that robots share (REP 105) have no prefix."""
+_VERBS = {OperationKind.SERVICE: "offers the service", OperationKind.ACTION: "offers the action"}
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The names of an artifact's things in the graph."""
+
+    joined: Joined
+    namespace: str
+    tf_prefix: str
+
+    def resolve(self, written: str) -> str:
+        """The absolute name of a topic, service, action or node."""
+        if self.namespace and not written.startswith(("/", "~")):
+            written = f"{self.namespace}/{written}"
+        return self.joined.backend.resolve(written)
+
+    def frame(self, written: str) -> str:
+        """The name of a frame."""
+        if written.startswith("/") or written in _SHARED_FRAMES or not self.tf_prefix:
+            return written.lstrip("/")
+        return f"{self.tf_prefix}/{written}"
+
+
+async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]) -> list[Problem]:
+    """All that would not work, each with what was found and what to write.
+
+    Args:
+        joined: the graph.
+        part: an artifact of the file.
+        frames: the frames that were heard.
+    """
+    prefix = part.namespace if part.tf_prefix is None else part.tf_prefix
+    names = Names(joined, part.namespace, prefix)
+    found = type_problems(part, joined.backend)
+    for topic in part.topics:
+        found += _of_topic(names, topic)
+    for operation in part.operations:
+        found += _of_operation(names, operation)
+    for frame in part.frames:
+        found += _of_frame(names, frame, frames)
+    nodes = [(each.node, each.parameter, each.place) for each in part.parameters]
+    nodes += [
+        (each.node, each.target.text, each.place)
+        for each in part.operations
+        if each.kind in (OperationKind.SET, OperationKind.GET)
+    ]
+    for node, parameter, place in nodes:
+        found += await _of_parameter(names, node, parameter, place)
+    return sorted(set(found), key=lambda problem: (problem.line, problem.column, problem.message))
+
+
+def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
+    written = topic.topic
+    assert written is not None
+    name = names.resolve(written.text)
+    info = names.joined.contents.topics.get(name)
+    if info is None:
+        yield _absent(names, written, name, "nobody publishes", names.joined.contents.topics)
+        return
+    if not info.publishers:
+        who = _nodes(info.subscriptions)
+        yield written.place.problem(
+            f"nobody publishes {name}; there are only subscriptions, of {who}",
+            "start the node that publishes it, or take it for an operation with `publish`",
+        )
+        return
+    wrong = _of_type(topic.type_name, info.types, written.place)
+    yield from wrong
+    if topic.type_name is None and not wrong:
+        found: list[Problem] = []
+        try:
+            check_topic(topic, info.types[0], names.joined.backend, found)
+        except RosError as error:
+            found.append(written.place.problem(str(error), "install the package of this type"))
+        yield from found
+    yield from _of_qos(written.place, info, topic.qos or SENSOR_DATA)
+
+
+def _of_qos(place: Place, info: TopicInfo, requested: QoS) -> Iterator[Problem]:
+    """What the publishers do not offer."""
+    for publisher in info.publishers:
+        if publisher.qos is None:
+            continue
+        why = incompatibility(publisher.qos, requested)
+        if why is not None:
+            node = publisher.node or "a publisher"
+            yield place.problem(
+                f"nothing of {info.name} would come from {node}: {why}",
+                f"write {_suiting(publisher.qos, requested)}",
+            )
+
+
+def _suiting(offered: QoS, requested: QoS) -> str:
+    """What to ask for in the file, so that the offer is enough."""
+    reliability = "best_effort" if offered.reliability == "best_effort" else requested.reliability
+    durability = "volatile" if offered.durability == "volatile" else requested.durability
+    if durability == "volatile" and requested.deadline is None:
+        return "qos: sensor_data" if reliability == "best_effort" else "qos: default"
+    deadline = "" if offered.deadline is None else f", deadline: {offered.deadline:g}"
+    return f"qos: {{reliability: {reliability}, durability: {durability}{deadline}}}"
+
+
+def _of_type(written: Written | None, found: Iterable[str], place: Place) -> list[Problem]:
+    """The type that a file names, compared with those that are found; `place` is that of the name."""
+    types = [each for each in found if each]
+    if len(types) > 1:
+        text = f"there are several types: {', '.join(types)}"
+        return [place.problem(text, "one of its nodes is wrong: `jacaros ros show` tells who is there")]
+    if written is None or not types or written.text == types[0]:
+        return []
+    return [written.place.problem(f"its type is {types[0]}, not {written.text}", f"write type: {types[0]}")]
+
+
+def _of_operation(names: Names, operation: OperationPart) -> Iterator[Problem]:
+    contents = names.joined.contents
+    written = operation.target
+    match operation.kind:
+        case OperationKind.PUBLISH:
+            yield from _of_publishing(names, operation)
+        case OperationKind.SERVICE | OperationKind.ACTION:
+            things = contents.services if operation.kind is OperationKind.SERVICE else contents.actions
+            name = names.resolve(written.text)
+            if name in things:
+                yield from _of_type(operation.type_name, [things[name]], written.place)
+            else:
+                yield _absent(names, written, name, f"nobody {_VERBS[operation.kind]}", things)
+
+
+def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
+    written = operation.target
+    name = names.resolve(written.text)
+    info = names.joined.contents.topics.get(name)
+    if info is None or not info.subscriptions:
+        listened = [each for each, about in names.joined.contents.topics.items() if about.subscriptions]
+        yield _absent(names, written, name, "nobody listens on", listened)
+        return
+    yield from _of_type(operation.type_name, info.types, written.place)
+    for subscription in info.subscriptions:
+        if subscription.qos is None:
+            continue
+        why = incompatibility(operation.qos or DEFAULT_QOS, subscription.qos)
+        if why is not None:
+            cure = "qos: latched" if subscription.qos.durability == "transient_local" else "qos: default"
+            node = subscription.node or "a subscription"
+            yield written.place.problem(f"{node} would hear nothing on {name}: {why}", f"write {cure}")
+
+
+def _absent(names: Names, written: Written, name: str, what: str, things: Iterable[str]) -> Problem:
+    """What is not in the graph, with what may be meant."""
+    near = near_names(name, list(things))
+    if near:
+        cure = f"did you mean {' or '.join(_as_written(names, each) for each in near)}?"
+    else:
+        cure = "start its node; `jacaros ros list` shows what is there"
+    return written.place.problem(f"{what} {name}", cure)
+
+
+def _as_written(names: Names, name: str) -> str:
+    """An absolute name as the file may write it."""
+    prefix = names.resolve("x").removesuffix("x")
+    return name.removeprefix(prefix) if name.startswith(prefix) else name
+
+
+def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator[Problem]:
+    target, source = names.frame(part.target), names.frame(part.source)
+    if not frames:
+        yield part.place.problem(
+            "no frames were heard on /tf and /tf_static", "start the node that publishes them"
+        )
+        return
+    unknown = [frame for frame in dict.fromkeys((target, source)) if frame not in frames]
+    for frame in unknown:
+        near = near_names(frame, list(frames))
+        told = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(sorted(frames))}"
+        prefix = names.tf_prefix
+        if prefix and frame.startswith(f"{prefix}/") and frame.removeprefix(f"{prefix}/") in frames:
+            told = 'frames have no prefix here: write tf_prefix: ""'
+        yield part.place.problem(f"there is no frame {frame}", told)
+    if not unknown and root(frames, target) != root(frames, source):
+        yield part.place.problem(
+            f"the frames {target} and {source} are not connected: the first hangs on {root(frames, target)}, the "
+            f"second on {root(frames, source)}",
+            "start the node that connects them, such as the localisation",
+        )
+
+
+async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -> list[Problem]:
+    joined = names.joined
+    if PARAMETERS not in joined.backend.capabilities:
+        return [place.problem("there are no parameters in this graph", "leave it out here")]
+    name = names.resolve(node)
+    known = joined.contents.nodes
+    if name not in known:
+        near = near_names(name, list(known))
+        return [
+            place.problem(
+                f"there is no node {name}",
+                f"did you mean {' or '.join(near)}?" if near else "`jacaros ros list` shows all nodes",
+            )
+        ]
+    try:
+        there = await joined.backend.parameters(name).names(joined.timeout)
+    except RosError as error:
+        return [place.problem(f"node {name} does not tell its parameters: {error}", "is it still running?")]
+    if parameter in there:
+        return []
+    near = near_names(parameter, there)
+    cure = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(there) or 'none'}"
+    return [place.problem(f"node {name} has no parameter {parameter}", cure)]
+
+
+def _nodes(endpoints: Iterable[Endpoint]) -> str:
+    return ", ".join(sorted({each.node or "somebody" for each in endpoints}))

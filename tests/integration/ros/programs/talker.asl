@@ -1,0 +1,23 @@
+// Prints, writes to the log, and has a goal that it cannot reach, again and again; and listens.
+
+!talk.
+
++!talk
+  <- makeArtifact("ros", "ArtRos", [], Id);
+     focus(Id);
+     makeArtifact("odo", "ArtOdometry", [watch_connection(true)], Odo);
+     focus(Odo);
+     !again.
+
++!again
+  <- .print("hello graph");
+     rosout(error, "by the artifact");
+     !!impossible;
+     .wait(300);
+     !again.
+
++!impossible
+  <- .fail.
+
++connected(Topic)
+  <- .print("hears ", Topic).

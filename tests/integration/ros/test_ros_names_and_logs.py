@@ -1,0 +1,86 @@
+"""A run as a node among others: its names, its log, its diagnostics, and the clock of a simulator."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from graphs import ProcessPeer
+from processes import Agents, wait_until
+
+LOG = {"ros1": "rosgraph_msgs/msg/Log", "ros2": "rcl_interfaces/msg/Log"}
+LEVELS = {"ros1": {"info": 2, "warn": 4, "error": 8}, "ros2": {"info": 20, "warn": 30, "error": 40}}
+
+
+def test_lines_go_to_rosout_and_the_state_to_diagnostics_under_our_name(
+    kind: str, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
+) -> None:
+    monitor = peer("monitor")
+    monitor.subscribe("/rosout", LOG[kind], depth=1000)
+    monitor.subscribe("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+    run_agents("talker.asl", "--node-name", "speaker")
+
+    def logged(level: str, text: str) -> bool:
+        return any(
+            each["name"].strip("/") == "speaker"
+            and each["level"] == LEVELS[kind][level]
+            and text in each["msg"]
+            for each in monitor.received("/rosout")
+        )
+
+    wait_until(lambda: logged("info", "[talker] hello graph"), "what the agent prints")
+    wait_until(lambda: logged("error", "by the artifact"), "what the artifact writes")
+    wait_until(lambda: logged("warn", "impossible"), "the goal that failed")
+
+    def statuses() -> dict[str, Any]:
+        return {
+            status["name"]: status
+            for message in monitor.received("/diagnostics")
+            for status in message["status"]
+        }
+
+    wait_until(lambda: "speaker: agent talker" in statuses(), "the agent's status")
+    connection = statuses()["speaker: connection"]
+    assert connection["message"] == "connected"
+    assert {"key": "middleware", "value": kind} in connection["values"]
+
+
+def test_names_are_remapped(run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]) -> None:
+    agents = run_agents("talker.asl", "--remap", "/odom:=/elsewhere/odom", "--no-diagnostics", "--no-rosout")
+    monitor = peer("monitor")
+    monitor.subscribe("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+    robot = peer("robot")
+    robot.advertise("/elsewhere/odom", "nav_msgs/msg/Odometry")
+    agents.until_line("hears /elsewhere/odom")
+    assert monitor.received("/diagnostics") == []
+
+
+@pytest.mark.only("ros1", "ros2")
+def test_time_is_that_of_the_simulator(
+    run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
+) -> None:
+    agents = run_agents("minute.asl", "--clock", "ros")
+    agents.until_error("[ros] waiting for the time on /clock")
+    agents.until_line("[minute] waits")
+    agents.until_error("nobody publishes /clock")
+    simulator = peer("simulator")
+    simulator.advertise("/clock", "rosgraph_msgs/msg/Clock")
+    wait_until(lambda: simulator.subscription_count("/clock") > 0, "somebody who listens to the clock")
+
+    def show(time: float, text: str) -> None:
+        """Publish a time until standard error shows what it brings about: the topic is not reliable."""
+
+        def shown() -> bool:
+            simulator.publish("/clock", {"clock": time})
+            return any(text in line for line in agents.errors)
+
+        wait_until(shown, f"{text!r} at {time:g} s")
+
+    show(100.0, "/clock is there: it is 100.000 s")
+    show(106.0, "/clock stands still at 106.000 s")
+    show(3.0, "jumped back by 103.000 s")
+    agents.until_line("[minute] jumped 103")
+    show(6.0, "/clock stands still at 6.000 s")
+    assert not any("has waited" in line for line in agents.lines), "9 of 10 seconds have passed"
+    wait_until(lambda: simulator.publish("/clock", {"clock": 7.5}) or agents.over, "the tenth second")
+    assert agents.end() == 0
+    assert agents.lines[-1] == "[minute] has waited"
