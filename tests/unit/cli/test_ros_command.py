@@ -58,7 +58,7 @@ def test_a_topic_is_shown_with_fields_units_endpoints_and_a_message(
     assert lines[:3] == [
         "topic /odom",
         "type: nav_msgs/msg/Odometry",
-        "publishers: /world (reliable, volatile, depth 10)",
+        "publishers: /world (reliable, volatile)",
     ]
     assert "message just heard" in lines
     assert "pose.pose.position.x float64 m 0" in lines

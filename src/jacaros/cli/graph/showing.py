@@ -89,7 +89,8 @@ def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
     data: dict[str, Any] = {"node": endpoint.node or None}
     if endpoint.qos is not None:
         qos = endpoint.qos
-        data["qos"] = {"reliability": qos.reliability, "durability": qos.durability, "depth": qos.depth}
+        # The depth is nobody else's business: ROS 2 does not tell it over the network.
+        data["qos"] = {"reliability": qos.reliability, "durability": qos.durability}
         if qos.deadline is not None:
             data["qos"]["deadline"] = qos.deadline
     return data
@@ -183,7 +184,7 @@ def _endpoint_text(endpoint: dict[str, Any]) -> str:
     if qos is None:
         return str(node)
     deadline = f", deadline {qos['deadline']:g} s" if "deadline" in qos else ""
-    return f"{node} ({qos['reliability']}, {qos['durability']}, depth {qos['depth']}{deadline})"
+    return f"{node} ({qos['reliability']}, {qos['durability']}{deadline})"
 
 
 def _table(rows: list[dict[str, Any]]) -> Iterator[str]:

@@ -1,0 +1,174 @@
+"""`jacaros ros check`: mapping files compared with the graph of the embedded world; and what `ros map` writes is run."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.cli.main import call
+
+
+def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error output of a command."""
+    code = call(list(arguments))
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def checked(capsys: pytest.CaptureFixture[str], folder: Path, text: str, *options: str) -> str:
+    """What is told of a mapping that does not suit."""
+    file = folder / "robot.yaml"
+    file.write_text(text, encoding="utf-8")
+    code, output, errors = outcome(capsys, "ros", "check", str(file), "--world", "house", *options)
+    assert code == 1
+    assert "Traceback" not in errors
+    return output.replace(f"{folder}/", "")
+
+
+@pytest.mark.parametrize(
+    ("text", "problem", "cure"),
+    [
+        (
+            "properties:\n  pose: {topic: odm}\n",
+            "robot.yaml:2:17: nobody publishes /odm",
+            "did you mean odom?",
+        ),
+        (
+            "properties:\n  pose: {topic: cmd_vel}\n",
+            "robot.yaml:2:17: nobody publishes /cmd_vel; there are only subscriptions, of /world",
+            "`publish`",
+        ),
+        (
+            "properties:\n  pose: {topic: odom, type: nav_msgs/msg/Path}\n",
+            "robot.yaml:2:29: its type is nav_msgs/msg/Odometry, not nav_msgs/msg/Path",
+            "write type: nav_msgs/msg/Odometry",
+        ),
+        (
+            "properties:\n  pose: {topic: odom, fields: [pose.pose.positon.x]}\n",
+            "geometry_msgs/msg/Pose has no field 'positon'",
+            "did you mean 'position'?",
+        ),
+        (
+            "properties:\n  pose: {topic: odom, qos: latched}\n",
+            "nothing of /odom would come from /world: the subscription asks for transient_local",
+            "write qos: default",
+        ),
+        (
+            "operations:\n  go: {parameters: [x], publish: cmd_vl, type: geometry_msgs/Twist, fields: {linear.x: $x}}\n",
+            "nobody listens on /cmd_vl",
+            "did you mean cmd_vel?",
+        ),
+        (
+            "operations:\n  go: {action: navigate_to_pos, type: nav2_msgs/action/NavigateToPose}\n",
+            "robot.yaml:2:16: nobody offers the action /navigate_to_pos",
+            "did you mean navigate_to_pose",
+        ),
+        (
+            "operations:\n  go: {action: dock, type: nav2_msgs/action/DockRobot}\n",
+            "its type is irobot_create_msgs/action/Dock, not nav2_msgs/action/DockRobot",
+            "write type: irobot_create_msgs/action/Dock",
+        ),
+        (
+            "operations:\n  ask: {service: nothing, type: std_srvs/srv/Trigger}\n",
+            "nobody offers the service /nothing",
+            "`jacaros ros list` shows what is there",
+        ),
+        (
+            "frames:\n  pose: {target: map, source: base_footprnt}\n",
+            "robot.yaml:2:3: there is no frame base_footprnt",
+            "did you mean base_footprint?",
+        ),
+        (
+            "namespace: r1\nframes:\n  pose: {target: map, source: base_footprint}\n",
+            "there is no frame r1/base_footprint",
+            'write tf_prefix: ""',
+        ),
+        (
+            "parameters:\n  top: {node: wrld, parameter: speed}\n",
+            "robot.yaml:2:3: there is no node /wrld",
+            "did you mean /world?",
+        ),
+        (
+            "operations:\n  limit: {parameters: [v], set_parameter: nothing, node: world, value: $v}\n",
+            "node /world has no parameter nothing",
+            "it has",
+        ),
+    ],
+)
+def test_what_would_not_work_is_told_with_its_place_and_what_to_write(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, text: str, problem: str, cure: str
+) -> None:
+    told = checked(capsys, tmp_path, text)
+    assert problem in told
+    assert cure in told
+
+
+def test_a_robot_without_namespace_is_found_by_the_last_part_of_names(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    told = checked(capsys, tmp_path, "namespace: r1\nproperties:\n  pose: {topic: odom}\n")
+    assert "nobody publishes /r1/odom" in told
+    assert "did you mean /odom?" in told
+
+
+def test_all_problems_are_told_at_once_in_the_order_of_the_lines(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    told = checked(capsys, tmp_path, "properties:\n  a: {topic: aa}\n  b: {topic: bb}\n  c: odom\n")
+    assert told.index("robot.yaml:2:") < told.index("robot.yaml:3:")
+    assert "robot.yaml:4:" not in told
+
+
+def test_a_mapping_with_mistakes_of_its_own_is_told_as_such(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "wrong.yaml"
+    file.write_text("propertys: {}\n", encoding="utf-8")
+    code, _, errors = outcome(capsys, "ros", "check", str(file))
+    assert code == 1
+    assert "did you mean 'properties'?" in errors
+    code, _, errors = outcome(capsys, "ros", "check", str(tmp_path / "absent.yaml"))
+    assert code == 1
+    assert "there is no such mapping file" in errors
+
+
+PROGRAM = """
+!go.
+
++!go
+  <- .wait(odom(_, _, _));
+     navigate_to(1, 0.5, 90);
+     ?pose(X, Y, _);
+     ?battery(_, Status);
+     .print(math.round(X * 2) / 2, " ", math.round(Y * 2) / 2, " ", Status);
+     drive(0.2, 0, 1);
+     stop;
+     .stopMAS.
+"""
+
+
+def test_what_map_writes_is_right_suits_and_is_run(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file, program = str(tmp_path / "robot.yaml"), tmp_path / "go.asl"
+    program.write_text(PROGRAM, encoding="utf-8")
+    assert outcome(capsys, "ros", "map", "--world", "house", "-o", file)[0] == 0
+    assert outcome(capsys, "check", file, "--strict")[0] == 0
+    assert outcome(capsys, "ros", "check", file, "--world", "house") == (0, f"{file} suits this graph\n", "")
+    run = ("run", str(program), "--mapping", file, "--world", "house", "--clock", "fast", "--for", "300")
+    code, output, errors = outcome(capsys, *run)
+    assert (code, output) == (0, "[go] 1 0.5 discharging\n"), errors
+
+
+@pytest.mark.parametrize("world", ["house", "two_robots"])
+def test_everything_of_a_graph_can_be_mapped(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, world: str
+) -> None:
+    code, listed, _ = outcome(capsys, "ros", "list", "--world", world)
+    names = [line.split()[1] for line in listed.splitlines() if not line.startswith("node")]
+    assert len(names) > 20
+    file = str(tmp_path / "all.yaml")
+    assert outcome(capsys, "ros", "map", *names, "--world", world, "-o", file)[0] == 0
+    code, _, errors = outcome(capsys, "check", file, "--strict")
+    assert code == 0, errors
+    code, output, _ = outcome(capsys, "ros", "check", file, "--world", world)
+    assert code == 0, output
