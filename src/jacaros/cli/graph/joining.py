@@ -10,7 +10,7 @@ from jacaros.errors import JacarosError, UsageError
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Backend
-from jacaros.ros.errors import RosError
+from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 
 FIRST_LOOK = 1.0
@@ -84,6 +84,8 @@ async def joined(options: RunOptions, clock: Clock, timeout: float) -> AsyncIter
 async def _look(backend: Backend, clock: Clock, options: RunOptions, timeout: float) -> GraphContents:
     try:
         seen = await _settled(backend, clock, timeout)
+    except CapabilityMissing:
+        raise
     except RosError as error:
         raise NothingThere(f"{error}. {_cure(options)}") from error
     if not (seen.topics or seen.services or seen.actions or seen.nodes):
