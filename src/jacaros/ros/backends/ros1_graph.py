@@ -37,8 +37,11 @@ async def graph_contents(node: Ros1Node, timeout: float) -> GraphContents:
 def _look(master: Master) -> GraphContents:
     state: State = master.ask("getSystemState")
     types: dict[str, str] = dict(master.ask("getTopicTypes"))
-    actions = _actions(types)
-    hidden = LOG_TOPICS | {f"{action}/{part}" for action in actions for part in ACTION_TOPICS}
+    named = _actions(types)
+    hidden = LOG_TOPICS | {f"{action}/{part}" for action in named for part in ACTION_TOPICS}
+    # The master remembers the types of topics that nobody has any more; and clients alone are no action.
+    published = {name for name, _ in state[0]}
+    actions = {name: kind for name, kind in named.items() if f"{name}/status" in published}
     services = [name for name, _ in state[2] if not name.endswith(LOG_SERVICES)]
     with ThreadPoolExecutor(8, "service types") as pool:
         service_types = pool.map(lambda name: _service_type(master, name), services)
