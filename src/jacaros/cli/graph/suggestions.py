@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jacaros.cli.graph.definitions import Fields
 from jacaros.cli.graph.values import HEADER, MANY, Value, lists_of, values_of
@@ -312,11 +312,36 @@ def _filled(fields: Fields, type_name: str, key: str) -> tuple[list[Value], list
     """The parameters that fill a message, and the lines that do it under *key*."""
     values = values_of(fields, type_name)
     inputs, left = values[:MANY], [value.path for value in values[MANY:]]
-    left += [name for name, kind in lists_of(fields, type_name)]
     lines = [*_headers(fields, type_name), *(f"  {value.path}: {value.as_value}" for value in inputs)]
+    for name, kind in lists_of(fields, type_name):
+        elements = values_of(fields, kind.base) if kind.is_message else []
+        if kind.base not in _PLACES or len(inputs) >= MANY:
+            left.append(name)
+            continue
+        inputs = [
+            *inputs,
+            Value(name, name.lower(), "", f"a list of {_call('place', elements).partition(':')[0]}"),
+        ]
+        lines += [
+            f"  {name}:",
+            f"    each: ${name.lower()}",
+            f"    fields: {{{_elements(fields, kind.base, elements)}}}",
+        ]
     if left:
         lines.append(f"  # left as they are: {', '.join(left)}")
     return inputs, [f"{key}:", *lines] if any(not line.startswith("  #") for line in lines) else []
+
+
+_PLACES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/Pose", "geometry_msgs/msg/Point")
+
+
+def _elements(fields: Fields, type_name: str, values: Sequence[Value]) -> str:
+    """What becomes of the parts of each element of a list."""
+    headers = [line.strip() for line in _headers(fields, type_name)]
+    parts = [
+        f"{value.path}: {replace(value, name=str(number)).as_value}" for number, value in enumerate(values, 1)
+    ]
+    return ", ".join([*headers, *parts])
 
 
 def _headers(fields: Fields, type_name: str, path: str = "") -> list[str]:
