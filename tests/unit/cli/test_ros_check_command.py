@@ -172,3 +172,15 @@ def test_everything_of_a_graph_can_be_mapped(
     assert code == 0, errors
     code, output, _ = outcome(capsys, "ros", "check", file, "--world", world)
     assert code == 0, output
+
+
+def test_lists_of_places_are_filled(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    file, program = str(tmp_path / "ways.yaml"), tmp_path / "go.asl"
+    program.write_text(
+        "!go. +!go <- follow_waypoints([place(0.4, 0, 0), place(0.4, 0.4, 90)]); .print(there); .stopMAS.",
+        encoding="utf-8",
+    )
+    assert outcome(capsys, "ros", "map", "/follow_waypoints", "--world", "house", "-o", file)[0] == 0
+    run = ("run", str(program), "--mapping", file, "--world", "house", "--clock", "fast", "--for", "300")
+    code, output, errors = outcome(capsys, *run)
+    assert (code, output) == (0, "[go] there\n"), errors

@@ -25,8 +25,16 @@ _IN_THE_PLANE: Mapping[str, tuple[str, ...]] = {
     "geometry_msgs/msg/Point32": ("x", "y"),
 }
 """Robots on wheels: the height is left out."""
-_LEFT = ("behavior_tree", "controller_id", "planner_id", "goal_checker_id", "progress_checker_id")
-"""Texts of Nav2 that are better left empty: it then takes those of its configuration."""
+_LEFT = (
+    "behavior_tree",
+    "controller_id",
+    "planner_id",
+    "goal_checker_id",
+    "progress_checker_id",
+    "number_of_loops",
+    "goal_index",
+)
+"""Fields of Nav2's goals that are better left as they are: it then takes what its configuration says."""
 _TURNS = ("angular", "angular_velocity")
 """Vectors of a robot on wheels of which only z is not zero."""
 
