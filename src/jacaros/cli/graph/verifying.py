@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from jacaros.artifacts.mapping.artifact import GLOBAL_FRAMES
 from jacaros.artifacts.mapping.checking import check_topic, type_problems
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
@@ -22,8 +23,6 @@ from jacaros.ros.graph import Endpoint, TopicInfo
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, QoS, incompatibility
 from jacaros.yaml_nodes import Problem
 
-_SHARED_FRAMES = ("map", "earth", "world")
-"""Frames that robots share (REP 105) have no prefix."""
 _VERBS = {OperationKind.SERVICE: "offers the service", OperationKind.ACTION: "offers the action"}
 
 
@@ -43,7 +42,7 @@ class Names:
 
     def frame(self, written: str) -> str:
         """The name of a frame."""
-        if written.startswith("/") or written in _SHARED_FRAMES or not self.tf_prefix:
+        if written.startswith("/") or written in GLOBAL_FRAMES or not self.tf_prefix:
             return written.lstrip("/")
         return f"{self.tf_prefix}/{written}"
 
