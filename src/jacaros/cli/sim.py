@@ -27,22 +27,44 @@ from jacaros.mas.options import ROS_KINDS
     show_default=True,
     help="In real time, or as fast as the machine can (only with --ros memory).",
 )
+@click.option(
+    "--publish-clock",
+    is_flag=True,
+    help="Publish the world's time on /clock, for nodes with use_sim_time (agents: --clock ros).",
+)
+@click.option(
+    "--speed",
+    type=click.FloatRange(0.0, 100.0, min_open=True),
+    metavar="X",
+    help="Let the world run X times as fast as real time; includes --publish-clock.",
+)
 def command(
-    world: str, ros: str, seconds: float | None, ground_truth: Path | None, seed: int | None, clock: str
+    world: str,
+    ros: str,
+    seconds: float | None,
+    ground_truth: Path | None,
+    seed: int | None,
+    clock: str,
+    publish_clock: bool,
+    speed: float | None,
 ) -> None:
     """Run WORLD (a world file, or the name of a world that comes with jacaros) until Ctrl-C."""  # fmt: skip
     from jacaros.ros.open import open_backend
     from jacaros.sim import World, serve
+    from jacaros.sim.scaled_clock import ScaledClock
 
     if clock == "fast" and (ros != "memory" or seconds is None):
         raise UsageError(
             "--clock fast goes with --ros memory and --for S; a real ROS graph lives in real time"
         )
-    time: Clock = VirtualClock() if clock == "fast" else WallClock()
+    if clock == "fast" and speed is not None:
+        raise UsageError("--speed goes with --clock real; --clock fast is as fast as the machine can")
+    time: Clock = VirtualClock() if clock == "fast" else WallClock() if speed is None else ScaledClock(speed)
     loaded = World.load(Path(world) if Path(world).is_file() else world, seed)
     loaded.ground_truth.keep = 1000
 
     async def main() -> None:
-        await serve(loaded, open_backend(ros, time, "world"), time, seconds, ground_truth)
+        backend = open_backend(ros, time, "world")
+        await serve(loaded, backend, time, seconds, ground_truth, publish_clock or speed is not None)
 
     run(main, time)

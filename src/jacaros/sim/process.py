@@ -8,6 +8,7 @@ from types import TracebackType
 
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend
+from jacaros.sim.clock_publisher import ClockPublisher
 from jacaros.sim.ground_truth import Record, header
 from jacaros.sim.node import SimNode
 from jacaros.sim.world import World
@@ -55,6 +56,7 @@ async def serve(
     clock: Clock,
     duration: float | None = None,
     ground_truth_path: str | Path | None = None,
+    publish_clock: bool = False,
 ) -> None:
     """Run *world* as a node of its own until SIGTERM or SIGINT, or for *duration* seconds of the clock.
 
@@ -64,6 +66,7 @@ async def serve(
         clock: the clock that the world follows.
         duration: seconds, or None for no end.
         ground_truth_path: file to write; `jacaros.sim.ground_truth.GroundTruth.read` reads it.
+        publish_clock: whether *clock* goes to ``/clock``, for nodes in simulated time.
 
     Raises:
         OSError: the file cannot be written.
@@ -75,9 +78,11 @@ async def serve(
         loop.add_signal_handler(number, stop.set)
     timer = clock.call_later(duration, stop.set) if duration is not None else None
     node = SimNode(world, backend, clock)
+    time: ClockPublisher | None = None
     try:
         await backend.start()
         node.start()
+        time = ClockPublisher(clock, backend) if publish_clock else None
         if ground_truth_path is None:
             await stop.wait()
         else:
@@ -87,7 +92,9 @@ async def serve(
     finally:
         if timer is not None:
             timer.cancel()
-        node.stop()
+        if time is not None:
+            time.close()
+        node.close()
         await backend.close()
         for number in _SIGNALS:
             loop.remove_signal_handler(number)
