@@ -221,6 +221,10 @@ class InProcesses:
             made.start()
         return made
 
+    def note_leftovers(self, files: set[str]) -> None:
+        """Have files in shared memory removed at the end that a process of the test's own leaves behind."""
+        self._leftovers |= files
+
     def kill(self, made: ProcessPeer) -> None:
         """End a peer without a word to the others."""
         made.signal(signal.SIGKILL)

@@ -43,9 +43,11 @@ FEEDBACK_WAITING = 100
 class _SentGoal:
     """What the wire knows of a goal."""
 
-    def __init__(self, identity: str) -> None:
+    def __init__(self, identity: str, request: Any) -> None:
         self.identity = identity
+        self.request = request
         self.accepted = False
+        self.repeated = False
         self.over = False
         self.result_asked = 0.0
         self.cancel_asked: float | None = None
@@ -112,24 +114,15 @@ class Ros2GoalWire:
         return new_goal_id()
 
     def send_goal(self, identity: str, goal: Any) -> None:
-        """Send a goal, as soon as the server knows us: what it answers earlier is lost."""
+        """Send a goal."""
         self._mismatch = action_mismatch(self._node, self.name, self._type_name)
         if self._mismatch is not None:
             raise CallFailed(self._mismatch)
-        self._goals[identity] = _SentGoal(identity)
-        self._servers |= action_servers(self._node, self.name)
-        self._keep_looking()
         request = self._impl.SendGoalService.Request(goal_id=id_message(identity), goal=goal)
-
-        def send() -> None:
-            if identity in self._goals and not self._closed:
-                self._call(self._goal_client, request, lambda answer: self._answered(identity, answer))
-
-        rest = self._there_since + SETTLING - time.monotonic()
-        if rest > 0.0:
-            self._node.loop.call_later(rest, send)
-        else:
-            send()
+        self._goals[identity] = _SentGoal(identity, request)
+        self._note_servers()
+        self._keep_looking()
+        self._send_when_settled(identity)
 
     def cancel_goal(self, identity: str) -> None:
         """Ask the server to cancel a goal."""
@@ -179,6 +172,12 @@ class Ros2GoalWire:
         if answer.accepted:
             self._accept(identity)
         elif goal is not None and not goal.accepted:
+            # A server also refuses what it has accepted already; then its status is on the way and tells.
+            self._node.loop.call_later(SETTLING if goal.repeated else 0.0, self._reject, identity)
+
+    def _reject(self, identity: str) -> None:
+        goal = self._goals.get(identity)
+        if goal is not None and not goal.accepted:
             self.sender.rejected(identity)
 
     def _accept(self, identity: str) -> None:
@@ -193,6 +192,8 @@ class Ros2GoalWire:
             self._ask_for_result(goal)
 
     def _ask_for_result(self, goal: _SentGoal) -> None:
+        if goal.identity not in self._goals or self._closed or self._node.ended:
+            return
         goal.result_asked = time.monotonic()
         request = self._impl.GetResultService.Request(goal_id=id_message(goal.identity))
         self._call(self._result_client, request, lambda answer: self._take_result(goal.identity, answer))
@@ -247,11 +248,11 @@ class Ros2GoalWire:
         if self._closed or self._node.ended:
             return
         self._note_presence()
+        if self._there and self._note_servers():
+            self._greet_newcomers()
         if not self._goals:
             return
         now = time.monotonic()
-        if self._there:
-            self._greet_newcomers()
         for goal in list(self._goals.values()):
             if goal.accepted and goal.over and now > goal.result_asked + REPEATING:
                 self._ask_for_result(goal)
@@ -277,16 +278,41 @@ class Ros2GoalWire:
             if self._mismatch is not None:
                 self.sender.server_present(True)
 
-    def _greet_newcomers(self) -> None:
-        """A server that came during a goal may have taken another's place: then it does not know the goal, and says so."""
+    def _note_servers(self) -> bool:
+        """Note who offers the action; True when somebody is new among them."""
         servers = action_servers(self._node, self.name)
         if servers <= self._servers:
-            return
+            return False
         self._servers |= servers
+        self._there_since = time.monotonic()
         self._signs.stranger()
+        return True
+
+    def _greet_newcomers(self) -> None:
+        """A server that came during a goal may have taken the place of one that died, unnoticed so far by the graph.
+
+        Then it does not know the goal, and says so; one that was not accepted yet is for it.
+        """
         for goal in list(self._goals.values()):
             if goal.accepted:
-                self._ask_for_result(goal)
+                self._node.loop.call_later(SETTLING, self._ask_for_result, goal)
+            else:
+                goal.repeated = True
+                self._send_when_settled(goal.identity)
+
+    def _send_when_settled(self, identity: str) -> None:
+        """Send a goal, as soon as the server knows us: what it is sent earlier, or answers earlier, is lost."""
+
+        def send() -> None:
+            goal = self._goals.get(identity)
+            if goal is not None and not self._closed and not self._node.ended:
+                self._call(self._goal_client, goal.request, lambda answer: self._answered(identity, answer))
+
+        rest = self._there_since + SETTLING - time.monotonic()
+        if rest > 0.0:
+            self._node.loop.call_later(rest, send)
+        else:
+            send()
 
     def _probe(self) -> None:
         """Ask for something that every server answers at once: the result of a goal that nobody knows."""

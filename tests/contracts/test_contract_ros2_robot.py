@@ -1,0 +1,159 @@
+"""Contract on ROS 2: actions and parameters of plain rclpy nodes, and plain rclpy nodes that use ours."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from graphs import shared_memory
+
+from jacaros.ros.errors import GoalRejected, ParameterRefused, ParameterUnknown, ServerLost
+
+Pair = tuple[Any, Any]
+pytestmark = pytest.mark.only("ros2")
+COUNT = "/native/count"
+PROGRAM = [sys.executable, str(Path(__file__).with_name("native_ros2_robot.py"))]
+LONG = {"target": 1000, "period": 0.1}
+LOST = 60.0
+"""Seconds after which a dead server must be noticed; the graph itself needs up to 20."""
+
+
+@contextmanager
+def running(graph: Any, mode: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A plain node."""
+    process = subprocess.Popen(
+        [*PROGRAM, mode],
+        env=os.environ | graph.environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    )
+    assert process.stdout is not None
+    files: set[str] = set()
+    try:
+        while (line := process.stdout.readline()) != b"ready\n":
+            assert line, "the plain node ended"
+        files = shared_memory(process.pid)
+        yield process
+    finally:
+        process.kill()  # plain nodes sometimes miss other signals
+        process.wait()
+        process.stdout.close()
+        graph.note_leftovers(files)
+
+
+def asked(graph: Any, *arguments: str) -> list[str]:
+    """What a plain node prints that uses something of ours."""
+    answer = subprocess.run(
+        [*PROGRAM, *arguments],
+        env=os.environ | graph.environment,
+        capture_output=True,
+        text=True,
+        timeout=90,
+        check=False,
+    )
+    assert answer.returncode == 0, answer.stderr
+    words = ("counted", "cancelled", "accepted", "names", "put", "got")
+    return [line for line in answer.stdout.splitlines() if line.startswith(words)]
+
+
+@pytest.fixture
+def native(graph: Any) -> Iterator[subprocess.Popen[bytes]]:
+    """The plain node whose threads let it answer while it counts."""
+    with running(graph, "serve") as process:
+        yield process
+
+
+def test_goals_of_a_plain_server(graph: Any, pair: Pair, topic: str, native: Any) -> None:
+    left, _ = pair
+    left.send_goal(topic, COUNT, {"target": 3, "period": 0.05}, timeout=25)
+    assert left.outcome(topic, timeout=25) == {
+        "status": "succeeded",
+        "result": {"last": 3, "message": "counted natively"},
+        "text": "counted natively",
+    }
+    assert left.feedback(topic)[-1] == 3
+    with pytest.raises(GoalRejected):
+        left.send_goal(topic + "refused", COUNT, {"target": -1}, timeout=25)
+    left.send_goal(topic + "long", COUNT, LONG, timeout=25)
+    graph.wait_until(lambda: left.feedback(topic + "long"), "it is under way")
+    assert left.cancel_goal(topic + "long", timeout=25) is True
+    end = left.outcome(topic + "long", timeout=25)
+    assert (end["status"], end["text"]) == ("canceled", "as you wish")
+    assert left.cancel_goal(topic + "long", timeout=25) is False
+
+
+def test_many_goals_of_a_plain_server_at_once(graph: Any, pair: Pair, topic: str, native: Any) -> None:
+    left, _ = pair
+    for number in range(1, 9):
+        left.begin_send(f"{topic}{number}", COUNT, {"target": number, "period": 0.01}, timeout=25)
+    for number in range(1, 9):
+        left.end_send(f"{topic}{number}")
+    ends = [left.outcome(f"{topic}{number}", timeout=25)["result"]["last"] for number in range(1, 9)]
+    assert ends == list(range(1, 9))
+
+
+def test_a_plain_server_that_is_killed_is_lost(graph: Any, pair: Pair, topic: str, native: Any) -> None:
+    left, _ = pair
+    left.send_goal(topic, COUNT, LONG, timeout=25)
+    graph.wait_until(lambda: len(left.feedback(topic)) > 10, "it is under way")
+    left.begin_outcome(topic)
+    native.send_signal(signal.SIGKILL)
+    graph.wait_until(lambda: left.outcome_known(topic), "the loss is noticed", LOST)
+    with pytest.raises(ServerLost, match=COUNT):
+        left.end_outcome(topic)
+    with running(graph, "serve"):  # and the next one is found by the same client
+        left.send_goal(topic + "again", COUNT, {"target": 1}, timeout=25)
+        assert left.outcome(topic + "again", timeout=25)["status"] == "succeeded"
+
+
+def test_a_plain_server_that_cannot_answer_while_it_works_is_not_lost(
+    graph: Any, pair: Pair, topic: str
+) -> None:
+    left, _ = pair
+    with running(graph, "block"):
+        for goal in ("first", "second"):
+            left.send_goal(topic + goal, COUNT, {"target": 1, "period": 8.0}, timeout=25)
+            assert left.outcome(topic + goal, timeout=25)["text"] == "counted natively"
+
+
+def test_a_plain_client_uses_our_action(graph: Any, pair: Pair, topic: str) -> None:
+    _, right = pair
+    right.serve_action(topic)
+    assert asked(graph, "goal", topic) == ["counted 4 3 3", "cancelled 0 1 5", "accepted False"]
+
+
+def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: Any) -> None:
+    left, right = pair
+    node = "/native_serve"
+    assert {"speed", "rooms", "use_sim_time"} <= set(left.parameter_names(node, timeout=25))
+    assert left.get_parameter("speed", node, timeout=25) == 0.5
+    assert left.get_parameter("rooms", node, timeout=25) == ["kitchen", "hall"]
+    right.watch_parameters(topic, node)
+
+    def told() -> bool:
+        left.set_parameter("speed", 0.25, node, timeout=25)
+        return {"speed": 0.25} in right.parameter_changes(topic)
+
+    graph.wait_until(told, "the change is told")
+    left.set_parameter("rooms", [], node, timeout=25)
+    assert left.get_parameter("rooms", node, timeout=25) == []
+    with pytest.raises(ParameterRefused, match="range"):
+        left.set_parameter("speed", 7.0, node, timeout=25)
+    with pytest.raises(ParameterRefused, match="type"):
+        left.set_parameter("speed", "fast", node, timeout=25)
+    with pytest.raises(ParameterUnknown, match="colour"):
+        left.set_parameter("colour", "red", node, timeout=25)
+    with pytest.raises(ParameterUnknown, match="colour"):
+        left.get_parameter("colour", node, timeout=25)
+
+
+def test_a_plain_node_uses_our_parameters(graph: Any, pair: Pair) -> None:
+    cruiser = graph.peer("cruiser")
+    cruiser.declare("lanes", 4, only_even=True, minimum=0, maximum=10)
+    assert asked(graph, "ask", "/cruiser") == ["names True True", "put True False it is odd", "got 6"]
+    assert cruiser.get_parameter("lanes") == 6
