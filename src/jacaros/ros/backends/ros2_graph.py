@@ -129,3 +129,9 @@ def action_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
     """The identities of those that offer an action: a server that was started anew has another."""
     told = node.rcl.get_publishers_info_by_topic(name + FEEDBACK)
     return frozenset(bytes(info.endpoint_gid) for info in told)
+
+
+def service_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
+    """The identities of those that offer a service, where the middleware makes services of topics, as all on DDS do."""
+    told = node.rcl.get_publishers_info_by_topic(f"rr{name}Reply", no_mangle=True)
+    return frozenset(bytes(info.endpoint_gid) for info in told)

@@ -1,10 +1,11 @@
 """Services of ROS 2."""
 
+import time
 from collections.abc import Callable
 from typing import Any
 
 from jacaros.ros.backend import Handler
-from jacaros.ros.backends.ros2_graph import service_mismatch
+from jacaros.ros.backends.ros2_graph import service_mismatch, service_servers
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
@@ -14,6 +15,9 @@ from jacaros.ros.waiting import within
 
 SETTLING = 0.5
 """Seconds between finding a server and the first request: what it answers before it knows the client is lost."""
+
+COMPARING = 1.0
+"""Seconds after which it is looked again who offers a service that is called."""
 
 
 class _Call:
@@ -106,6 +110,8 @@ class Ros2Client:
         self._type_name = type_name
         self._client: Any = node.rcl.create_client(node.schema.message_class(type_name), name)
         self._pending = PendingCalls(name)
+        self._servers: frozenset[bytes] = frozenset()
+        self._compared = 0.0
         self._acquainted = False
         self._closed = False
 
@@ -135,7 +141,7 @@ class Ros2Client:
         if not self.ready:
             self._acquainted = False
             raise ServiceUnavailable(f"nobody offers service {self.name}")
-        if not self._acquainted:
+        if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
             if (mismatch := service_mismatch(self._node, self.name, self._type_name)) is not None:
                 raise CallFailed(mismatch)
@@ -155,6 +161,17 @@ class Ros2Client:
             return await within(clock, answer, None if deadline is None else deadline - clock.now())
         finally:
             self._client.remove_pending_request(call)
+
+    def _is_new(self) -> bool:
+        """Whether the server is not known yet; after a crash the next one takes over before the first is missed."""
+        now = time.monotonic()
+        if self._acquainted and now < self._compared + COMPARING:
+            return False
+        self._compared = now
+        servers = service_servers(self._node, self.name)
+        fresh = not self._acquainted or not servers <= self._servers
+        self._servers |= servers
+        return fresh
 
     def farewell(self, seconds: float) -> None:
         """Nothing is left to say."""
