@@ -1,0 +1,96 @@
+"""Signs of life of an action server: when silence means that it is gone."""
+
+import pytest
+
+from jacaros.ros.backends import ros2_signs
+from jacaros.ros.backends.ros2_signs import SignsOfLife
+
+
+class Watched:
+    """A watch over a server, with a clock that stands still between steps."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = 100.0
+        self.probes = 0
+        self.told: list[bool] = []
+        monkeypatch.setattr(ros2_signs.time, "monotonic", lambda: self.now)
+        self.signs = SignsOfLife(self._probed, self.told.append)
+        self.answering = True
+        self.telling = False
+
+    def _probed(self) -> None:
+        self.probes += 1
+
+    def live(self, seconds: float, under_way: bool = True) -> None:
+        """Let time pass: the server answers what it is asked, or not."""
+        for _ in range(round(seconds / 0.1)):
+            self.now += 0.1
+            asked = self.probes
+            self.signs.check(self.now, under_way)
+            if self.answering and self.probes > asked:
+                self.signs.heard()
+                self.signs.probe_answered()
+            if self.telling:
+                self.signs.heard()
+
+
+@pytest.fixture
+def watched(monkeypatch: pytest.MonkeyPatch) -> Watched:
+    made = Watched(monkeypatch)
+    made.signs.heard()
+    made.signs.goal_begins()
+    return made
+
+
+def test_a_silent_server_that_answers_is_not_suspected(watched: Watched) -> None:
+    watched.live(20.0)
+    assert watched.told == []
+    assert 10 < watched.probes < 25
+
+
+def test_a_server_that_tells_is_hardly_asked(watched: Watched) -> None:
+    watched.telling = True
+    watched.live(20.0)
+    assert (watched.told, watched.probes) == ([], 1)
+
+
+def test_a_server_that_falls_silent_is_suspected(watched: Watched) -> None:
+    watched.live(3.0)
+    watched.answering = False
+    watched.live(3.0)
+    assert watched.told == [False]
+
+
+def test_a_server_that_never_answers_while_it_works_is_not_suspected(watched: Watched) -> None:
+    watched.answering = False
+    watched.live(60.0)
+    assert (watched.told, watched.probes) == ([], 1)
+
+
+def test_an_answer_that_waited_for_the_end_of_the_goal_proves_nothing(watched: Watched) -> None:
+    watched.answering = False
+    watched.live(5.0)
+    watched.signs.heard()
+    watched.signs.probe_answered()
+    watched.live(0.2)
+    watched.signs.rest()
+    watched.signs.goal_begins()
+    watched.live(30.0)
+    assert watched.told == []
+
+
+def test_a_suspicion_that_was_wrong_is_taken_back_and_not_repeated(watched: Watched) -> None:
+    watched.live(3.0)
+    watched.answering = False
+    watched.live(3.0)
+    watched.signs.heard()
+    watched.live(30.0)
+    assert watched.told == [False, True]
+
+
+def test_another_server_is_judged_anew(watched: Watched) -> None:
+    watched.live(3.0)
+    watched.signs.stranger()
+    watched.answering = False
+    watched.live(30.0)
+    assert watched.told == []
