@@ -95,6 +95,7 @@ def bumps(world: World) -> list[Any]:
     return [event for event in world.log if event.kind in ("bump", "collision")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["house", "patrol", "two_robots", "three_robots", "empty"])
 def test_two_hundred_random_goals_and_never_a_wall(name: str) -> None:
     described = World.load(name).description

@@ -150,3 +150,22 @@ def test_each_corner_of_the_square_lies_in_its_room_of_the_house(
     corner: tuple[float, float], room: str
 ) -> None:
     assert World.load("house").room_at(*corner) == room
+
+
+def test_navigation_is_switched_off_or_given_a_speed() -> None:
+    def settings(text: str) -> tuple[bool, float]:
+        robot = read_world(f"robots:\n  - name: r\n    {text}\n").robots[0]
+        return robot.navigation.enabled, robot.navigation.speed
+
+    assert settings("radius: 0.2") == (True, 0.4)
+    assert settings("navigation: false") == (False, 0.4)
+    assert settings("navigation: true") == (True, 0.4)
+    assert settings("navigation: {speed: 0.2}") == (True, 0.2)
+    for wrong, told in (
+        ("navigation: {sped: 1}", "3:18: 'navigation' has no key 'sped'"),
+        ("navigation: fast", "3:17: 'navigation' must be true or false, not 'fast'"),
+        ("navigation: {speed: 9}", "3:25: 'speed' is 9, but must lie between 0.05 and 5"),
+    ):
+        with pytest.raises(WorldError) as error:
+            settings(wrong)
+        assert told in str(error.value)
