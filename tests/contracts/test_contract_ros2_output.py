@@ -24,6 +24,7 @@ async def main():
     backend = open_backend("ros2", WallClock(), "node")
     await backend.start()
     backend.publisher("/a", "std_msgs/msg/String")
+    backend.rcl.get_logger().warning("rclpy has something to say")
     await backend.close()
     print("[agent] done")
 
@@ -38,7 +39,7 @@ def test_complaints_of_the_middleware_go_to_standard_error(
         pytest.skip("no ROS 2 here; see test_contract_presence")
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM],
-        env=os.environ | ros2_environment(tmp_path),
+        env=os.environ | ros2_environment(tmp_path) | {"RCUTILS_LOGGING_USE_STDOUT": "1"},
         capture_output=True,
         text=True,
         timeout=60,
@@ -49,3 +50,4 @@ def test_complaints_of_the_middleware_go_to_standard_error(
     assert done.returncode == 0, done.stderr
     assert done.stdout == "[agent] done\n"
     assert "RTPS" in done.stderr
+    assert "rclpy has something to say" in done.stderr

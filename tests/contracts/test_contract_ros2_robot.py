@@ -157,3 +157,19 @@ def test_a_plain_node_uses_our_parameters(graph: Any, pair: Pair) -> None:
     cruiser.declare("lanes", 4, only_even=True, minimum=0, maximum=10)
     assert asked(graph, "ask", "/cruiser") == ["names True True", "put True False it is odd", "got 6"]
     assert cruiser.get_parameter("lanes") == 6
+
+
+@pytest.mark.parametrize("ending", ["signal", "return", "exception"])
+def test_goals_of_a_process_that_stops_are_cancelled(graph: Any, pair: Pair, topic: str, ending: str) -> None:
+    _, right = pair
+    leaver, name = graph.peer(f"leaver_{ending}"), f"{topic}_{ending}"
+    right.serve_action(name)
+    graph.wait_until(lambda: leaver.action_ready(name), "the action is found")
+    leaver.send_goal(name, name, {"target": 500, "period": 0.05}, timeout=25)
+    graph.wait_until(lambda: leaver.feedback(name), "it is under way")
+    if ending == "signal":
+        leaver.signal(signal.SIGTERM)
+    else:
+        getattr(leaver, ending)()
+    graph.wait_until(lambda: ["end", 500, True] in right.deeds(name), "the goal is cancelled")
+    graph.wait_until(leaver.is_over, "the process ends")

@@ -8,9 +8,16 @@ from pathlib import Path
 PROFILES = "FASTRTPS_DEFAULT_PROFILES_FILE"
 """Names the file with Fast DDS 2's settings; version 3 calls it otherwise and reports on standard error anyway."""
 
+LOGGERS = "RCUTILS_LOGGING_USE_STDOUT"
+"""Whether rclpy's loggers write to standard output."""
+
 
 def leave_standard_output_alone() -> None:
-    """Have Fast DDS 2 report on standard error, before it starts; settings of the user's own are left alone."""
+    """Have Fast DDS 2 and rclpy's loggers report on standard error, before they start.
+
+    A file with Fast DDS's settings of the user's own is left alone.
+    """
+    os.environ[LOGGERS] = "0"
     middleware = os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
     if middleware.startswith("rmw_fastrtps") and PROFILES not in os.environ and _is_fast_dds_2():
         os.environ[PROFILES] = str(Path(__file__).with_name("fastdds_log.xml"))
