@@ -182,8 +182,8 @@ class RosClock:
             self._told_still = True
             if self._time is None:
                 self._log(
-                    f"nobody publishes {CLOCK_TOPIC}: time stands still until a simulator does; without one run "
-                    "with --clock real"
+                    f"nobody publishes {CLOCK_TOPIC}: time stands still until a simulator does (`jacaros sim WORLD "
+                    "--publish-clock`); without one run with --clock real"
                 )
             else:
                 self._log(
