@@ -110,6 +110,16 @@ def cancel_all(name: str) -> None:
     rospy.sleep(0.5)
 
 
+def other_definition(topic: str) -> None:
+    from std_msgs.msg import Int32
+
+    class Newer(Int32):
+        _md5sum = "0123456789abcdef0123456789abcdef"
+
+    rospy.Publisher(topic, Newer, queue_size=1)
+    ready()
+
+
 def send_tf() -> None:
     import tf2_ros
     from geometry_msgs.msg import TransformStamped
@@ -156,8 +166,9 @@ if __name__ == "__main__":
             "crowd": crowd,
             "use": use,
             "cancel": cancel_all,
+            "other_definition": other_definition,
             "send_tf": send_tf,
             "look_up_tf": look_up_tf,
         }[command](*arguments)
-        if command in ("serve", "crowd"):
+        if command in ("serve", "crowd", "other_definition"):
             rospy.spin()

@@ -194,6 +194,19 @@ def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native:
     right.unwatch_parameters("left")
 
 
+def test_another_version_of_a_definition_is_told(graph: Any, pair: Pair, topic: str) -> None:
+    left, _ = pair
+    left.subscribe(topic, "std_msgs/msg/Int32", events=True)
+    with running(graph, "other_definition", topic):
+        graph.wait_until(lambda: left.events(topic), "the other version is told")
+    [[trouble, text]] = left.events(topic)
+    assert trouble == "other_type"
+    assert text.startswith(
+        f"topic {topic}: a publisher has another definition of std_msgs/msg/Int32 "
+        "(md5 sum 0123456789abcdef0123456789abcdef, here da5909fbe378aeaf85e547e830cc1bb7)"
+    )
+
+
 def test_tf2_and_we_see_the_same_frames(graph: Any, pair: Pair, native: Callable[..., str]) -> None:
     left, right = pair
     with running(graph, "send_tf"):

@@ -1,5 +1,6 @@
 """Action servers in ROS 1 graphs: actionlib's protocol around `ServedGoals`."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,8 @@ from jacaros.ros.backend import Sample
 from jacaros.ros.names import result_type
 
 NO_TIME = (0, 0)
+AFTER_FEEDBACK = 0.01
+"""Seconds between the last feedback and the result: on their ways, which are two, the result must not be the faster one."""
 OUTDATED = "cancelled together with all goals of its time and before"
 
 
@@ -38,6 +41,7 @@ class _Goal:
         text: what is said about that.
         told_until: when it is dropped from the list; None while it is not over.
         status: ``actionlib_msgs/GoalStatus`` message that says this, once it was made.
+        feedback_at: when feedback was sent last.
     """
 
     goal_id: str
@@ -46,6 +50,7 @@ class _Goal:
     text: str = ""
     told_until: float | None = None
     status: Any = None
+    feedback_at: float = 0.0
 
     def change(self, state: State, text: str = "") -> None:
         """Go to another state."""
@@ -71,6 +76,8 @@ class ActionlibServer:
         self._result_type = result_type(type_name)
         self._served = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
         self._goals: dict[str, _Goal] = {}
+        self._ending: dict[str, Callable[[], None]] = {}
+        """Goals whose results wait for their feedback to be on its way."""
         self._cancelled_until = NO_TIME
         self._count = 0
         self._closed = False
@@ -89,6 +96,8 @@ class ActionlibServer:
         if self._closed:
             return
         self._served.close()
+        for finish in list(self._ending.values()):
+            finish()
         self._closed = True
         if self._timer is not None:
             self._timer.cancel()
@@ -141,6 +150,7 @@ class ActionlibServer:
 
     def send_feedback(self, goal: _Goal, feedback: Any) -> None:
         """Tell how far a goal is."""
+        goal.feedback_at = self._node.clock.now()
         self._feedback.publish(
             self._feedback.message(
                 header={"stamp": self._node.clock.now()}, status=self._status_of(goal), feedback=feedback
@@ -154,7 +164,17 @@ class ActionlibServer:
             GoalStatus.CANCELED: State.PREEMPTED,
             GoalStatus.ABORTED: State.ABORTED,
         }
-        self._finish(goal, states[outcome.status], outcome.text, outcome.result)
+
+        def finish() -> None:
+            if self._ending.pop(goal.goal_id, None) is not None:
+                self._finish(goal, states[outcome.status], outcome.text, outcome.result)
+
+        self._ending[goal.goal_id] = finish
+        wait = goal.feedback_at + AFTER_FEEDBACK - self._node.clock.now()
+        if wait > 0.0:
+            self._node.clock.call_later(min(wait, AFTER_FEEDBACK), finish)
+        else:
+            finish()
 
     def _finish(self, goal: _Goal, state: State, text: str, result: Any = None) -> None:
         goal.change(state, text)

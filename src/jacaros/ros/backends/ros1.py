@@ -86,6 +86,10 @@ class Ros1Backend(Ros1Node):
         """Tell subscriptions whose topic has another type."""
         self._feeds.see_types(types)
 
+    def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
+        """Tell subscriptions whose publisher has another definition."""
+        self._feeds.see_definition(topic, kind, theirs, ours)
+
     def service(self, name: str, type_name: str, handler: Handler) -> Ros1Service:
         """Offer a service."""
         return Ros1Service(self, self.resolve(name), service_type(type_name), handler)

@@ -1,6 +1,7 @@
 """The ROS 1 node of this process: joined to the graph, kept in it, and left."""
 
 import asyncio
+import logging
 import os
 import time
 from collections.abc import Callable, Collection, Mapping
@@ -11,6 +12,7 @@ import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
 from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, stay_local
+from jacaros.ros.backends.ros1_mismatch import MismatchWatch
 from jacaros.ros.backends.ros1_repairs import (
     leave_standard_output_alone,
     let_closed_nodes_rest,
@@ -110,11 +112,15 @@ class Ros1Node(Node):
     def types_changed(self, types: Mapping[str, str]) -> None:
         """Be told the types of all topics, as on ROS 1; on the loop, when publishers have come or gone."""
 
+    def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
+        """Be told that a publisher of *topic* has another definition of its type; on the loop."""
+
     def _join(self) -> None:
         # Where init_node takes its namespace from.
         rospy.names._set_caller_id(f"{self.names.namespace}/unnamed")
         rospy.init_node(self.names.node_name, argv=[], disable_signals=True)
         leave_standard_output_alone()
+        logging.getLogger("rospy.internal").addHandler(MismatchWatch(self._note_mismatch))
         rospy.on_shutdown(self._note_shutdown)
 
     def _leave(self) -> None:
@@ -149,6 +155,9 @@ class Ros1Node(Node):
 
     def _note_types(self, types: Mapping[str, str]) -> None:
         post(self.loop, self.types_changed, types)
+
+    def _note_mismatch(self, topic: str, kind: str, theirs: str, ours: str) -> None:
+        post(self.loop, self.definition_differs, topic, kind, theirs, ours)
 
     def _note_parameter(self, name: str, value: Any) -> None:
         post(self.loop, self.parameter_changed, name, value)

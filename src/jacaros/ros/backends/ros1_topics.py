@@ -134,6 +134,10 @@ class TopicFeed:
             f"topic {self._topic} carries {package}/msg/{name}, but {self.type_name} was asked for: "
             f"nothing will be received; write {package}/msg/{name}"
         )
+        self.tell(text)
+
+    def tell(self, text: str) -> None:
+        """Tell all subscriptions that messages of others are not ours."""
         for subscription in self._subscriptions:
             subscription.tell(text)
 
@@ -186,6 +190,15 @@ class Feeds:
         for topic, feed in self._feeds.items():
             if topic in self._types:
                 feed.see_type(self._types[topic])
+
+    def see_definition(self, topic: str, kind: str, theirs: str, ours: str) -> None:
+        """Be told that a publisher's definition of a type (as on ROS 1) has another md5 sum than ours."""
+        if topic in self._feeds:
+            package, _, name = kind.partition("/")
+            self._feeds[topic].tell(
+                f"topic {topic}: a publisher has another definition of {package}/msg/{name} (md5 sum {theirs}, here "
+                f"{ours}): nothing will be received from it; install its version of {package} here"
+            )
 
 
 class Ros1Subscription:
