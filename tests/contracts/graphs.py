@@ -246,7 +246,7 @@ class InProcesses:
             made.dispose()
         finally:
             self._leftovers |= made.shared_memory
-        assert made.stray_output == [], "standard output belongs to the agents"
+        assert made.stray_output == [], f"standard output belongs to the agents: {made.stray_output}"
 
     def close(self) -> None:
         problems = []

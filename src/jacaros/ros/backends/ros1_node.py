@@ -14,10 +14,11 @@ import rospy.impl.registration as registration  # type: ignore[import-not-found]
 from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, stay_local
 from jacaros.ros.backends.ros1_mismatch import MismatchWatch
 from jacaros.ros.backends.ros1_repairs import (
-    leave_standard_output_alone,
     let_closed_nodes_rest,
     let_parameters_tell,
     let_subscribers_hear,
+    log_to_standard_error,
+    print_to_standard_error,
 )
 from jacaros.ros.backends.ros1_types import GenpySchema
 from jacaros.ros.errors import CapabilityMissing, RosError
@@ -81,6 +82,7 @@ class Ros1Node(Node):
         Ros1Node._started = True
         self._loop = asyncio.get_running_loop()
         stay_local(self.master_uri)
+        print_to_standard_error()
         let_subscribers_hear()
         let_closed_nodes_rest()
         let_parameters_tell(self._note_parameter)
@@ -119,7 +121,7 @@ class Ros1Node(Node):
         # Where init_node takes its namespace from.
         rospy.names._set_caller_id(f"{self.names.namespace}/unnamed")
         rospy.init_node(self.names.node_name, argv=[], disable_signals=True)
-        leave_standard_output_alone()
+        log_to_standard_error()
         logging.getLogger("rospy.internal").addHandler(MismatchWatch(self._note_mismatch))
         rospy.on_shutdown(self._note_shutdown)
 

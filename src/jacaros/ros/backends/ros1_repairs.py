@@ -20,13 +20,17 @@ def let_subscribers_hear() -> None:
     warnings.filterwarnings("ignore", "notifyAll", DeprecationWarning)
 
 
-def leave_standard_output_alone() -> None:
-    """Turn rospy's reports to standard error: standard output belongs to the agents.  After ``init_node``."""
+def print_to_standard_error() -> None:
+    """Turn what rospy prints to standard error: standard output belongs to the agents.  Before ``init_node``."""
+    for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
+        module.print = partial(print, file=sys.stderr)
+
+
+def log_to_standard_error() -> None:
+    """Turn what rospy logs to standard error as well.  After ``init_node``, which sets the logs up."""
     for handler in logging.getLogger("rosout").handlers:
         if hasattr(handler, "_stdout"):
             handler._stdout = sys.stderr
-    for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
-        module.print = partial(print, file=sys.stderr)
 
 
 def let_parameters_tell(listener: Callable[[str, Any], None]) -> None:
