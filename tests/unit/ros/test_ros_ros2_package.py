@@ -72,6 +72,12 @@ def test_two_types_of_one_name_are_refused_unless_they_are_the_same(tmp_path: Pa
         look_alikes(tmp_path)
 
 
+def test_packages_that_every_ros_2_has_are_left_to_it(tmp_path: Path) -> None:
+    put(tmp_path, "nav_msgs/srv/GetMap.srv", "---\nOccupancyGrid map\n")
+    put(tmp_path, "a_msgs/msg/Part.msg", "uint8 kind\n")
+    assert list(look_alikes(tmp_path)) == ["msg/Part.msg"]
+
+
 def test_transforms_have_a_package_of_their_own_name(tmp_path: Path) -> None:
     package = write_package(tmp_path, "tf2_msgs")
     assert [path.name for path in package.glob("msg/*")] == ["TFMessage.msg"]

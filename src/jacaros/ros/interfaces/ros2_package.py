@@ -20,7 +20,21 @@ from pathlib import Path
 PACKAGE = "jacaros_interfaces"
 """The package of the look-alikes."""
 BUILT_IN = Path(__file__).parent
-COMMON = frozenset({"std_srvs", "actionlib_msgs"})
+COMMON = frozenset(
+    {
+        *(
+            "actionlib_msgs",
+            "diagnostic_msgs",
+            "geometry_msgs",
+            "nav_msgs",
+            "sensor_msgs",
+            "shape_msgs",
+            "std_msgs",
+        ),
+        *("std_srvs", "stereo_msgs", "trajectory_msgs", "visualization_msgs"),
+        *("action_msgs", "builtin_interfaces", "lifecycle_msgs", "rcl_interfaces", "rosgraph_msgs"),
+    }
+)
 """Packages that every ROS 2 has; their definitions are here for the backends that have no packages."""
 OWN_NAME = frozenset({"tf2_msgs"})
 """Packages that are built under their own name."""
