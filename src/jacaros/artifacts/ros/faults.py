@@ -27,8 +27,11 @@ Tell = Callable[[Structure, str], None]
 FAR = 10.0
 """Seconds between a stamp and our clock that are worth a word; the clocks of two machines differ by less."""
 
+STRAGGLING = 1.0
+"""A message may be overtaken by so many seconds; of a clock that was set back by less, the stamps soon catch up."""
+
 IN_A_ROW = 3
-"""So many old stamps one after the other are no stragglers: the clock of the sender was set back."""
+"""So many stamps one after the other that are still older are no stragglers: the clock of the sender was set back."""
 
 SILENCE = 5.0
 """Seconds without a good message after which one in another frame is taken: its sender was started anew."""
@@ -121,10 +124,11 @@ class Header:
             self._newest = stamp
             self._stragglers.clear()
             return True
-        if self._stragglers and stamp < self._stragglers[-1]:
-            self._stragglers.clear()
-        self._stragglers.append(stamp)
         late = round(self._newest - stamp, 3)
+        if late < STRAGGLING or (self._stragglers and stamp < self._stragglers[-1]):
+            self._stragglers.clear()
+        if late >= STRAGGLING:
+            self._stragglers.append(stamp)
         if len(self._stragglers) >= IN_A_ROW:
             self._faults.add(Structure("clock_jumped", (late,)), f"the stamps jumped back by {late:g} s")
             self._newest = stamp

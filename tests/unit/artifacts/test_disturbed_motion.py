@@ -1,0 +1,67 @@
+"""Motion over a graph that delays, repeats, loses and overtakes odometry: the robot arrives, or stops with a reason."""
+
+from typing import Any
+
+import pytest
+from robot_lab import STANDSTILL, Lab, assert_at, in_lab
+
+from jacaros.artifacts.ros.odometry import ArtOdometry
+from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.ros.backends.memory_faults import Fate, both, delayed, dropped, duplicated
+
+
+def disturb(lab: Lab, topic: str, fate: Fate) -> None:
+    backend: Any = lab.backend
+    backend.graph.disturb(topic, fate)
+
+
+@pytest.mark.parametrize(
+    "fate",
+    [
+        delayed(0.02),
+        delayed(0.0, jitter=0.1, seed=3),
+        duplicated(3, apart=0.03),
+        dropped(0.5, seed=1),
+        both(dropped(0.2, seed=2), both(duplicated(2, apart=0.05), delayed(0.01, jitter=0.05, seed=4))),
+    ],
+    ids=["delayed", "overtaking", "repeated", "lost", "all of it"],
+)
+def test_a_square_is_driven_with_bad_odometry(fate: Fate) -> None:
+    async def body(lab: Lab) -> None:
+        disturb(lab, "/odom", fate)
+        artifact = await lab.make(ArtCmdVel)
+        for _ in range(4):
+            await lab.do(artifact, "moveForward", 1)
+            await lab.do(artifact, "rotate", 90)
+        assert_at(lab, 0, 0, 0, metres=0.06, degrees=3)
+
+    in_lab(body)
+
+
+def test_positions_that_overtake_each_other_are_never_shown_backwards() -> None:
+    async def body(lab: Lab) -> None:
+        disturb(lab, "/odom", delayed(0.0, jitter=0.2, seed=5))
+        watcher = lab.watch(await lab.make(ArtOdometry))
+        artifact = await lab.make(ArtCmdVel)
+        await lab.do(artifact, "moveForward", 2)
+        shown = [float(str(x)) for x, _, _ in watcher.values("odom")]
+        there = shown.index(max(shown))  # from there on it makes up for what it has driven too far
+        assert there > 20
+        assert shown[: there + 1] == sorted(shown[: there + 1])
+
+    in_lab(body)
+
+
+def test_odometry_that_is_lost_for_good_stops_the_robot() -> None:
+    async def body(lab: Lab) -> None:
+        lab.record()
+        artifact = await lab.make(ArtCmdVel)
+        moving = lab.begin(artifact, "moveForward", 5)
+        await lab.sleep(2)
+        disturb(lab, "/odom", dropped())
+        await moving.done
+        assert moving.reason == "no_odometry(5)"
+        assert lab.last_command == STANDSTILL
+        assert lab.speed() == (0.0, 0.0)
+
+    in_lab(body)
