@@ -27,8 +27,17 @@ SAME = {"printWithAgName": "print", "printlnWithAgName": "println"}
 REFUSED = {"crash", "createWorkspaceWithTopology", "linkRemoteWorkspace", "mountWorkspace", "spawnNode"}
 """Actions that can only fail."""
 
-NOT_FOR_AUTHORS = {"interface", "observe_property", "clock", "id", "name", "workspace", "resources"}
-"""Attributes of artifacts that no author calls, or that are plain values."""
+NOT_FOR_AUTHORS = {
+    "interface",
+    "has_untaken",
+    "observe_property",
+    "clock",
+    "id",
+    "name",
+    "workspace",
+    "resources",
+}
+"""Attributes of artifacts that no author calls, that only the policies of sensors ask for, or that are plain values."""
 
 TYPES = (
     Barrier,

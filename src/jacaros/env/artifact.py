@@ -254,6 +254,13 @@ class Artifact:
             self.fail(f"Property not found {name}", "unknown_property", str(name))
         snapshot.set(PropertySnapshot(found[0]))
 
+    def has_untaken(self, name: str) -> bool:
+        """Whether an observer has still to take up what it was told about properties called *name*.
+
+        A sensor that changes faster than its observers think asks this first; see `jacaros.artifacts.ros.reading`.
+        """
+        return self._steps.publication.has_untaken(name)
+
     # ---- signals, failure, log
 
     def signal(self, name: str, *arguments: object) -> None:

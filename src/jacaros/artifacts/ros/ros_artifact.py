@@ -259,7 +259,7 @@ class RosArtifact(Artifact):
             faults.setdefault(topic, self._faults(topic)).not_finite(name, number)
 
         def behind() -> bool:
-            return coming > 0 or self._steps.publication.has_untaken(name)
+            return coming > 0 or self.has_untaken(name)
 
         outlet = Outlet(partial(self.start, self.withdraw_reading, name), refuse, behind)
         return self._kept(Reading(policy, self.clock, deliver, outlet))
