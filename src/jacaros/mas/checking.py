@@ -140,7 +140,12 @@ def _of_artifacts(
     from jacaros.mas.action_check import check_actions
     from jacaros.mas.furnishing import types_of
 
-    artifacts = [artifact for workspace in deployment.workspaces for artifact in workspace.artifacts]
+    artifacts = [
+        artifact
+        for workspace in deployment.workspaces
+        for artifact in workspace.artifacts
+        if not _is_wrong_mapping(artifact.type_name, folders)
+    ]
     try:
         find_type = type_finder(ProjectModules(*folders))
         types_of(artifacts, find_type)
@@ -148,7 +153,26 @@ def _of_artifacts(
         return [Diagnostic("error", str(error), code="wrong-project")]
     except ProjectError as error:
         return [_of_project(each) for each in error.diagnostics]
-    return check_actions(deployment, programs, find_type)
+    told = check_actions(deployment, programs, find_type)
+    return [each for each in told if not _is_of_wrong_mapping(each, folders)]
+
+
+def _is_wrong_mapping(type_name: str, folders: tuple[Path, ...]) -> bool:
+    """Whether an artifact's type is a mapping file with mistakes, which are told by themselves."""
+    if not type_name.partition("#")[0].endswith(MAPPINGS):
+        return False
+    from jacaros.mas.mappings import is_wrong  # here: see `_check_mapping`
+
+    return is_wrong(type_name, folders)
+
+
+def _is_of_wrong_mapping(diagnostic: Diagnostic, folders: tuple[Path, ...]) -> bool:
+    """Whether a warning about an unknown type is about a mapping file with mistakes."""
+    span = diagnostic.span
+    if diagnostic.code != "unknown-artifact-type" or span is None:
+        return False
+    written = span.file.lines[span.line - 1][span.column - 1 : span.end_column - 1].strip("\"'")
+    return _is_wrong_mapping(written, folders)
 
 
 def _check_mapping(path: Path, findings: Findings) -> None:

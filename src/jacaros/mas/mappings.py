@@ -77,6 +77,12 @@ def check_mapping_file(path: Path) -> list[Diagnostic]:
     return diagnostics_of(mapping, problems)
 
 
+def is_wrong(name: str, folders: Sequence[Path]) -> bool:
+    """Whether *name* is the type of a mapping file that has mistakes; they are told where they are."""
+    path = find_mapping(name.partition("#")[0], folders)
+    return path is not None and bool(read_with_problems(path)[1])
+
+
 def with_mappings(deployment: Deployment, names: Sequence[str]) -> Deployment:
     """A deployment with the artifacts of further mapping files; a lone program focuses all of them.
 

@@ -1,0 +1,265 @@
+"""Mapping files in runs, projects and checks: from the command line to the robot of the embedded world."""
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from jacaros.cli.main import call
+
+ROBOT = """
+    properties:
+      odom: {topic: odom, fields: [pose.pose.position.x, pose.pose.position.y], rate: 5}
+    frames:
+      pose: {target: map, source: base_link, rate: 5}
+    operations:
+      drive:
+        parameters: [speed, seconds]
+        publish: cmd_vel
+        type: geometry_msgs/msg/Twist
+        fields: {linear.x: $speed}
+        rate: 10
+        duration: $seconds
+      navigate_to:
+        parameters: [x, y]
+        action: navigate_to_pose
+        type: nav2_msgs/action/NavigateToPose
+        goal: {pose.header.frame_id: map, pose.header.stamp: now, pose.pose.position.x: $x, pose.pose.position.y: $y}
+        feedback: {left: [distance_remaining]}
+        suspend: cancel
+    """
+
+DRIVE = """
+    !start.
+    +!start <- drive(0.5, 2); .wait(1000); ?odom(X, _); .print("at ", math.round(X * 10) / 10); .stopMAS.
+    """
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, "robot.yaml", ROBOT)
+    write(tmp_path, "drive.asl", DRIVE)
+    return tmp_path
+
+
+def write(folder: Path, name: str, text: str) -> None:
+    (folder / name).write_text(dedent(text), encoding="utf-8")
+
+
+def output(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, list[str], str]:
+    """Exit code, lines and errors of a command."""
+    code = call(list(arguments))
+    told = capsys.readouterr()
+    return code, told.out.splitlines(), told.err
+
+
+def test_a_lone_program_focuses_what_the_option_names(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ("run", "drive.asl", "--mapping", "robot.yaml", "--clock", "fast")
+    assert output(capsys, *arguments) == (0, ["[drive] at 1"], "")
+
+
+def test_a_mapping_file_may_be_of_another_folder(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "maps").mkdir()
+    (folder / "robot.yaml").rename(folder / "maps" / "turtle.yaml")
+    arguments = ("run", "drive.asl", "--mapping", "maps/turtle.yaml", "--clock", "fast")
+    assert output(capsys, *arguments) == (0, ["[drive] at 1"], "")
+
+
+def test_a_jcm_project_names_its_mapping(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(folder, "p.jcm", 'mas p { agent drive { focus: main.robot }\n  mapping: "robot.yaml"\n}')
+    assert output(capsys, "run", "p.jcm", "--clock", "fast") == (0, ["[drive] at 1"], "")
+    assert output(capsys, "check", "--strict", "p.jcm") == (0, [], "nothing wrong in 3 files\n")
+
+
+def test_a_mas2j_project_names_its_mapping(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(folder, "p.mas2j", 'MAS p { mapping: "robot.yaml" agents: drive; }')
+    assert output(capsys, "run", "p.mas2j", "--clock", "fast") == (0, ["[drive] at 1"], "")
+    assert output(capsys, "check", "--strict", "p.mas2j") == (0, [], "nothing wrong in 3 files\n")
+
+
+def test_a_check_knows_what_is_mapped(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(folder, "p.jcm", 'mas p { agent drive { focus: main.robot }\n  mapping: "robot.yaml"\n}')
+    write(folder, "drive.asl", "!start.\n\n+!start\n  <- driv(1, 2);\n     drive(1).\n")
+    code, lines, _ = output(capsys, "check", "--strict", "p.jcm")
+    assert code == 1
+    assert [line for line in lines if ": warning:" in line or line.startswith("hint")] == [
+        "drive.asl:4:6: warning: no artifact of the project offers driv/2 [unknown-operation]",
+        "hint: did you mean drive?",
+        "drive.asl:5:6: warning: no artifact of the project offers drive/1 [unknown-operation]",
+        "hint: there is drive/2",
+    ]
+
+
+def test_a_check_of_a_project_covers_its_mapping_once(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(folder, "p.jcm", 'mas p { agent drive { focus: main.robot }\n  mapping: "robot.yaml"\n}')
+    write(
+        folder,
+        "robot.yaml",
+        """\
+        properties:
+          odom: {topic: odom, type: nav_msgs/msg/Odometry, fields: [pose.x]}
+          other: {topic: odom, mode: sometimes}
+        """,
+    )
+    code, lines, _ = output(capsys, "check", "p.jcm")
+    assert code == 1
+    assert [line for line in lines if ": error:" in line] == [
+        "robot.yaml:2:61: error: 'pose.x': geometry_msgs/msg/PoseWithCovariance has no field 'x' [wrong-mapping]",
+        "robot.yaml:3:30: error: 'mode' is 'sometimes' [wrong-mapping]",
+    ]
+
+
+def test_a_mapping_that_is_not_there(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, lines, errors = output(capsys, "run", "drive.asl", "--mapping", "robto.yaml", "--clock", "fast")
+    assert (code, lines) == (1, [])
+    assert errors == "error: there is no mapping file robto.yaml\nhint: did you mean robot.yaml?\n"
+
+
+def test_a_wrong_mapping_is_told_before_anything_runs(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(
+        folder,
+        "robot.yaml",
+        "operations:\n  drive: {publish: cmd_vel, type: geometry_msgs/msg/Twist, fields: {x: 1}}",
+    )
+    code, lines, errors = output(capsys, "run", "drive.asl", "--mapping", "robot.yaml", "--clock", "fast")
+    assert (code, lines) == (1, [])
+    assert "robot.yaml:2:72: 'x': geometry_msgs/msg/Twist has no field 'x'" in errors
+    assert (
+        "cure: its fields: linear (geometry_msgs/msg/Vector3), angular (geometry_msgs/msg/Vector3)" in errors
+    )
+
+
+def test_two_artifacts_of_one_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = ("--mapping", "robot.yaml", "--mapping", "robot.yaml")
+    code, _, errors = output(capsys, "run", "drive.asl", *files, "--clock", "fast")
+    assert code == 1
+    assert "two artifacts have the name 'robot'" in errors
+
+
+def test_an_agent_makes_the_artifact_of_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(
+        folder, "fleet.yaml", "artifacts:\n  idle: {}\n  base:" + ROBOT.replace("\n    ", "\n      ").rstrip()
+    )
+    write(
+        folder,
+        "maker.asl",
+        """\
+        !start.
+
+        +!start
+          <- makeArtifact("r", "fleet.yaml#base", ["one"], Id);
+             focus(Id);
+             drive(0.5, 1);
+             .wait(odom(X, _) & X > 0.3);
+             .print("driven");
+             !!wrong.
+
+        +!wrong
+          <- makeArtifact("s", "fleet.yaml", [], _).
+
+        -!wrong[error_msg(Text)]
+          <- .print(Text);
+             .stopMAS.
+        """,
+    )
+    write(
+        folder,
+        "two.yaml",
+        "robots:\n  - {name: one, namespace: one}\n  - {name: two, namespace: two, pose: {x: 2}}",
+    )
+    code, lines, errors = output(capsys, "run", "maker.asl", "--world", "two.yaml", "--clock", "fast")
+    assert (code, errors) == (0, "")
+    assert lines == [
+        "[maker] driven",
+        "[maker] fleet.yaml has 2 artifacts; write fleet.yaml#idle or fleet.yaml#base",
+    ]
+    assert output(capsys, "check", "maker.asl")[0] == 0
+
+
+def test_a_robot_navigates_as_one_step_of_a_plan(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(
+        folder,
+        "go.asl",
+        """\
+        !start.
+
+        +!start
+          <- navigate_to(1, 1);
+             ?pose(X, Y, _);
+             .print("at ", math.round(X * 10) / 10, " ", math.round(Y * 10) / 10);
+             navigate_to(100, 1).
+
+        +left(D) : D < 0.5 & not near
+          <- +near;
+             .print("nearly there").
+
+        -!start[env_failure_reason(aborted(Code, _))]
+          <- .print("aborted ", Code);
+             .stopMAS.
+        """,
+    )
+    arguments = ("run", "go.asl", "--mapping", "robot.yaml", "--clock", "fast")
+    assert output(capsys, *arguments) == (
+        0,
+        ["[go] nearly there", "[go] at 1 1", "[go] aborted 204"],
+        "",
+    )
+
+
+def test_dropping_the_intention_stops_the_robot(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(
+        folder,
+        "drop.asl",
+        """\
+        !go.
+        !stop.
+
+        +!go
+          <- navigate_to(2, 2).
+
+        +!stop
+          <- .wait(left(_));
+             .wait(1000);
+             .drop_intention(go);
+             .wait(2000);
+             ?odom(X, Y);
+             .wait(2000);
+             ?odom(X, Y);
+             .print("stands");
+             .stopMAS.
+        """,
+    )
+    arguments = ("run", "drop.asl", "--mapping", "robot.yaml", "--clock", "fast")
+    assert output(capsys, *arguments) == (0, ["[drop] stands"], "")
+
+
+def test_describe_tells_what_is_mapped(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, lines, _ = output(capsys, "describe", "robot.yaml")
+    assert code == 0
+    for line in (
+        "robot",
+        "  odom(X, Y)",
+        "  pose(X, Y, Yaw)",
+        "  left(DistanceRemaining)",
+        "  drive(speed: any value, seconds: any value)  [pausable]",
+        "  navigate_to(x: any value, y: any value)  [pausable]",
+    ):
+        assert line in lines, line
+
+
+def test_a_type_that_only_the_robot_knows_is_a_warning(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(folder, "robot.yaml", "properties: {a: {topic: t, type: acme_msgs/msg/Gripper}}")
+    code, lines, _ = output(capsys, "check", "robot.yaml")
+    assert code == 0
+    assert lines[0].endswith(
+        "warning: the type acme_msgs/msg/Gripper is not known here [unknown-message-type]"
+    )
