@@ -1,0 +1,21 @@
+"""The robot of another process is driven by a mapping file and a program, without Python."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from processes import Agents, WorldProcess
+
+FOLDER = Path(__file__).parent / "programs" / "mapped"
+
+
+def test_a_mapping_drives_the_robot_of_another_process(
+    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
+) -> None:
+    world = run_world("house")
+    agents = run_agents("mapped/house.asl", "--mapping", str(FOLDER / "house.yaml"))
+    assert agents.end() == 0
+    assert agents.lines == [
+        f"[house] {text}" for text in ("driven", "seen", "on the way", "back", "out of reach")
+    ]
+    assert [line for line in agents.complaints if "to learn its type" not in line] == []
+    assert world.errors == []
