@@ -10,13 +10,13 @@
      .print("driven");
      .wait(laserrange(_, _, _, _, _));
      look;
-     .wait(scan(Ranges));
+     .wait(scan(_));
      .print("seen");
      navigate_to(X, Y, 0);
      .print("back");
      navigate_to(1000, 0, 0).
 
-+left(D) : D > 0 & not on_the_way
++at(_, _) : not on_the_way
   <- +on_the_way;
      .print("on the way").
 
