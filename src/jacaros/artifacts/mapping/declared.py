@@ -95,7 +95,7 @@ class RangeOfView:
     Attributes:
         metres: how far it may be.
         distance: path of the distance; empty when positions are given.
-        at: paths of the position's two or three coordinates.
+        at: paths of the position's coordinates x and y.
         origin: the property whose first values are the place that is counted from; None: the robot itself.
     """
 

@@ -9,7 +9,7 @@ from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WHOLE, Getter, Path, WrongPath, follow, getter, read_path
 from jacaros.artifacts.mapping.taking import Take, taker
-from jacaros.env.values import Atom, Structure
+from jacaros.env.values import Structure
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.yaml_nodes import Problem
@@ -181,5 +181,9 @@ def _noted(notes: list[tuple[str, Take]], message: Any, element: Any, place: int
 
 
 def _hashable(key: tuple[object, ...]) -> object:
-    """A key that can be looked up: a list is written out."""
-    return tuple(str(each) if isinstance(each, list | Atom) else each for each in key)
+    """A key that can be looked up: one with lists in it is written out."""
+    try:
+        hash(key)
+    except TypeError:
+        return str(key)
+    return key

@@ -203,10 +203,8 @@ def _view(node: Node, each: bool) -> RangeOfView:
             "'range_of_view' needs a place", "add 'at: [position.x, position.y]', or 'distance: range'"
         )
     at = tuple(path_of(item) for item in entries["at"].sequence()) if "at" in entries else ()
-    if "at" in entries and not 2 <= len(at) <= 3:
-        entries["at"].wrong(
-            "'at' must be the paths of two or three coordinates", "write [position.x, position.y]"
-        )
+    if "at" in entries and len(at) != 2:
+        entries["at"].wrong("'at' must be the paths of two coordinates", "write [position.x, position.y]")
         at = ()
     origin = entries.get("from")
     return RangeOfView(

@@ -171,6 +171,10 @@ WRONG = {
         "properties: {a: {topic: t, range_of_view: {metres: 3}}}",
         "1:43: 'range_of_view' needs a place | add 'at: [position.x, position.y]', or 'distance: range'",
     ),
+    "view with one coordinate": (
+        "properties: {a: {topic: t, range_of_view: {metres: 3, at: [x]}}}",
+        "1:59: 'at' must be the paths of two coordinates | write [position.x, position.y]",
+    ),
     "view from nowhere": (
         "properties: {a: {topic: t, range_of_view: {metres: 3, at: [x, y], from: pose}}}",
         "1:73: there is no property 'pose' | properties from topics and frames: a",

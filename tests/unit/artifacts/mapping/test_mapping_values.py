@@ -203,6 +203,15 @@ def test_one_row_for_each_element_with_parallel_arrays() -> None:
     assert [row.values for row in extract(message)] == [("left", 1.0, "base"), ("right", 2.0, "base")]
 
 
+def test_elements_may_be_told_apart_by_a_list() -> None:
+    part = topic("[header.frame_id]", "each: markers, key: points")
+    extract = extractor(part, "visualization_msgs/msg/MarkerArray", stored_interfaces(), [])
+    assert extract is not None
+    markers = [{"points": [{"x": 1}]}, {"points": [{"x": 2}]}]
+    rows = extract(stored_interfaces().message("visualization_msgs/msg/MarkerArray", markers=markers))
+    assert len({row.key for row in rows}) == 2
+
+
 def test_field_parts_know_how_many_values_they_give() -> None:
     fields = topic("[x, {path: y, sample: 3}]").fields
     assert fields is not None
