@@ -235,7 +235,7 @@ def test_an_unknown_option_of_an_artifact(project: Project) -> None:
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
         "artifact battery (ArtSimBattery) cannot be made: ArtSimBattery has no option 'drian'; "
-        "it knows dock_timeout, drain, level, namespace, source, topic (robot.asl:3)\n",
+        "it knows dock_timeout, drain, expire, level, namespace, source, topic, watch_connection (robot.asl:3)\n",
     )
 
 
@@ -279,7 +279,8 @@ def test_a_missing_ros(project: Project, kind: str, message: str, command: tuple
     for library in ("rospy", "rclpy"):
         text = f"raise ModuleNotFoundError(\"No module named '{library}'\", name='{library}')\n"
         project.write(f"{library}.py", text)
-    assert project.run(*command, "--ros", kind, PYTHONPATH=".") == told(1, message)
+    path = os.pathsep.join([".", *filter(None, [os.environ.get("PYTHONPATH")])])
+    assert project.run(*command, "--ros", kind, PYTHONPATH=path) == told(1, message)
 
 
 def test_the_fast_clock_with_a_real_graph(project: Project) -> None:
@@ -305,7 +306,7 @@ def test_a_world_that_is_not_there(project: Project) -> None:
         1,
         "jacaros: nowhere:1:1: there is no such world file\n"
         "  cure: give the path of a world file, or one of the shipped worlds: "
-        "empty, house, patrol, two_robots\n",
+        "empty, house, patrol, three_robots, two_robots\n",
     )
 
 

@@ -26,7 +26,11 @@ _OPTIONS = (
         "--domain-id", type=int, metavar="N", help="Domain of the ROS 2 graph, in place of ROS_DOMAIN_ID."
     ),
     click.option("--master", metavar="URI", help="Master of the ROS 1 graph, in place of ROS_MASTER_URI."),
-    click.option("--bridge", metavar="URL", help="Address of the rosbridge server, such as ws://robot:9090."),
+    click.option(
+        "--bridge",
+        metavar="URL",
+        help="Address of the rosbridge server, such as ws://robot.lab.example:9090.",
+    ),
     click.option(
         "--namespace", default="", metavar="NAME", help="Put before names without a slash in front."
     ),

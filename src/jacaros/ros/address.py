@@ -25,8 +25,8 @@ class GraphAddress:
     Attributes:
         kind: of the graph: ``memory``, ``ros1``, ``ros2`` or ``rosbridge``.
         domain_id: of ROS 2; else ``ROS_DOMAIN_ID``.
-        master: address of the ROS 1 master, such as ``http://robot:11311``; else ``ROS_MASTER_URI``.
-        bridge: address of a rosbridge server, such as ``ws://robot:9090``.
+        master: address of the ROS 1 master, such as ``http://robot.lab.example:11311``; else ``ROS_MASTER_URI``.
+        bridge: address of a rosbridge server, such as ``ws://robot.lab.example:9090``.
         namespace: put before relative names; on ROS 1 ``ROS_NAMESPACE`` when it is empty.
         node_name: of our node, in place of the name that the program would give it.
         remap: names to use in place of others.

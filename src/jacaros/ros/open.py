@@ -63,10 +63,12 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
 
 def _backend_class(kind: str) -> Any:
     # Imported by name and only now: the client libraries are heavy, and most systems have one or none.
+    library = _LIBRARIES.get(kind)
     try:
+        if library is not None:
+            import_module(library)  # first, so that it is what is told to be missing, and no part of it
         module = import_module(f"jacaros.ros.backends.{kind}")
     except ImportError as problem:
-        library = _LIBRARIES.get(kind)
         if library is None or (problem.name or "").startswith("jacaros"):
             raise
         raise BackendUnavailable(

@@ -102,7 +102,7 @@ def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str
         (["show", "/o dom"], 2, "'/o dom' is no ROS name"),
         (["show", "nonsense_msgs/Thing"], 1, "nonsense_msgs"),
         (["list", "--domain-id", "3"], 2, "--domain-id goes with --ros ros2"),
-        (["list", "--master", "http://robot:11311"], 2, "--master goes with --ros ros1"),
+        (["list", "--master", "http://robot.lab.example:11311"], 2, "--master goes with --ros ros1"),
         (["list", "--ros", "ros2", "--world", "house"], 2, "jacaros sim"),
         (["list", "--world", "hose"], 1, "hose"),
         (["list", "--timeout", "0"], 2, "--timeout"),

@@ -6,7 +6,6 @@ order of publishing; so messages are read-only from `publish` on.
 """
 
 import asyncio
-import itertools
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 
@@ -32,14 +31,14 @@ from jacaros.ros.backend import (
 )
 from jacaros.ros.backends.memory_actions import MemoryActionServer, MemoryGoalWire
 from jacaros.ros.backends.memory_graph import MemoryGraph
+from jacaros.ros.backends.memory_node import MemoryNode
 from jacaros.ros.backends.memory_parameters import MemoryParameters
 from jacaros.ros.backends.memory_services import MemoryClient, MemoryService
 from jacaros.ros.backends.memory_topics import MemoryPublisher, MemorySubscription
 from jacaros.ros.errors import RosError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import action_type, message_type, service_type
-from jacaros.ros.node import Node, NodeSettings
-from jacaros.ros.parameter_store import DeclaredParameters
+from jacaros.ros.node import NodeSettings
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.typestore import RosbagsSchema
 
@@ -53,7 +52,7 @@ class _Member(Protocol):
 _M = TypeVar("_M", bound=_Member)
 
 
-class MemoryBackend(Node):
+class MemoryBackend(MemoryNode):
     """A node in a graph inside the process.
 
     Args:
@@ -80,17 +79,8 @@ class MemoryBackend(Node):
 
     def __init__(self, settings: NodeSettings, graph: MemoryGraph | None = None) -> None:
         self._schema = RosbagsSchema(settings.interface_paths)
-        super().__init__(settings, self._schema, finish=lambda: None, threaded_hooks=False)
-        self.graph = graph if graph is not None else MemoryGraph()
-        self.declared = DeclaredParameters(
-            self.node_name,
-            settings.parameters,
-            lambda changed: self.graph.parameters_changed(self.node_name, changed),
-            self.log,
-        )
+        super().__init__(settings, self._schema, graph)
         self._members: list[_Member] = []
-        self._goal_numbers = itertools.count(1)
-        self.vanished = False
 
     async def start(self) -> None:
         """Join the graph."""
@@ -168,10 +158,6 @@ class MemoryBackend(Node):
         if not self.graph.up:
             raise ServiceUnavailable("the graph is interrupted")
         return self.graph.contents()
-
-    def new_goal_id(self) -> str:
-        """Number the goals that this node sends."""
-        return f"{self.node_name}-{next(self._goal_numbers)}"
 
     def _joined(self, member: _M) -> _M:
         assert self.loop is not None

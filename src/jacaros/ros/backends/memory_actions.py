@@ -1,21 +1,21 @@
 """Action servers and clients of `jacaros.ros.backends.memory`."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from jacaros.ros.action import ActionPolicy, Execute, Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import ServedGoals
+from jacaros.ros.backends.memory_graph import MemoryGraph
+from jacaros.ros.backends.memory_members import GoalLine, GraphActionServer
+from jacaros.ros.backends.memory_node import MemoryNode
 from jacaros.ros.errors import CallFailed
-
-if TYPE_CHECKING:
-    from jacaros.ros.backends.memory import MemoryBackend
 
 
 class MemoryActionServer:
     """Action server of `MemoryBackend`."""
 
     def __init__(
-        self, node: "MemoryBackend", name: str, type_name: str, execute: Execute, policy: ActionPolicy
+        self, node: MemoryNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
     ) -> None:
         self.name = name
         self.type_name = type_name
@@ -24,7 +24,7 @@ class MemoryActionServer:
         self._goals = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
         self._graph.offer_action(self)
 
-    def take(self, goal_id: str, request: Any, wire: "MemoryGoalWire") -> None:
+    def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
         """Judge a goal and begin with it."""
         if self.vanished:
             return
@@ -33,9 +33,9 @@ class MemoryActionServer:
             self._graph.tell(wire.sender.rejected, goal_id, refusal)
             return
         self._graph.tell(wire.sender.accepted, goal_id)
-        self._goals.begin(goal_id, request, _News(wire, goal_id))
+        self._goals.begin(goal_id, request, _News(self._graph, wire, goal_id))
 
-    def cancel(self, goal_id: str, wire: "MemoryGoalWire") -> None:
+    def cancel(self, goal_id: str, wire: GoalLine) -> None:
         """Handle a request for cancelling."""
         if not self.vanished:
             self._graph.tell(wire.sender.cancel_answered, goal_id, self._goals.cancel(goal_id))
@@ -55,29 +55,30 @@ class MemoryActionServer:
 class _News:
     """Brings the news of one goal to its client."""
 
-    def __init__(self, wire: "MemoryGoalWire", goal_id: str) -> None:
+    def __init__(self, graph: MemoryGraph, wire: GoalLine, goal_id: str) -> None:
+        self._graph = graph
         self._wire = wire
         self._goal_id = goal_id
 
     def feedback(self, message: Any) -> None:
-        if self._wire.graph.up:  # else it is lost, as messages are
-            self._wire.graph.tell(self._wire.sender.feedback, self._goal_id, message)
+        if self._graph.up:  # else it is lost, as messages are
+            self._graph.tell(self._wire.sender.feedback, self._goal_id, message)
 
     def ended(self, outcome: Outcome) -> None:
-        self._wire.graph.tell(self._wire.sender.ended, self._goal_id, outcome)
+        self._graph.tell(self._wire.sender.ended, self._goal_id, outcome)
 
 
 class MemoryGoalWire:
     """Carries goals from a `GoalSender` to the servers of the graph."""
 
-    def __init__(self, node: "MemoryBackend", name: str, type_name: str) -> None:
+    def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
         self.name = name
         self.graph = node.graph
         self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name)
         self.sender.wire = self
         self._node = node
         self._type_name = type_name
-        self._servers: dict[str, MemoryActionServer] = {}
+        self._servers: dict[str, GraphActionServer] = {}
         self.graph.connect(self)
 
     @property

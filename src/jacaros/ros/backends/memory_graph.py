@@ -6,33 +6,32 @@ Tests make it misbehave: `MemoryGraph.disturb`, `vanish`, `interrupt` and `resto
 import asyncio
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
 from jacaros.ros.backends.memory_faults import Fate
+from jacaros.ros.backends.memory_members import (
+    GoalLine,
+    GraphActionServer,
+    GraphNode,
+    GraphPublisher,
+    GraphService,
+    GraphSubscription,
+    Vanishing,
+)
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.parameter import ParameterValue
 
-if TYPE_CHECKING:
-    from jacaros.ros.backends.memory import MemoryBackend
-    from jacaros.ros.backends.memory_actions import MemoryActionServer, MemoryGoalWire
-    from jacaros.ros.backends.memory_services import MemoryService
-    from jacaros.ros.backends.memory_topics import MemoryPublisher, MemorySubscription
-
 HIDDEN = ("/rosout", "/parameter_events")
 """Topics that every graph has; `GraphContents` leaves them out."""
-
-
-class _Vanishing(Protocol):
-    def vanish(self) -> None: ...
 
 
 @dataclass
 class Topic:
     """Who is at a topic, and what happens to its messages on the way (None: nothing)."""
 
-    publishers: list["MemoryPublisher"] = field(default_factory=list)
-    subscriptions: list["MemorySubscription"] = field(default_factory=list)
+    publishers: list[GraphPublisher] = field(default_factory=list)
+    subscriptions: list[GraphSubscription] = field(default_factory=list)
     fate: Fate | None = None
 
     def info(self, name: str) -> TopicInfo:
@@ -54,28 +53,28 @@ class MemoryGraph:
         self.up = True
         self._loop: asyncio.AbstractEventLoop | None = None
         self._topics: dict[str, Topic] = {}
-        self._services: dict[str, MemoryService] = {}
-        self._actions: dict[str, MemoryActionServer] = {}
-        self._wires: dict[str, list[MemoryGoalWire]] = {}
-        self._nodes: dict[str, MemoryBackend] = {}
+        self._services: dict[str, GraphService] = {}
+        self._actions: dict[str, GraphActionServer] = {}
+        self._wires: dict[str, list[GoalLine]] = {}
+        self._nodes: dict[str, GraphNode] = {}
         self._awaited: dict[str, list[asyncio.Future[None]]] = {}
         self._held: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
         self._parameter_listeners: dict[str, list[Callable[[Mapping[str, ParameterValue]], None]]] = {}
 
     # Nodes
 
-    def join(self, node: "MemoryBackend") -> None:
+    def join(self, node: GraphNode) -> None:
         """Make *node* known; a newer one of the same name takes over."""
         self._loop = node.loop
         self._nodes[node.node_name] = node
         self._arrived(f"node {node.node_name}")
 
-    def leave(self, node: "MemoryBackend") -> None:
+    def leave(self, node: GraphNode) -> None:
         """Forget *node*."""
         if self._nodes.get(node.node_name) is node:
             del self._nodes[node.node_name]
 
-    def node(self, name: str) -> "MemoryBackend | None":
+    def node(self, name: str) -> GraphNode | None:
         """The node called *name*, if it can be reached."""
         return self._nodes.get(name) if self.up else None
 
@@ -104,44 +103,44 @@ class MemoryGraph:
 
     # Services
 
-    def offer(self, service: "MemoryService") -> None:
+    def offer(self, service: GraphService) -> None:
         """Make *service* reachable; a newer one of the same name takes over, as on ROS 1."""
         self._services[service.name] = service
         self._arrived(f"service {service.name}")
 
-    def withdraw(self, service: "MemoryService") -> None:
+    def withdraw(self, service: GraphService) -> None:
         """Take *service* out again."""
         if self._services.get(service.name) is service:
             del self._services[service.name]
 
-    def server(self, name: str) -> "MemoryService | None":
+    def server(self, name: str) -> GraphService | None:
         """The service called *name*, if it is offered."""
         return self._services.get(name) if self.up else None
 
     # Actions
 
-    def offer_action(self, server: "MemoryActionServer") -> None:
+    def offer_action(self, server: GraphActionServer) -> None:
         """Make an action reachable; a newer server of the same name takes over."""
         self._actions[server.name] = server
         for wire in self._wires.get(server.name, []):
             wire.server_came()
 
-    def withdraw_action(self, server: "MemoryActionServer") -> None:
+    def withdraw_action(self, server: GraphActionServer) -> None:
         """Take an action out again."""
         if self._actions.get(server.name) is server:
             del self._actions[server.name]
             for wire in list(self._wires.get(server.name, [])):
                 wire.server_went()
 
-    def action_server(self, name: str) -> "MemoryActionServer | None":
+    def action_server(self, name: str) -> GraphActionServer | None:
         """The action called *name*, if it is offered."""
         return self._actions.get(name) if self.up else None
 
-    def connect(self, wire: "MemoryGoalWire") -> None:
+    def connect(self, wire: GoalLine) -> None:
         """Tell an action client when servers come and go."""
         self._wires.setdefault(wire.name, []).append(wire)
 
-    def disconnect(self, wire: "MemoryGoalWire") -> None:
+    def disconnect(self, wire: GoalLine) -> None:
         """Tell it no more."""
         if wire in self._wires.get(wire.name, []):
             self._wires[wire.name].remove(wire)
@@ -215,7 +214,7 @@ class MemoryGraph:
         Raises:
             RosError: there is nothing of that name.
         """
-        tables: tuple[Mapping[str, _Vanishing], ...] = (self._nodes, self._services, self._actions)
+        tables: tuple[Mapping[str, Vanishing], ...] = (self._nodes, self._services, self._actions)
         found = [table[name] for table in tables if name in table]
         if not found:
             raise RosError(f"there is no node, service or action {name}")
@@ -257,5 +256,5 @@ class MemoryGraph:
         for node in list(self._nodes.values()):
             node.set_connected(True)
 
-    def _all_wires(self) -> list["MemoryGoalWire"]:
+    def _all_wires(self) -> list[GoalLine]:
         return [wire for wires in self._wires.values() for wire in wires]

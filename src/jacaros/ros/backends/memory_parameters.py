@@ -2,21 +2,18 @@
 
 import asyncio
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
 
+from jacaros.ros.backends.memory_node import MemoryNode
 from jacaros.ros.backends.memory_services import come
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
 
-if TYPE_CHECKING:
-    from jacaros.ros.backends.memory import MemoryBackend
-
 
 class MemoryParameters:
     """The parameters of a node, seen from another or from itself."""
 
-    def __init__(self, asker: "MemoryBackend", node: str) -> None:
+    def __init__(self, asker: MemoryNode, node: str) -> None:
         self.node = node
         self._asker = asker
 

@@ -1,22 +1,21 @@
 """Services and their clients of `jacaros.ros.backends.memory`."""
 
 import asyncio
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from jacaros.ros.backend import Handler
+from jacaros.ros.backends.memory_members import GraphService
+from jacaros.ros.backends.memory_node import MemoryNode
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceUnavailable
 from jacaros.ros.names import request_type
 from jacaros.ros.serving import PendingCalls, Responder, checked_message, settle
 from jacaros.ros.waiting import Waiting, within
 
-if TYPE_CHECKING:
-    from jacaros.ros.backends.memory import MemoryBackend
-
 
 class MemoryService:
     """Service of `MemoryBackend`."""
 
-    def __init__(self, node: "MemoryBackend", name: str, type_name: str, handler: Handler) -> None:
+    def __init__(self, node: MemoryNode, name: str, type_name: str, handler: Handler) -> None:
         self.name = name
         self.type_name = type_name
         self._graph = node.graph
@@ -51,7 +50,7 @@ class MemoryService:
 class MemoryClient:
     """Client of `MemoryBackend`."""
 
-    def __init__(self, node: "MemoryBackend", name: str, type_name: str) -> None:
+    def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
         self.name = name
         self._node = node
         self._type_name = type_name
@@ -81,7 +80,7 @@ class MemoryClient:
         except TimeoutError:
             raise CallTimedOut(f"service {self.name} did not answer within {timeout:g} s") from None
 
-    async def _server(self, timeout: float | None) -> MemoryService:
+    async def _server(self, timeout: float | None) -> GraphService:
         graph = self._node.graph
         what = f"service {self.name} ({self._type_name})"
         server = graph.server(self.name)
@@ -95,7 +94,7 @@ class MemoryClient:
         self._pending.close()
 
 
-async def come(node: "MemoryBackend", thing: str, what: str, timeout: float | None) -> None:
+async def come(node: MemoryNode, thing: str, what: str, timeout: float | None) -> None:
     """Wait until something has come to the graph, with a report.
 
     Args:

@@ -7,27 +7,26 @@ Publishing is the innermost loop of every run on this backend: what is rare (fau
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from jacaros.clock import Timer
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
+from jacaros.ros.backends.memory_members import GraphPublisher, GraphSubscription
+from jacaros.ros.backends.memory_node import MemoryNode
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.qos import QoS, incompatibility
-
-if TYPE_CHECKING:
-    from jacaros.ros.backends.memory import MemoryBackend
 
 
 class MemoryPublisher:
     """Publisher of `MemoryBackend`."""
 
-    def __init__(self, node: "MemoryBackend", topic: str, type_name: str, qos: QoS) -> None:
+    def __init__(self, node: MemoryNode, topic: str, type_name: str, qos: QoS) -> None:
         self.topic = topic
         self.type_name = type_name
         self.qos = qos
         self._node = node
         self._class = node.factory.message_class(type_name)
-        self._receivers: list[MemorySubscription] = []
+        self._receivers: list[GraphSubscription] = []
         self.kept: deque[Any] = deque(maxlen=qos.depth if qos.durability == "transient_local" else 0)
         self._shared = node.graph.topic(topic)
         self._shared.publishers.append(self)
@@ -60,14 +59,14 @@ class MemoryPublisher:
         for subscription in self._receivers:
             subscription.put(message)
 
-    def connect(self, subscription: "MemorySubscription") -> None:
+    def connect(self, subscription: GraphSubscription) -> None:
         """Send to a new subscription from now on, and what is kept for late ones at once."""
         self._receivers.append(subscription)
         if subscription.qos.durability == "transient_local":
             for message in self.kept:
                 subscription.put(message)
 
-    def disconnect(self, subscription: "MemorySubscription") -> None:
+    def disconnect(self, subscription: GraphSubscription) -> None:
         """Send to a subscription no more."""
         if subscription in self._receivers:
             self._receivers.remove(subscription)
@@ -76,7 +75,7 @@ class MemoryPublisher:
         """Send to nobody."""
         self._receivers = []
 
-    def refused(self, subscription: "MemorySubscription") -> None:
+    def refused(self, subscription: GraphSubscription) -> None:
         """Say that a subscription takes this topic for something else; when it is ours, it says so itself."""
         if subscription.node_name != self.node_name:
             self._node.log(
@@ -99,7 +98,7 @@ class MemorySubscription:
 
     def __init__(
         self,
-        node: "MemoryBackend",
+        node: MemoryNode,
         topic: str,
         type_name: str,
         callback: Callable[[Sample], None],
@@ -133,7 +132,7 @@ class MemorySubscription:
             return 0
         return sum(1 for publisher in self._shared.publishers if self.trouble(publisher) is None)
 
-    def meet(self, publisher: MemoryPublisher) -> None:
+    def meet(self, publisher: GraphPublisher) -> None:
         """Be connected to a publisher, or say why not."""
         trouble = self.trouble(publisher)
         if trouble is not None:
@@ -143,7 +142,7 @@ class MemorySubscription:
         elif self._node.graph.up:
             publisher.connect(self)
 
-    def trouble(self, publisher: MemoryPublisher) -> TopicEvent | None:
+    def trouble(self, publisher: GraphPublisher) -> TopicEvent | None:
         """Why nothing can come from a publisher."""
         if publisher.type_name != self.type_name:
             return TopicEvent(
@@ -234,7 +233,7 @@ class _Deadline:
         missed: is called at every period without one; with True when it is the first after a message.
     """
 
-    def __init__(self, node: "MemoryBackend", seconds: float, missed: Callable[[bool], None]) -> None:
+    def __init__(self, node: MemoryNode, seconds: float, missed: Callable[[bool], None]) -> None:
         self._clock = node.clock
         self._seconds = seconds
         self._missed = missed
