@@ -8,3 +8,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("jacaros")
     group.addoption("--require-ros1", action="store_true", help="fail, do not skip, when ROS 1 is missing")
     group.addoption("--require-ros2", action="store_true", help="fail, do not skip, when ROS 2 is missing")
+    group.addoption(
+        "--require-rosbridge", action="store_true", help="fail, do not skip, when roslibpy is missing"
+    )

@@ -67,7 +67,12 @@ def parts() -> list[Part]:
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language")),
         Part("formatted", (PYTHON, "tools/check_conformance.py", "formatted")),
         Part("environment", (PYTHON, "tools/check_conformance.py", "environment")),
-        Part("contracts", (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2")),
+        Part("contracts", (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2 and not rosbridge")),
+        Part(
+            "rosbridge",
+            (*PYTEST, "tests/contracts", "-m", "rosbridge", "--require-rosbridge"),
+            minutes=20,
+        ),
         Part(
             "integration",
             (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2"),

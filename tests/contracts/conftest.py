@@ -9,12 +9,13 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs, not a package
 
-from expected import NOT_YET
+from bridges import BRIDGED, behind_bridge
+from expected import BEYOND, NOT_YET
 from graphs import InMemory, InProcesses
 from masters import Master
 from presence import is_wanted, need, ros2_environment
 
-KINDS = ("memory", "ros1", "ros2")
+KINDS = ("memory", "ros1", "ros2", *BRIDGED)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -23,6 +24,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         only = metafunc.definition.get_closest_marker("only")
         kinds = [kind for kind in (only.args if only else KINDS) if is_wanted(kind, metafunc.config)]
         marks = {"ros1": [pytest.mark.ros1], "ros2": [pytest.mark.ros2]}
+        marks |= {kind: [pytest.mark.rosbridge] for kind in BRIDGED}
         metafunc.parametrize(
             "graph", [pytest.param(k, marks=marks.get(k, [])) for k in kinds], indirect=True, scope="session"
         )
@@ -42,6 +44,8 @@ def _has_what_is_needed(request: pytest.FixtureRequest) -> None:
     if "graph" in request.fixturenames:
         kind = request.getfixturevalue("graph").kind
         needed = {word for marker in request.node.iter_markers("needs") for word in marker.args}
+        if needed & BEYOND.get(kind, set()):
+            pytest.skip(f"cannot be shown on {kind}: {', '.join(sorted(needed & BEYOND[kind]))}")
         if needed & NOT_YET.get(kind, set()):
             pytest.skip(f"{kind} DOES NOT HAVE YET: {', '.join(sorted(needed & NOT_YET[kind]))}")
 
@@ -53,6 +57,11 @@ def graph(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     need(kind, request.config)
     if kind == "memory":
         made: Any = InMemory()
+        yield made
+        made.close()
+        return
+    if kind in BRIDGED:
+        made = behind_bridge(kind)
         yield made
         made.close()
         return

@@ -3,6 +3,8 @@
 The owner of a backend takes words out of `NOT_YET` as the backend learns; when it is empty it goes, with what reads it.
 """
 
+from bridges import BRIDGED
+
 COMMON = {"topics", "services", "service errors", "transforms", "actions", "parameters"}
 
 CAPABILITIES = {
@@ -10,8 +12,23 @@ CAPABILITIES = {
     "ros1": COMMON | {"registration", "parameter events"},
     "ros2": COMMON - {"service errors"}
     | {"qos", "declared parameters", "parameter events", "deadlines", "qos in the graph"},
+    **dict.fromkeys(BRIDGED, COMMON - {"service errors"}),
 }
+# There the peer that is asked is a node of the graph itself.
+CAPABILITIES["rosbridge-ros2-right"] = CAPABILITIES["memory"]
 """Kind of graph → the capabilities (constants of `jacaros.ros.backend`) that its backend has."""
+
+_SERVED_OVER_A_BRIDGE = {"refusing goals", "dying servers", "parameters"}
+BEYOND = {
+    # A goal is accepted by the bridge, which aborts it when its server goes; it has parameters for nodes alone.
+    "rosbridge-ros2": _SERVED_OVER_A_BRIDGE | {"events"},
+    "rosbridge-ros2-right": _SERVED_OVER_A_BRIDGE | {"events", "failing services"},
+    "rosbridge-ros2-left": {"events", "own parameters", "dying servers"},
+    "rosbridge-ros1": {"events"},
+    # The graph behind the bridge is one of ROS 2 without actionlib and without a master.
+    "rosbridge-ros1-left": {"events", "actions", "parameters", "contents", "failing services", "rosout"},
+}
+"""Kind of graph → what cannot be shown on it, though its backend has the capability."""
 
 NOT_YET = {
     "memory": set[str](),

@@ -59,6 +59,10 @@ class InMemory:
             made.start()
         return made
 
+    def node_of(self, made: Any) -> str:
+        """The node as which others see a peer."""
+        return str(made.node_name())
+
     def kill(self, made: Any) -> None:
         """End a peer without a word to the others."""
         self.shared.vanish(made.node_name())
@@ -224,6 +228,10 @@ class InProcesses:
     def note_leftovers(self, files: set[str]) -> None:
         """Have files in shared memory removed at the end that a process of the test's own leaves behind."""
         self._leftovers |= files
+
+    def node_of(self, made: Any) -> str:
+        """The node as which others see a peer."""
+        return str(made.node_name())
 
     def kill(self, made: ProcessPeer) -> None:
         """End a peer without a word to the others."""

@@ -8,14 +8,22 @@ from pathlib import Path
 import pytest
 from masters import Master
 
-LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
+LIBRARIES = {"ros1": "rospy", "ros2": "rclpy", "rosbridge": "roslibpy"}
+
+
+def client_of(kind: str) -> str:
+    """The backend with which a kind of graph is met: there are several kinds behind a rosbridge server."""
+    return kind.partition("-")[0]
 
 
 def missing(kind: str) -> str | None:
     """Tell what a kind of graph lacks here."""
+    kind = client_of(kind)
     if kind == "memory":
         return None
     if importlib.util.find_spec(LIBRARIES[kind]) is None:
+        if kind == "rosbridge":
+            return f"no roslibpy in {sys.executable}; run `pip install 'jacaros[rosbridge]'`"
         return f"no {LIBRARIES[kind]} in {sys.executable}; run tools/install_{kind}.sh and use its venv"
     if kind == "ros1" and Master.program() is None:
         return "no rosmaster; run tools/install_ros1.sh"
@@ -24,7 +32,7 @@ def missing(kind: str) -> str | None:
 
 def is_wanted(kind: str, config: pytest.Config) -> bool:
     """Whether to run tests on *kind*: `test_contract_presence` tells once of one that is missing, not every test."""
-    return missing(kind) is None or config.getoption(f"--require-{kind}")
+    return missing(kind) is None or config.getoption(f"--require-{client_of(kind)}")
 
 
 def need(kind: str, config: pytest.Config) -> None:
@@ -32,7 +40,7 @@ def need(kind: str, config: pytest.Config) -> None:
     problem = missing(kind)
     if problem is None:
         return
-    if config.getoption(f"--require-{kind}"):
+    if config.getoption(f"--require-{client_of(kind)}"):
         pytest.fail(f"{kind} is required, but there is {problem}")
     pytest.skip(f"{kind.upper()} IS NOT TESTED: {problem}")
 

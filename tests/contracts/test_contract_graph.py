@@ -33,7 +33,7 @@ def test_topics_are_seen_with_their_types_and_ends(graph: Any, pair: Pair, topic
     assert list(seen["types"]) == ["sensor_msgs/msg/LaserScan"]
     for end, peer in (("publishers", left), ("subscriptions", right)):
         [endpoint] = seen[end]
-        assert endpoint["node"] in (peer.node_name(), "")
+        assert endpoint["node"] in (graph.node_of(peer), "")
         if "qos in the graph" in left.capabilities():
             assert endpoint["qos"]["reliability"] == "best_effort"
             assert endpoint["qos"]["durability"] == "volatile"
@@ -76,7 +76,8 @@ def test_actions_are_seen_but_not_what_they_are_made_of(graph: Any, pair: Pair, 
 def test_nodes_are_seen(graph: Any, pair: Pair) -> None:
     left, right = pair
     graph.wait_until(
-        lambda: {left.node_name(), right.node_name()} <= set(left.contents()["nodes"]), "both nodes are seen"
+        lambda: {graph.node_of(left), graph.node_of(right)} <= set(left.contents()["nodes"]),
+        "both nodes are seen",
     )
     names = list(left.contents()["nodes"])
     assert names == sorted(names)

@@ -10,7 +10,7 @@ from presence import need
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "middleware.md"
 
 
-@pytest.mark.parametrize("kind", ["ros1", "ros2"])
+@pytest.mark.parametrize("kind", ["ros1", "ros2", "rosbridge"])
 def test_the_real_graph_is_there(kind: str, request: pytest.FixtureRequest) -> None:
     need(kind, request.config)
 

@@ -76,6 +76,7 @@ def test_a_service_that_does_not_answer_times_out(graph: Any, pair: Pair, topic:
         left.call(topic, {"a": 1, "b": 1}, timeout=0.5)
 
 
+@pytest.mark.needs("failing services")
 def test_a_failing_service_fails_the_call(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic, "fail")
@@ -89,6 +90,7 @@ def test_a_failing_service_fails_the_call(graph: Any, pair: Pair, topic: str) ->
     assert any("no sums today" in line for line in right.log())
 
 
+@pytest.mark.needs("failing services")
 def test_a_wrong_response_fails_the_call(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic, "answer_wrongly")

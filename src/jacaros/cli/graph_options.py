@@ -21,6 +21,11 @@ _OPTIONS = (
         metavar="URI",
         help="Master of the ROS 1 graph, in place of the environment's ROS_MASTER_URI.",
     ),
+    click.option(
+        "--bridge",
+        metavar="URL",
+        help="Address of a rosbridge server, such as ws://robot.lab.example:9090, in place of ROSBRIDGE_URI.",
+    ),
     click.option("--namespace", default="", metavar="NAME", help="Put before relative ROS names."),
     click.option("--node-name", metavar="NAME", help="Name of our node, in place of the system's name."),
     click.option(
@@ -33,7 +38,7 @@ _OPTIONS = (
 
 
 def graph_options(command: F) -> F:
-    """Give a command the options ``--domain-id``, ``--master``, ``--namespace``, ``--node-name`` and ``--remap``."""
+    """Give a command the options that name a graph, our node in it, and other names for topics."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command

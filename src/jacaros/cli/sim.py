@@ -12,6 +12,7 @@ from jacaros.mas.options import ROS_KINDS
 @click.command("sim", short_help="Run a robot world as a ROS node of its own.")
 @click.argument("world")
 @click.option("--ros", type=click.Choice(ROS_KINDS), required=True, help="The ROS graph to join.")
+@click.option("--bridge", metavar="URL", help="Address of the rosbridge server, with --ros rosbridge.")
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds.")
 @click.option(
     "--ground-truth",
@@ -41,6 +42,7 @@ from jacaros.mas.options import ROS_KINDS
 def command(
     world: str,
     ros: str,
+    bridge: str | None,
     seconds: float | None,
     ground_truth: Path | None,
     seed: int | None,
@@ -64,7 +66,7 @@ def command(
     loaded.ground_truth.keep = 1000
 
     async def main() -> None:
-        backend = open_backend(ros, time, "world")
+        backend = open_backend(ros, time, "world", url=bridge)
         await serve(loaded, backend, time, seconds, ground_truth, publish_clock or speed is not None)
 
     run(main, time)

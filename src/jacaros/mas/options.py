@@ -10,7 +10,7 @@ from jacaros.errors import UsageError
 if TYPE_CHECKING:
     from jacaros.ros.address import GraphAddress
 
-ROS_KINDS = ("memory", "ros1", "ros2")
+ROS_KINDS = ("memory", "ros1", "ros2", "rosbridge")
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class RunOptions:
     Attributes:
         fast: on the virtual clock, as fast as the machine can; else in real time.
         seed: of all random numbers, the world's too; None for other numbers in each run.
-        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1`` or ``ros2``.
+        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
         world: world file, or name of a world of JaCaROS, in place of the project's own.
         show_world: make the world at the start, even when nobody asks for a robot yet.
         namespace: put before relative ROS names.

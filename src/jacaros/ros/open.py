@@ -10,10 +10,15 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.errors import BackendUnavailable
 from jacaros.ros.node import NodeSettings
 
-KINDS = ("memory", "ros1", "ros2")
+KINDS = ("memory", "ros1", "ros2", "rosbridge")
 
-_OPTIONS: dict[str, set[str]] = {"memory": {"graph"}, "ros1": set(), "ros2": {"domain_id"}}
-_LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
+_OPTIONS: dict[str, set[str]] = {
+    "memory": {"graph"},
+    "ros1": set(),
+    "ros2": {"domain_id"},
+    "rosbridge": {"url"},
+}
+_LIBRARIES = {"ros1": "rospy", "ros2": "rclpy", "rosbridge": "roslibpy"}
 _CURES = {
     "ros1": (
         "On Debian 12 install python3-rospy and the message packages with apt-get and use a venv made by "
@@ -24,6 +29,7 @@ _CURES = {
         "On Linux x86-64 run `pip install 'jacaros[ros2]'`; tools/install_ros2.sh makes a complete venv. On "
         "a robot with its own ROS 2, source its setup file first"
     ),
+    "rosbridge": "Run `pip install 'jacaros[rosbridge]'`",
 }
 
 
@@ -31,12 +37,13 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
     """Make a node of a backend; ``await backend.start()`` joins it to its graph.
 
     Args:
-        kind: ``memory``, ``ros1`` or ``ros2``.
+        kind: ``memory``, ``ros1``, ``ros2`` or ``rosbridge``.
         clock: the run's clock; the virtual one goes with ``memory`` alone.
         node_name: plain name of the node.
         namespace: put before relative names.
         options: ``remap``, ``log``, ``parameters``, ``interface_paths`` (see `NodeSettings`); for ``memory`` also
-            ``graph``, a `jacaros.ros.backends.memory.MemoryGraph` to share; for ``ros2`` also ``domain_id``.
+            ``graph``, a `jacaros.ros.backends.memory.MemoryGraph` to share; for ``ros2`` also ``domain_id``; for
+            ``rosbridge`` also ``url``, the server's address.
 
     Raises:
         UsageError: unknown kind or option, or the virtual clock with a real ROS graph.

@@ -1,6 +1,7 @@
 """Opening backends: what is asked wrongly or is not there."""
 
 import importlib.util
+import sys
 
 import pytest
 
@@ -12,7 +13,7 @@ from jacaros.ros.open import open_backend
 
 
 def test_an_unknown_kind_is_a_usage_error() -> None:
-    with pytest.raises(UsageError, match="memory, ros1, ros2"):
+    with pytest.raises(UsageError, match="memory, ros1, ros2, rosbridge"):
         open_backend("ros3", WallClock(), "node")
 
 
@@ -28,6 +29,15 @@ def test_a_missing_library_names_itself_and_the_cure(kind: str, library: str) ->
         pytest.skip(f"{library} is installed here")
     with pytest.raises(BackendUnavailable, match=rf"(?s){library}.*tools/install_{kind}\.sh"):
         open_backend(kind, WallClock(), "node")
+
+
+def test_a_missing_roslibpy_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("jacaros.ros.backends.rosbridge")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "roslibpy", None)
+    monkeypatch.setitem(sys.modules, "roslibpy.comm.comm_asyncio", None)
+    with pytest.raises(BackendUnavailable, match=r"(?s)roslibpy.*pip install 'jacaros\[rosbridge\]'"):
+        open_backend("rosbridge", WallClock(), "node")
 
 
 def test_an_option_of_another_backend_is_a_usage_error() -> None:

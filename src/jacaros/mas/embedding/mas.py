@@ -56,7 +56,7 @@ class Mas(EmbeddedRun):
         folder: of an empty system: where programs, included files and Python modules are looked for; the current folder
             unless given.
         seed: of all random numbers, the world's too; None for other numbers in each run.
-        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1`` or ``ros2``.
+        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
         world: world file, or name of a world of JaCaROS, in place of the project's own.
         namespace: put before relative ROS names.
         on_print: called with agent and text whenever an agent prints; the standard output gets ``[agent] text`` without.

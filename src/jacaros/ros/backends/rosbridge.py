@@ -1,0 +1,406 @@
+"""A robot behind a rosbridge server, for a machine without ROS: JSON over a WebSocket, through roslibpy.
+
+The server (``rosbridge_server`` of ROS 1 or ROS 2) is the node in the graph; we are one of its clients.  So the graph
+knows us by the server's name, and what rosapi, the node beside it, does not tell cannot be known.  Which ROS it is, is
+asked at each connection.  The message classes are those of the `memory` backend.
+
+Everything comes in on roslibpy's thread.  Messages wait there in the queues of the subscriptions, answers in `Requests`;
+the rest is handed to the loop.
+"""
+
+import asyncio
+import os
+from collections.abc import Callable
+from typing import Any
+from urllib.parse import urlsplit
+
+from jacaros.errors import UsageError
+from jacaros.ros.action import ActionPolicy, Execute
+from jacaros.ros.backend import (
+    ACTIONS,
+    DEFAULT_POLICY,
+    PARAMETERS,
+    SERVICES,
+    TOPICS,
+    TRANSFORMS,
+    Backend,
+    Handler,
+    Sample,
+    TopicEvent,
+)
+from jacaros.ros.backends.rosbridge_goals import BridgeActionClient, BridgeActionServer
+from jacaros.ros.backends.rosbridge_graph import look
+from jacaros.ros.backends.rosbridge_link import Link
+from jacaros.ros.backends.rosbridge_members import Members
+from jacaros.ros.backends.rosbridge_messages import Translator
+from jacaros.ros.backends.rosbridge_parameters import BridgeParameters
+from jacaros.ros.backends.rosbridge_requests import Done, Requests
+from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
+from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
+from jacaros.ros.backends.rosbridge_types import BridgeSchema
+from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
+from jacaros.ros.graph import GraphContents
+from jacaros.ros.handoff import in_thread, post
+from jacaros.ros.names import action_type, message_type, service_type
+from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.serving import settle
+from jacaros.ros.waiting import Waiting, within
+
+DEFAULT_URL = "ws://127.0.0.1:9090"
+FIRST_LOOK = 5.0
+"""Seconds that starting waits for the first attempt to connect; a server that is not there refuses at once."""
+SENDING = 0.5
+"""Seconds that closing waits for the messages published last to leave."""
+FETCHING = 3.0
+"""Seconds that the loop may be held up by asking for a type that nobody here knows."""
+GREETINGS, GREETING_PAUSE = 6, 0.5
+"""How often rosapi is asked whose graph it is, and seconds between: it may start after the server."""
+CURE = (
+    "On the robot, start `ros2 launch rosbridge_server rosbridge_websocket_launch.xml` (ROS 1: `roslaunch rosbridge_server "
+    "rosbridge_websocket.launch`), and give its address with --bridge or ROSBRIDGE_URI."
+)
+
+
+class RosbridgeBackend(Node):
+    """A client of a rosbridge server.
+
+    Args:
+        settings: names, clock and reports.
+        url: address of the server; ``ROSBRIDGE_URI`` without it, and else port 9090 of this machine.
+    """
+
+    name = "rosbridge"
+    # Failed handlers are told of by those services of ROS 1 alone that are not served over a bridge.
+    capabilities = frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, PARAMETERS})
+
+    def __init__(self, settings: NodeSettings, url: str | None = None) -> None:
+        self.url = _checked(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL)
+        self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
+        self.requests = Requests(self._link.send)
+        self._schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
+        super().__init__(settings, self._schema, finish=self._leave, threaded_hooks=True)
+        self.translator = Translator(self._schema)
+        self.members = Members(self)
+        self.goals: dict[str, Any] = {}
+        self.attached = False
+        self._services: dict[str, BridgeService] = {}
+        self._action_servers: dict[str, BridgeActionServer] = {}
+        self._greeting: asyncio.Task[None] | None = None
+        self._first_look: asyncio.Future[None] | None = None
+        self._waiting: Waiting | None = None
+        self._lost_topics: set[str] = set()
+        self._told: set[str] = set()
+
+    @property
+    def ros_version(self) -> int:  # type: ignore[override]
+        """Of the robot; 2 until the first connection."""
+        return self.translator.ros_version
+
+    async def start(self) -> None:
+        """Connect, or say that the server is awaited and go on trying in the background."""
+        self._loop = asyncio.get_running_loop()
+        self._first_look = self._loop.create_future()
+        self.exit_hooks.watch_thread()
+        self._link.start()
+        await asyncio.wait([self._first_look], timeout=FIRST_LOOK)
+        if not self._link.up and not self._first_look.done():
+            self._await_server()
+        else:
+            await self._first_look
+
+    async def close(self) -> None:
+        """Run the exit hooks and disconnect."""
+        await in_thread(self.loop, self.exit_hooks.run, "closing")
+        self.exit_hooks.stop_watching()
+        if self._greeting is not None:
+            self._greeting.cancel()
+        self.attached = False
+        self.members.close()
+        self.requests.fail_all()
+        if self._waiting is not None:
+            self._waiting.__exit__(RuntimeError, None, None)
+            self._waiting = None
+        self.set_connected(False)
+
+    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> BridgePublisher:
+        """Make a publisher."""
+        _refuse_deadline(qos)
+        publisher = BridgePublisher(self, self.resolve(topic), message_type(type_name), qos)
+        self.members.add(publisher)
+        return publisher
+
+    def subscription(
+        self,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS = DEFAULT_QOS,
+        on_event: Callable[[TopicEvent], None] | None = None,
+    ) -> BridgeSubscription:
+        """Have *callback* called for every message."""
+        _refuse_deadline(qos)
+        full_type = message_type(type_name)
+        self.factory.fields(full_type)
+        made = BridgeSubscription(self, self.resolve(topic), full_type, callback, qos, on_event)
+        self.members.add(made)
+        return made
+
+    def service(self, name: str, type_name: str, handler: Handler) -> BridgeService:
+        """Offer a service."""
+        full_type = service_type(type_name)
+        self._schema.service(full_type)
+        service = BridgeService(self, self.resolve(name), full_type, handler)
+        self._services[service.name] = service
+        self.members.add(service)
+        return service
+
+    def client(self, name: str, type_name: str) -> BridgeClient:
+        """Make a client of a service."""
+        full_type = service_type(type_name)
+        self._schema.service(full_type)
+        client = BridgeClient(self, self.resolve(name), full_type)
+        self.members.add(client)
+        return client
+
+    def action_client(self, name: str, type_name: str) -> BridgeActionClient:
+        """Make a client of an action."""
+        full_type = action_type(type_name)
+        self._schema.action(full_type)
+        client = BridgeActionClient(self, self.resolve(name), full_type)
+        self.members.add(client)
+        return client
+
+    def action_server(
+        self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
+    ) -> BridgeActionServer:
+        """Offer an action."""
+        full_type = action_type(type_name)
+        self._schema.action(full_type)
+        server = BridgeActionServer(self, self.resolve(name), full_type, execute, policy)
+        self._action_servers[server.name] = server
+        self.members.add(server)
+        return server
+
+    def parameters(self, node: str | None = None) -> BridgeParameters:
+        """Give the parameters of a node; our own can be used on ROS 1 alone, where the master keeps them."""
+        return BridgeParameters(self, self.node_name if node is None else self.resolve(node))
+
+    async def contents(self, timeout: float = 5.0) -> GraphContents:
+        """Look at the graph."""
+        return await look(self, timeout)
+
+    def rosout(self, level: str, text: str) -> None:
+        """Write a line to the graph's log; while there is no connection nobody would read it."""
+        if self.connected:
+            super().rosout(level, text)
+
+    # For the parts of this backend:
+
+    def send(self, operation: dict[str, Any], droppable: bool = False) -> bool:
+        """Send an operation to the server that knows us, from any thread; False when it is lost."""
+        return self.attached and self._link.send(operation, droppable)
+
+    def written_type(self, type_name: str) -> str:
+        """A type in full form as the server writes it."""
+        package, _, name = type_name.split("/")
+        return f"{package}/{name}" if self.ros_version == 1 else type_name
+
+    def written_time(self) -> dict[str, int]:
+        """The time now, as ROS 1 writes it."""
+        now = self.clock.now()
+        return {"secs": int(now), "nsecs": int(now % 1.0 * 1e9)}
+
+    def settling(self, answer: asyncio.Future[Any]) -> Done:
+        """What settles a future of the loop from another thread."""
+
+        def done(values: dict[str, Any] | None, problem: ServiceError | None) -> None:
+            post(self.loop, settle, answer, values, problem)
+
+        return done
+
+    def require_connection(self, service: str) -> None:
+        """Raise `ServiceUnavailable` while there is no server."""
+        if not self.connected:
+            raise ServiceUnavailable(
+                f"service {service}: there is no connection to the rosbridge server at {self.url}"
+            )
+
+    def note_loss(self, topic: str) -> None:
+        """Say that messages are lost, once a topic and an interruption; from any thread."""
+        if topic not in self._lost_topics:
+            self._lost_topics.add(topic)
+            self._say(
+                f"messages for {topic} are lost: the rosbridge server at {self.url} is away or too slow"
+            )
+
+    async def rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None = None) -> Any:
+        """Call a service of rosapi and give the fields of its response.
+
+        Raises:
+            ServiceUnavailable: rosapi does not run.
+            CallTimedOut, CallFailed: as `Client.call`.
+        """
+        self.require_connection(f"/rosapi/{service}")
+        return await self._rosapi(service, arguments, timeout)
+
+    async def _rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None) -> Any:
+        answer: asyncio.Future[Any] = self.loop.create_future()
+        number = self.requests.begin(f"/rosapi/{service}", arguments, self.settling(answer), timeout)
+        try:
+            return await within(self.clock, answer, timeout)
+        except TimeoutError:
+            about = ", ".join(str(value) for value in arguments.values())
+            raise CallTimedOut(f"rosapi did not answer {service}({about}) within {timeout:g} s") from None
+        finally:
+            self.requests.forget(number)
+
+    # On roslibpy's thread:
+
+    def _link_up(self) -> None:
+        post(self.loop, self._begin_greeting)
+
+    def _link_down(self) -> None:
+        self.attached = False
+        post(self.loop, self._disconnected)
+
+    def _received(self, message: dict[str, Any]) -> None:
+        operation = message["op"]
+        if operation == "publish":
+            feed = self.members.known_feed(message.get("topic", ""))
+            if feed is not None:
+                feed.put(message.get("msg"))
+        elif operation == "service_response":
+            self.requests.answered(message)
+        else:
+            post(self.loop, self._dispatch, operation, message)
+
+    # On the loop:
+
+    def _begin_greeting(self) -> None:
+        if self._greeting is not None:
+            self._greeting.cancel()
+        self._lost_topics.clear()
+        self._told.clear()
+        self._greeting = self.loop.create_task(self._greet())
+
+    async def _greet(self) -> None:
+        """Find out whose graph it is, and tell the server all that we have."""
+        try:
+            version = await self._find_version()
+        except CallFailed:  # the connection is lost again
+            return
+        self.translator.ros_version = version
+        self.attached = True
+        self.members.join()
+        if self._waiting is not None:
+            self._waiting.__exit__(None, None, None)
+            self._waiting = None
+        self.set_connected(True)
+        if self._first_look is not None and not self._first_look.done():
+            self._first_look.set_result(None)
+
+    async def _find_version(self) -> int:
+        for _ in range(GREETINGS):
+            try:
+                return int((await self._rosapi("get_ros_version", {}, FETCHING))["version"])
+            except (ServiceUnavailable, CallTimedOut, KeyError):
+                pass
+            try:
+                types = (await self._rosapi("topics", {}, FETCHING))["types"]
+                return 2 if any("/msg/" in kind for kind in types) else 1
+            except (ServiceUnavailable, CallTimedOut, KeyError):
+                await self.clock.sleep(GREETING_PAUSE)
+        self.log(
+            f"the rosbridge server at {self.url} has no rosapi beside it, so nothing can be looked up; ROS 2 is assumed. "
+            "Its launch file starts both"
+        )
+        return 2
+
+    def _disconnected(self) -> None:
+        if self._greeting is not None:
+            self._greeting.cancel()
+        self.requests.fail_all()
+        self.members.lost()
+        if not self.exit_hooks.ran:
+            self._await_server()
+        self.set_connected(False)
+
+    def _await_server(self) -> None:
+        if self._waiting is None:
+            what = f"rosbridge server at {self.url}"
+            self._waiting = Waiting(self.clock, self.log, what, CURE).__enter__()
+        if self._first_look is not None and not self._first_look.done():
+            self._first_look.set_result(None)
+
+    def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
+        number = str(message.get("id"))
+        if operation == "call_service":
+            service = self._services.get(message.get("service", ""))
+            if service is not None:
+                service.called(message)
+        elif operation == "status":
+            self._note_status(message, number)
+        elif operation in ("action_feedback", "action_result"):
+            goals = self.goals.get(number)
+            if goals is not None and operation == "action_feedback":
+                goals.feedback(number, message.get("values"))
+            elif goals is not None:
+                goals.result(number, message)
+        elif operation in ("send_action_goal", "cancel_action_goal"):
+            server = self._action_servers.get(message.get("action", ""))
+            if server is not None and operation == "send_action_goal":
+                server.goal(message)
+            elif server is not None:
+                server.cancel(number)
+
+    def _note_status(self, message: dict[str, Any], number: str) -> None:
+        """The server has something to say, mostly that it did not do what was asked."""
+        text = str(message.get("msg"))
+        if message.get("level") not in ("error", "warning") or number.startswith("call_service:"):
+            return  # a failed call is answered as well
+        feed = self.members.feed_of(number)
+        if feed is not None:
+            feed.refused(text)
+        elif number in self.goals and "Unknown operation" in text:
+            self.goals[number].refused(number, text)
+        elif text not in self._told and not number.startswith("send_action_goal:"):
+            self._told.add(text)
+            self.log(f"the rosbridge server says: {text}")
+
+    def _say(self, text: str) -> None:
+        post(self.loop, self.log, text)
+
+    def _ask_for_type(self, service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
+        return self.requests.call_blocking(service, arguments, FETCHING)
+
+    def _cannot_ask(self) -> str | None:
+        if self.attached:
+            return None
+        return f"the rosbridge server at {self.url} would be asked, but there is no connection to it"
+
+    def _leave(self) -> None:
+        self._link.finish(SENDING)
+
+
+def _checked(url: str) -> str:
+    try:
+        parts = urlsplit(url)
+        port = parts.port
+    except ValueError:
+        port, parts = None, urlsplit("")
+    if parts.scheme not in ("ws", "wss") or not parts.hostname:
+        raise UsageError(
+            f"a rosbridge server has an address such as ws://robot.lab.example:9090, not {url!r}"
+        )
+    return url if port is not None else f"{parts.scheme}://{parts.netloc}:9090{parts.path}"
+
+
+def _refuse_deadline(qos: QoS) -> None:
+    if qos.deadline is not None:
+        raise CapabilityMissing(
+            "deadlines: the rosbridge backend cannot watch them; --ros ros2 and --ros memory can"
+        )
+
+
+BACKEND: type[Backend] = RosbridgeBackend

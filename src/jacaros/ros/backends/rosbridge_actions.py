@@ -1,0 +1,322 @@
+"""Actions of a ROS 2 robot through the bridge: the protocol's operations for goals, both ways.
+
+The protocol tells less than ROS 2 does.  A client hears of feedback and of the end, but neither that its goal was
+accepted nor what became of a request for cancelling; that is read off the action's status topic, where a goal appears
+under an id that the bridge does not tell either: it is the new one.  A server cannot refuse: the bridge has accepted
+each goal already, so a refused goal is aborted, with the reason in its result.
+"""
+
+import uuid
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.clock import Timer
+from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
+from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, text_of
+from jacaros.ros.backends.rosbridge_node import BridgeNode
+from jacaros.ros.backends.rosbridge_requests import LOOK_AGAIN, Sight
+from jacaros.ros.backends.rosbridge_topics import RawTopics
+from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
+from jacaros.ros.names import feedback_type, goal_type, result_type
+
+STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
+_ALIVE, _CANCELING = (1, 2, 3), 3
+_ENDS = {4: GoalStatus.SUCCEEDED, 5: GoalStatus.CANCELED, 6: GoalStatus.ABORTED}
+_NUMBERS = {status: number for number, status in _ENDS.items()}
+"""Numbers of ``action_msgs/msg/GoalStatus``."""
+ACCEPTED_AFTER = 2.0
+"""Seconds after which a goal counts as accepted that nobody refused: the bridge looks for a server for one of them."""
+CANCELED_AFTER = 1.0
+"""Seconds within which a server that agrees to cancel has changed the goal's status."""
+LOST_LINK = "the connection to the rosbridge server was lost during goal {}; whether it goes on is not known"
+
+
+class _Sent:
+    """A goal that was sent."""
+
+    def __init__(self) -> None:
+        self.accepted = False
+        self.key: str | None = None
+        self.cancel_asked = False
+
+
+class PresenceWatch:
+    """Asks for the action's server as long as somebody waits for it or has a goal there.
+
+    Args:
+        node: asks.
+        topic: the topic that every server of the action publishes.
+        sender: is told when the server comes and goes.
+    """
+
+    def __init__(self, node: BridgeNode, topic: str, sender: GoalSender) -> None:
+        self._node = node
+        self._sender = sender
+        self._sight = Sight(
+            node.requests,
+            "/rosapi/publishers",
+            {"topic": topic},
+            lambda seen: bool(seen["publishers"]),
+            False,
+        )
+        self._known = False
+        self._timer: Timer | None = None
+
+    @property
+    def offered(self) -> bool:
+        """Whether a server is there, as far as is known."""
+        if self._timer is None:
+            self._timer = self._node.clock.call_later(0.0, self._look)
+        return self._known and self._node.connected
+
+    def stop(self) -> None:
+        """Ask no more."""
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _look(self) -> None:
+        self._timer = None
+        seen = self._node.connected and self._sight.value
+        if seen != self._known:
+            self._known = seen
+            self._sender.server_present(seen)
+        if self._sender.busy or self._sight.asking:
+            pause = LOOK_AGAIN / 4 if self._sight.asking else LOOK_AGAIN
+            self._timer = self._node.clock.call_later(pause, self._look)
+
+
+class Ros2Goals:
+    """The `GoalWire` of an action client on a ROS 2 robot."""
+
+    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
+        self._node = node
+        self._sender = sender
+        self._goals: dict[str, _Sent] = {}
+        self._known: set[str] = set()
+        self._watch = PresenceWatch(node, f"{sender.name}/_action/status", sender)
+        self._status = RawTopics(node)
+        self._status.listen(f"{sender.name}/_action/status", STATUS_TYPE, self._status_changed, latched=True)
+
+    @property
+    def offered(self) -> bool:
+        """Whether a server offers the action, as far as is known."""
+        return self._watch.offered
+
+    def new_id(self) -> str:
+        """Make up the id of a new goal; the bridge has one table of them for all of its clients."""
+        return f"send_action_goal:{self._sender.name}:{uuid.uuid4().hex}"
+
+    def send_goal(self, goal_id: str, goal: Any) -> None:
+        """Send a goal message."""
+        node, sender = self._node, self._sender
+        operation = {
+            "op": "send_action_goal",
+            "id": goal_id,
+            "action": sender.name,
+            "action_type": sender.type_name,
+            "args": node.translator.encode(goal_type(sender.type_name), goal),
+            "feedback": True,
+        }
+        if not node.send(operation):
+            raise CallFailed(f"action {sender.name}: there is no connection to the rosbridge server")
+        self._goals[goal_id] = _Sent()
+        node.goals[goal_id] = self
+        node.clock.call_later(ACCEPTED_AFTER, lambda: self._accept(goal_id))
+
+    def cancel_goal(self, goal_id: str) -> None:
+        """Ask the server to cancel a goal."""
+        sent = self._goals.get(goal_id)
+        self._node.send({"op": "cancel_action_goal", "id": goal_id, "action": self._sender.name})
+        if sent is not None:
+            sent.cancel_asked = True
+            self._node.clock.call_later(CANCELED_AFTER, lambda: self._cancel_is_overdue(goal_id))
+
+    def forget_goal(self, goal_id: str) -> None:
+        """The goal is over for this client."""
+        self._goals.pop(goal_id, None)
+        self._node.goals.pop(goal_id, None)
+
+    def close(self) -> None:
+        """Leave."""
+        self._watch.stop()
+        self._status.close()
+
+    def join(self) -> None:
+        """The link is up again; the status topic is subscribed with all others."""
+
+    def lost(self) -> None:
+        """The link is down, and with it all that the bridge knew of our goals."""
+        for goal_id in list(self._goals):
+            self._sender.fail(goal_id, ServerLost(LOST_LINK.format(goal_id)))
+        self._known.clear()
+
+    # What the bridge tells, on the loop:
+
+    def feedback(self, goal_id: str, values: Any) -> None:
+        """Feedback of a goal."""
+        self._accept(goal_id)
+        if isinstance(values, dict) and values.keys() == {"goal_id", "feedback"}:  # older servers
+            values = values["feedback"]
+        message = self._decoded(feedback_type(self._sender.type_name), values)
+        if message is not None:
+            self._sender.feedback(goal_id, message)
+
+    def result(self, goal_id: str, message: dict[str, Any]) -> None:
+        """The end of a goal, or why it did not begin."""
+        values, number = message.get("values"), message.get("status")
+        if not message.get("result", True):
+            self._refused(goal_id, str(values))
+            return
+        if number is None and isinstance(values, dict) and "status" in values:  # older servers
+            number, values = values["status"], values.get("result")
+        self._accept(goal_id)
+        status = _ENDS.get(number or 4, GoalStatus.ABORTED)
+        result = self._decoded(result_type(self._sender.type_name), values or {})
+        if result is not None:
+            self._sender.ended(goal_id, Outcome(status, result, text_of(result)))
+        else:
+            self._sender.fail(goal_id, CallFailed(f"action {self._sender.name}: the result cannot be read"))
+
+    def refused(self, goal_id: str, text: str) -> None:
+        """The bridge itself does not take the goal, for instance because it is too old to know actions."""
+        self._refused(goal_id, text)
+
+    def _refused(self, goal_id: str, text: str) -> None:
+        if "No action server" in text:
+            self._sender.fail(goal_id, ServerUnavailable(f"nobody offers action {self._sender.name}"))
+        elif "rejected" in text:
+            self._sender.rejected(goal_id)
+        elif "Unknown operation" in text:
+            problem = f"action {self._sender.name}: this rosbridge server knows no actions; version 2 does"
+            self._sender.fail(goal_id, CallFailed(problem))
+        else:
+            self._sender.rejected(goal_id, text)
+
+    def _status_changed(self, message: Any) -> None:
+        seen: dict[str, int] = {}
+        for each in message.get("status_list", ()):
+            seen[str(each["goal_info"]["goal_id"]["uuid"])] = each["status"]
+        for key, number in seen.items():
+            if key not in self._known and number in _ALIVE:
+                self._appeared(key)
+        self._known = set(seen)
+        for goal_id, sent in list(self._goals.items()):
+            if sent.cancel_asked and sent.key is not None and seen.get(sent.key) == _CANCELING:
+                sent.cancel_asked = False
+                self._sender.cancel_answered(goal_id, True)
+
+    def _appeared(self, key: str) -> None:
+        for goal_id, sent in list(self._goals.items()):
+            if sent.key is None:
+                sent.key = key
+                self._accept(goal_id)
+                return
+
+    def _accept(self, goal_id: str) -> None:
+        sent = self._goals.get(goal_id)
+        if sent is not None and not sent.accepted:
+            sent.accepted = True
+            self._sender.accepted(goal_id)
+
+    def _cancel_is_overdue(self, goal_id: str) -> None:
+        sent = self._goals.get(goal_id)
+        if sent is not None and sent.cancel_asked:
+            sent.cancel_asked = False
+            # Without its key nobody knows; the request was delivered, and most servers agree always.
+            self._sender.cancel_answered(goal_id, sent.key is None)
+
+    def _decoded(self, type_name: str, values: Any) -> Any:
+        try:
+            return self._node.translator.decode(type_name, values)
+        except ValueError as problem:
+            self._node.log(f"action {self._sender.name}: {problem}")
+            return None
+
+
+class Ros2GoalService:
+    """The side of an action server on a ROS 2 robot."""
+
+    def __init__(
+        self, node: BridgeNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+    ) -> None:
+        self.name = name
+        self._node = node
+        self._type_name = type_name
+        self._make: Callable[[], ServedGoals] = lambda: ServedGoals(
+            node.factory, name, type_name, execute, policy, node.log
+        )
+        self._goals = self._make()
+
+    def join(self) -> None:
+        """Offer the action at a server that does not know us yet."""
+        self._node.send({"op": "advertise_action", "type": self._type_name, "action": self.name})
+
+    def lost(self) -> None:
+        """The link is down: the bridge has told the clients that their goals are aborted, so they are."""
+        self._goals.close()
+        self._goals = self._make()
+
+    def close(self) -> None:
+        """Stop to offer the action."""
+        self._goals.close()
+        self._node.send({"op": "unadvertise_action", "action": self.name})
+
+    def goal(self, message: dict[str, Any]) -> None:
+        """Take a goal of the bridge; on the loop."""
+        goal_id = str(message.get("id"))
+        try:
+            request = self._node.translator.decode(goal_type(self._type_name), message.get("args") or {})
+        except ValueError as problem:
+            self._end(goal_id, self._aborted(str(problem)))
+            return
+        reason = self._goals.judge(request)
+        if reason is not None:
+            self._end(goal_id, self._aborted(reason))
+        else:
+            self._goals.begin(goal_id, request, _Listener(self, goal_id))
+
+    def cancel(self, goal_id: str) -> None:
+        """Take a request for cancelling; the bridge has agreed to it already."""
+        self._goals.cancel(goal_id)
+
+    def feedback(self, goal_id: str, message: Any) -> None:
+        """Send feedback of a goal."""
+        values = self._node.translator.encode(feedback_type(self._type_name), message)
+        self._node.send({"op": "action_feedback", "id": goal_id, "action": self.name, "values": values})
+
+    def ended(self, goal_id: str, outcome: Outcome) -> None:
+        """Send the end of a goal."""
+        self._end(goal_id, outcome)
+
+    def _end(self, goal_id: str, outcome: Outcome) -> None:
+        self._node.send(
+            {
+                "op": "action_result",
+                "id": goal_id,
+                "action": self.name,
+                "values": self._node.translator.encode(result_type(self._type_name), outcome.result),
+                "status": _NUMBERS[outcome.status],
+                "result": True,
+            }
+        )
+
+    def _aborted(self, text: str) -> Outcome:
+        kind = result_type(self._type_name)
+        fields = self._node.factory.fields(kind)
+        told = {name: text for name in TEXT_FIELDS if name in fields and fields[name].base == "string"}
+        return Outcome(GoalStatus.ABORTED, self._node.factory.make(kind, told), text)
+
+
+class _Listener:
+    """Brings the news of one goal to the bridge."""
+
+    def __init__(self, service: Ros2GoalService, goal_id: str) -> None:
+        self._service = service
+        self._goal_id = goal_id
+
+    def feedback(self, message: Any) -> None:
+        self._service.feedback(self._goal_id, message)
+
+    def ended(self, outcome: Outcome) -> None:
+        self._service.ended(self._goal_id, outcome)

@@ -1,0 +1,200 @@
+"""The WebSocket to a rosbridge server, through roslibpy's asyncio transport: connecting, and connecting again.
+
+roslibpy brings two transports.  Twisted's reactor is one for the process and cannot be started twice; asyncio's loop is
+one more loop, in a daemon thread that roslibpy keeps, and touches no signal handlers.  Both were as fast in measurements
+(docs/decisions).  Of roslibpy's classes the connection is used, below its ``Ros`` and ``Topic``: those tell nothing of
+messages lost while the link is down, know no actions of a server's side, and call back without an order of shutting down.
+
+A link is up while the server answers pings: a robot that drove out of reach closes no connection.
+"""
+
+import asyncio
+import json
+import logging
+import socket
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from roslibpy.comm.comm_asyncio import (  # type: ignore[import-untyped]
+    AsyncioRosBridgeClientFactory,
+    AsyncioRosBridgeProtocol,
+)
+
+FIRST_PAUSE, LONGEST_PAUSE = 0.25, 2.0
+"""Seconds between two attempts to connect: at first, and at most."""
+CONNECTING = 4.0
+"""Seconds after which an attempt is given up: a network that swallows packets says nothing for minutes."""
+PING_EVERY, PING_PATIENCE = 1.0, 4.0
+"""Seconds between pings, and for the answer."""
+BACKLOG = 4_000_000
+"""Bytes that may wait for a slow network; what is published beyond is dropped, for it would arrive too late anyway."""
+_QUICKACK = getattr(socket, "TCP_QUICKACK", None)
+
+
+class _Protocol(AsyncioRosBridgeProtocol):  # type: ignore[misc]
+    """One connection; everything here is called on roslibpy's thread."""
+
+    factory: "_Factory"
+
+    def onOpen(self) -> None:  # noqa: N802 (autobahn's name)
+        self.acknowledge_at_once()
+        super().onOpen()
+
+    def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
+        self.acknowledge_at_once()
+        self.factory.link.received(payload)
+
+    def acknowledge_at_once(self) -> None:
+        """Keep the kernel from delaying acknowledgements, which it begins again after each packet.
+
+        A server that collects small packets (Nagle's algorithm) holds each message back until the one before is
+        acknowledged, which the kernel does 40 ms later, or with the next message of ours.
+        """
+        if _QUICKACK is not None:
+            wire = self.transport.get_extra_info("socket")
+            with suppress(OSError):
+                wire.setsockopt(socket.IPPROTO_TCP, _QUICKACK, 1)
+
+    def backlog(self) -> int:
+        """Bytes that wait for the network."""
+        return int(self.transport.get_write_buffer_size())
+
+
+class _Factory(AsyncioRosBridgeClientFactory):  # type: ignore[misc]
+    """Connects, and connects again."""
+
+    protocol = _Protocol
+    compression = None  # costs more time than it saves in a local network
+    initialDelay, maxDelay, factor = FIRST_PAUSE, LONGEST_PAUSE, 1.7  # noqa: N815 (roslibpy's names)
+
+    def __init__(self, link: "Link", url: str) -> None:
+        self.link = link
+        super().__init__(url)
+        self.setProtocolOptions(
+            autoPingInterval=PING_EVERY, autoPingTimeout=PING_PATIENCE, openHandshakeTimeout=CONNECTING
+        )
+
+    async def _connect_async(self) -> None:
+        if self._stop:  # closed between two attempts
+            return
+        try:
+            async with asyncio.timeout(CONNECTING):
+                await super()._connect_async()
+        except TimeoutError:
+            self._schedule_reconnect()
+
+    def _schedule_reconnect(self) -> None:
+        self.link.failed()
+        super()._schedule_reconnect()
+
+    def halt(self) -> None:
+        """Connect no more."""
+        self._stop = True
+
+
+class Link:
+    """A connection that is made again whenever it is lost.
+
+    Args:
+        url: address of the server, ``ws://robot.lab.example:9090``.
+        on_up: called on roslibpy's thread when the connection is there.
+        on_down: called there when it is lost, and when an attempt has failed.
+        on_message: called there with each message of the server.
+        on_problem: called there with a line about what cannot be understood.
+    """
+
+    def __init__(
+        self,
+        url: str,
+        on_up: Callable[[], None],
+        on_down: Callable[[], None],
+        on_message: Callable[[dict[str, Any]], None],
+        on_problem: Callable[[str], None],
+    ) -> None:
+        # Connections that fail are told through `Waiting`; roslibpy would print tracebacks as well.
+        logging.getLogger("roslibpy").setLevel(logging.CRITICAL)
+        self._url = url
+        self._on_up = on_up
+        self._on_down = on_down
+        self._on_message = on_message
+        self._on_problem = on_problem
+        self._factory: _Factory | None = None
+        self._protocol: _Protocol | None = None
+        self._closing = False
+        self._idle = threading.Event()
+
+    @property
+    def up(self) -> bool:
+        """Whether there is a connection."""
+        return self._protocol is not None
+
+    def start(self) -> None:
+        """Begin to connect; blocks for a moment when roslibpy's thread must be started."""
+        factory = self._factory = _Factory(self, self._url)
+        factory.on("ready", self._opened)
+        factory.on("close", self._closed)
+        factory.connect()
+
+    def send(self, message: dict[str, Any], droppable: bool = False) -> bool:
+        """Send *message*, from any thread; False when it is lost because there is no connection.
+
+        Args:
+            message: what the protocol calls an operation.
+            droppable: lose it also when too much waits already.
+        """
+        protocol = self._protocol
+        if protocol is None or (droppable and protocol.backlog() > BACKLOG):
+            return False
+        protocol.send_message(json.dumps(message, separators=(",", ":")).encode())
+        return self._protocol is protocol
+
+    def finish(self, seconds: float) -> None:
+        """Wait until what was sent has left the process, then close; blocks, so not on the loop."""
+        self._closing = True
+        factory, protocol = self._factory, self._protocol
+        if factory is None:
+            return
+        factory.halt()
+        if protocol is None:
+            return
+        # The connection's own thread does this after the messages that were handed to it before.
+        factory.manager.loop.call_soon_threadsafe(self._close_when_sent, protocol, seconds)
+        self._idle.wait(seconds + 0.5)
+
+    def received(self, payload: bytes) -> None:
+        """Take a frame of the server; on roslibpy's thread."""
+        try:
+            message = json.loads(payload)
+            operation = message["op"]
+        except (ValueError, TypeError, KeyError):
+            self._on_problem(f"the rosbridge server sent something that is no operation: {payload[:80]!r}")
+            return
+        if isinstance(operation, str):
+            self._on_message(message)
+
+    def failed(self) -> None:
+        """An attempt to connect has failed, or the connection is lost; on roslibpy's thread."""
+        if self._protocol is None and not self._closing:
+            self._on_down()
+
+    def _opened(self, protocol: _Protocol) -> None:
+        if self._closing:
+            protocol.send_close()
+            return
+        self._protocol = protocol
+        self._on_up()
+
+    def _closed(self, _: Any) -> None:
+        was_up, self._protocol = self._protocol is not None, None
+        self._idle.set()
+        if was_up:
+            self._on_down()
+
+    def _close_when_sent(self, protocol: _Protocol, seconds: float) -> None:
+        if seconds > 0.0 and self._protocol is protocol and protocol.backlog():
+            loop = asyncio.get_running_loop()
+            loop.call_later(0.005, self._close_when_sent, protocol, seconds - 0.005)
+        else:
+            protocol.send_close()

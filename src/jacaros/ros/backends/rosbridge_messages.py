@@ -1,0 +1,209 @@
+"""Messages as the rosbridge protocol writes them, from and to the message objects of `RosbagsSchema`.
+
+The notation is that of ``rosbridge_library.internal.message_conversion``: arrays of octets in base64, times as ``secs`` and
+``nsecs`` on ROS 1 and ``sec`` and ``nanosec`` on ROS 2, and ``null`` for the floating-point numbers that JSON cannot write
+(NaN and both infinities, so that all three arrive as NaN).
+"""
+
+import base64
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jacaros.ros.fields import DURATION, FLOATS, TIME, FieldType
+from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.values import zeros
+
+_OCTETS = ("uint8", "char")
+_ROS1_FIELDS: Mapping[str, Mapping[str, str]] = {
+    "sensor_msgs/msg/CameraInfo": {"d": "D", "k": "K", "r": "R", "p": "P"}
+}
+"""Fields that have other names in ROS 1's definitions."""
+
+Encoder = Callable[[Any], Any]
+Decoder = Callable[[Any], Any]
+
+
+class Translator:
+    """Turns messages into JSON values and back.
+
+    Args:
+        schema: the message classes.
+
+    Attributes:
+        ros_version: 1 or 2: in whose notation to write; reading understands both.
+    """
+
+    def __init__(self, schema: RosbagsSchema) -> None:
+        self._schema = schema
+        self._encoders: dict[str, Encoder] = {}
+        self._decoders: dict[str, Decoder] = {}
+        self._version = 2
+
+    @property
+    def ros_version(self) -> int:
+        """Whose notation is written."""
+        return self._version
+
+    @ros_version.setter
+    def ros_version(self, version: int) -> None:
+        if version != self._version:
+            self._version = version
+            self._encoders.clear()
+
+    def encode(self, type_name: str, message: Any) -> Any:
+        """Give *message* as a JSON value."""
+        encoder = self._encoders.get(type_name)
+        if encoder is None:
+            encoder = self._encoders[type_name] = self._message_encoder(type_name)
+        return encoder(message)
+
+    def decode(self, type_name: str, value: Any) -> Any:
+        """Make a message from a JSON value; fields that are missing there have their defaults.
+
+        Raises:
+            ValueError: the value is not one of this type; the text names the field.
+        """
+        decoder = self._decoders.get(type_name)
+        if decoder is None:
+            decoder = self._decoders[type_name] = self._message_decoder(type_name)
+        return decoder(value)
+
+    def _message_encoder(self, type_name: str) -> Encoder:
+        if type_name in (TIME, DURATION):
+            return _ros1_time if self._version == 1 else _ros2_time
+        renamed = _ROS1_FIELDS.get(type_name, {}) if self._version == 1 else {}
+        fields = [
+            (name, renamed.get(name, name), self._field_encoder(field))
+            for name, field in self._schema.fields(type_name).items()
+        ]
+
+        def encode(message: Any) -> dict[str, Any]:
+            return {written: encoder(getattr(message, name)) for name, written, encoder in fields}
+
+        return encode
+
+    def _field_encoder(self, field: FieldType) -> Encoder:
+        if not field.array:
+            return self._single_encoder(field)
+        if field.base in _OCTETS:
+            return _to_base64
+        if field.is_numeric:
+            return _to_list
+        single = self._single_encoder(field)
+        return lambda values: [single(value) for value in values]
+
+    def _single_encoder(self, field: FieldType) -> Encoder:
+        if field.is_message:
+            base = field.base
+            return lambda message: self.encode(base, message)
+        return _plain
+
+    def _message_decoder(self, type_name: str) -> Decoder:
+        if type_name in (TIME, DURATION):
+            return self._time_decoder(type_name)
+        renamed = _ROS1_FIELDS.get(type_name, {})
+        fields = [
+            (name, renamed.get(name), self._field_decoder(type_name, name, field))
+            for name, field in self._schema.fields(type_name).items()
+        ]
+        new = self._schema.new
+
+        def decode(value: Any) -> Any:
+            if not isinstance(value, dict):
+                raise ValueError(f"{value!r:.60} is given for a {type_name}")
+            message = new(type_name)
+            for name, other, decoder in fields:
+                if name in value:
+                    setattr(message, name, decoder(value[name]))
+                elif other is not None and other in value:
+                    setattr(message, name, decoder(value[other]))
+            return message
+
+        return decode
+
+    def _field_decoder(self, owner: str, name: str, field: FieldType) -> Decoder:
+        decoder = self._array_decoder(field) if field.array else self._single_decoder(field)
+
+        def decode(value: Any) -> Any:
+            try:
+                return decoder(value)
+            except (TypeError, ValueError, OverflowError) as problem:
+                raise ValueError(f"field {name} of {owner} is {field}, but {problem}") from None
+
+        return decode
+
+    def _array_decoder(self, field: FieldType) -> Decoder:
+        if field.is_numeric:
+            return _numbers(field)
+        single = self._single_decoder(field)
+        return lambda values: [single(value) for value in _sequence(values)]
+
+    def _single_decoder(self, field: FieldType) -> Decoder:
+        if field.is_message:
+            base = field.base
+            return lambda value: self.decode(base, value)
+        if field.base in FLOATS:
+            return lambda value: math.nan if value is None else float(value)
+        if field.base == "string":
+            return str
+        if field.base == "bool":
+            return bool
+        return int
+
+    def _time_decoder(self, type_name: str) -> Decoder:
+        new = self._schema.new
+
+        def decode(value: Any) -> Any:
+            if not isinstance(value, dict):
+                raise ValueError(f"{value!r:.60} is given for a {type_name}")
+            time = new(type_name)
+            time.sec = int(value.get("sec") or value.get("secs") or 0)
+            time.nanosec = int(value.get("nanosec") or value.get("nsecs") or 0)
+            return time
+
+        return decode
+
+
+def _ros1_time(time: Any) -> dict[str, int]:
+    return {"secs": int(time.sec), "nsecs": int(time.nanosec)}
+
+
+def _ros2_time(time: Any) -> dict[str, int]:
+    return {"sec": int(time.sec), "nanosec": int(time.nanosec)}
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if hasattr(value, "item") else value
+
+
+def _to_list(values: Any) -> list[Any]:
+    return values.tolist() if hasattr(values, "tolist") else list(values)
+
+
+def _to_base64(values: Any) -> str:
+    octets = values.tobytes() if hasattr(values, "tobytes") else bytes(values)
+    return base64.standard_b64encode(octets).decode("ascii")
+
+
+def _sequence(values: Any) -> list[Any]:
+    if not isinstance(values, list):
+        raise ValueError(f"{values!r:.60} is given")
+    return values
+
+
+def _numbers(field: FieldType) -> Decoder:
+    """Reads an array of numbers: a list, or octets in base64."""
+
+    def decode(values: Any) -> Any:
+        import numpy  # here: many systems have no array at all
+
+        dtype = zeros(field, 0).dtype
+        if isinstance(values, str) and dtype.itemsize == 1:
+            return numpy.frombuffer(base64.b64decode(values, validate=True), dtype=dtype).copy()
+        numbers = _sequence(values)
+        if field.base in FLOATS:
+            numbers = [math.nan if number is None else number for number in numbers]
+        return numpy.array(numbers, dtype=dtype)
+
+    return decode

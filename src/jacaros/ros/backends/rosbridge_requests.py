@@ -1,0 +1,156 @@
+"""Service calls through the bridge: numbered requests, their answers, and what the bridge itself is asked (rosapi).
+
+Answers arrive on the link's thread, and there the callbacks run.
+"""
+
+import itertools
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
+
+from jacaros.ros.errors import CallFailed, ServiceError, ServiceUnavailable
+
+T = TypeVar("T")
+
+Done = Callable[[dict[str, Any] | None, ServiceError | None], None]
+"""Takes the fields of a response, or why there is none."""
+
+LOOK_AGAIN = 0.25
+"""Seconds after which what was seen of the graph is asked for again, when somebody wants to know."""
+
+
+class Requests:
+    """Calls under way.
+
+    Args:
+        send: hands an operation to the link; False when it is lost.
+    """
+
+    def __init__(self, send: Callable[[dict[str, Any]], bool]) -> None:
+        self._send = send
+        self._numbers = itertools.count(1)
+        self._pending: dict[str, tuple[str, Done]] = {}
+        self._lock = threading.Lock()
+
+    def begin(self, service: str, arguments: Any, done: Done, timeout: float | None = None) -> str:
+        """Call *service*; *done* is called once, on any thread, possibly at once.
+
+        Args:
+            service: absolute name.
+            arguments: fields of the request as JSON values.
+            done: takes the answer.
+            timeout: seconds after which a newer server may give the call up.
+
+        Returns:
+            the number under which the call can be given up.
+        """
+        number = f"call_service:{service}:{next(self._numbers)}"
+        with self._lock:
+            self._pending[number] = (service, done)
+        operation = {"op": "call_service", "id": number, "service": service, "args": arguments}
+        if timeout is not None:
+            operation["timeout"] = timeout
+        if not self._send(operation):
+            self._end(
+                number, None, CallFailed(f"service {service}: there is no connection to the rosbridge server")
+            )
+        return number
+
+    def forget(self, number: str) -> None:
+        """Give a call up: nobody wants its answer any more."""
+        with self._lock:
+            self._pending.pop(number, None)
+
+    def answered(self, message: dict[str, Any]) -> None:
+        """Take an answer of the server."""
+        number, values = message.get("id"), message.get("values")
+        if not isinstance(number, str):
+            return
+        if message.get("result", True):
+            self._end(number, values if isinstance(values, dict) else {}, None)
+        else:
+            self._end(number, None, _failure(message.get("service", ""), values))
+
+    def fail_all(self) -> None:
+        """End all calls: the connection is lost, and answers with it."""
+        with self._lock:
+            numbers = {number: service for number, (service, _) in self._pending.items()}
+        for number, service in numbers.items():
+            text = f"service {service}: the connection to the rosbridge server was lost during the call"
+            self._end(number, None, CallFailed(text))
+
+    def _end(self, number: str, values: dict[str, Any] | None, problem: ServiceError | None) -> None:
+        with self._lock:
+            _, done = self._pending.pop(number, ("", None))
+        if done is not None:
+            done(values, problem)
+
+    def call_blocking(self, service: str, arguments: Any, seconds: float) -> dict[str, Any] | None:
+        """Call *service* and wait for the answer in this thread; None when there is none in time, or a failure."""
+        ended = threading.Event()
+        answers: list[dict[str, Any] | None] = []
+
+        def done(values: dict[str, Any] | None, _: ServiceError | None) -> None:
+            answers.append(values)
+            ended.set()
+
+        number = self.begin(service, arguments, done)
+        ended.wait(seconds)
+        self.forget(number)
+        return answers[0] if answers else None
+
+
+def _failure(service: str, text: object) -> ServiceError:
+    """Translate the server's words; it has no other way to tell."""
+    words = str(text)
+    if "does not exist" in words or "unavailable" in words:
+        return ServiceUnavailable(f"nobody offers service {service}: {words}")
+    return CallFailed(f"service {service}: {words}")
+
+
+class Sight(Generic[T]):
+    """Something of the graph that rosapi can tell, as it was seen a short time ago.
+
+    Nothing is asked while nobody wants to know: reading the value asks again, and gives what is known.
+
+    Args:
+        requests: to ask with.
+        service: of rosapi, such as ``/rosapi/subscribers``.
+        arguments: of its request.
+        read: takes the fields of the response.
+        unknown: the value before the first answer, and after a failure.
+    """
+
+    def __init__(
+        self,
+        requests: Requests,
+        service: str,
+        arguments: dict[str, Any],
+        read: Callable[[dict[str, Any]], T],
+        unknown: T,
+    ) -> None:
+        self._requests = requests
+        self._service = service
+        self._arguments = arguments
+        self._read = read
+        self._unknown = unknown
+        self._value = unknown
+        self._asked = -LOOK_AGAIN
+        self.asking = False
+
+    @property
+    def value(self) -> T:
+        """What was seen last; asks again when that is some time ago."""
+        now = time.monotonic()
+        if not self.asking and now - self._asked >= LOOK_AGAIN:
+            self._asked, self.asking = now, True
+            self._requests.begin(self._service, self._arguments, self._seen)
+        return self._value
+
+    def _seen(self, values: dict[str, Any] | None, _: ServiceError | None) -> None:
+        self.asking = False
+        try:
+            self._value = self._unknown if values is None else self._read(values)
+        except (KeyError, TypeError):  # another server's idea of rosapi
+            self._value = self._unknown

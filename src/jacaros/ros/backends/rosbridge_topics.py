@@ -1,0 +1,292 @@
+"""Topics through the bridge."""
+
+import re
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
+from jacaros.ros.backends.rosbridge_node import BridgeNode, Feed, Sink
+from jacaros.ros.backends.rosbridge_requests import Sight
+from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.handoff import Handoff
+from jacaros.ros.names import message_type
+from jacaros.ros.qos import QoS
+
+RAW_DEPTH = 300
+"""Messages of an action's topics that may wait for the loop."""
+_CONFLICT = re.compile(r"already established with type ([\w/]+)")
+"""What the server says when a topic has another type."""
+
+
+class BridgePublisher:
+    """Publisher of `RosbridgeBackend`.
+
+    The server forgets what it knows of us when the connection is lost; then the topic is advertised again, and what is
+    kept for late subscriptions is sent again.  Other messages are lost meanwhile: a velocity of a minute ago would be
+    worse than none.
+    """
+
+    def __init__(self, node: BridgeNode, topic: str, type_name: str, qos: QoS) -> None:
+        self.topic = topic
+        self._node = node
+        self._type_name = type_name
+        self._class = node.factory.message_class(type_name)
+        self._qos = qos
+        self._kept: deque[Any] = deque(maxlen=qos.depth if qos.durability == "transient_local" else 0)
+        self._closed = False
+        self._subscribers = Sight(
+            node.requests, "/rosapi/subscribers", {"topic": topic}, lambda seen: len(seen["subscribers"]), 0
+        )
+        self._number = node.members.number("advertise", topic)
+        if node.attached:
+            self.join()
+
+    @property
+    def subscription_count(self) -> int:
+        """How many nodes subscribe, as the bridge said a quarter of a second ago at most."""
+        return self._subscribers.value if self._node.connected and not self._closed else 0
+
+    def message(self, **fields: Any) -> Any:
+        """Make a message of the topic's type."""
+        return self._node.factory.make(self._type_name, fields)
+
+    def publish(self, message: Any) -> None:
+        """Send *message*."""
+        if not isinstance(message, self._class):
+            raise MessageMismatch(
+                f"topic {self.topic} carries {self._type_name}, not {message!r}", self._type_name
+            )
+        if self._closed or not self._node.exit_hooks.admits():
+            return
+        self._kept.append(message)
+        # Before the server has been asked whose graph this is, the notation is not known.
+        if not self._node.attached or not self._send(message):
+            self._node.note_loss(self.topic)
+
+    def close(self) -> None:
+        """Leave the topic."""
+        if not self._closed:
+            self._closed = True
+            self._node.members.drop(self)
+            self._node.send({"op": "unadvertise", "id": self._number, "topic": self.topic})
+
+    def join(self) -> None:
+        """Advertise the topic at a server that does not know us yet."""
+        qos = self._qos
+        operation = {
+            "op": "advertise",
+            "id": self._number,
+            "topic": self.topic,
+            "type": self._node.written_type(self._type_name),
+            "latch": qos.durability == "transient_local",
+            "queue_size": qos.depth,
+        }
+        if self._node.ros_version == 2:
+            operation["qos"] = {
+                "history": "keep_last",
+                "depth": qos.depth,
+                "reliability": qos.reliability,
+                "durability": qos.durability,
+            }
+        self._node.send(operation)
+        for message in self._kept:
+            self._send(message)
+
+    def _send(self, message: Any) -> bool:
+        values = self._node.translator.encode(self._type_name, message)
+        return self._node.send({"op": "publish", "topic": self.topic, "msg": values}, droppable=True)
+
+
+class TopicFeed:
+    """The process's one subscription of a topic at the server, shared by ours.
+
+    The server sends a topic's messages once to each client, however often it subscribes; so what a late subscription must
+    see of a latched topic is kept here.
+    """
+
+    def __init__(self, node: BridgeNode, topic: str, written_type: Callable[[], str]) -> None:
+        self.topic = topic
+        self._written_type = written_type
+        self.number = node.members.number("subscribe", topic)
+        self._node = node
+        self._lock = threading.Lock()
+        self._sinks: tuple[Sink, ...] = ()
+        self._last: Any = None
+        self._depth = 0
+        self.publishers = Sight(
+            node.requests, "/rosapi/publishers", {"topic": topic}, lambda seen: len(seen["publishers"]), 0
+        )
+
+    def add(self, sink: Sink) -> None:
+        """Serve *sink* too."""
+        with self._lock:
+            self._sinks = (*self._sinks, sink)
+            if sink.latched and self._last is not None:
+                sink.queue.put(self._last)
+        if sink.depth > self._depth:
+            self._depth = sink.depth
+            if self._node.attached:
+                self.join()
+
+    def remove(self, sink: Sink) -> bool:
+        """Serve *sink* no more; True when it was the last."""
+        with self._lock:
+            self._sinks = tuple(other for other in self._sinks if other is not sink)
+            return not self._sinks
+
+    def join(self) -> None:
+        """Subscribe at a server that does not know us yet, or with a longer queue."""
+        # Without qos: the server then chooses what goes with all publishers that it sees.
+        self._node.send(
+            {
+                "op": "subscribe",
+                "id": self.number,
+                "topic": self.topic,
+                "type": self._written_type(),
+                "queue_length": self._depth,
+            }
+        )
+
+    def leave(self) -> None:
+        """Unsubscribe at the server."""
+        self._node.send({"op": "unsubscribe", "id": self.number, "topic": self.topic})
+
+    def put(self, values: Any) -> None:
+        """Take a message of the server, not decoded yet; on the link's thread."""
+        with self._lock:
+            self._last = values
+            for sink in self._sinks:
+                sink.queue.put(values)
+
+    def refused(self, text: str) -> None:
+        """The server does not give us the topic; on the loop."""
+        conflict = _CONFLICT.search(text)
+        if conflict is not None:
+            text = f"topic {self.topic} carries {message_type(conflict[1])}, not {message_type(self._written_type())}"
+        else:
+            text = f"topic {self.topic}: the rosbridge server refuses it: {text}"
+        for sink in self._sinks:
+            sink.trouble(text)
+
+
+class BridgeSubscription:
+    """Subscription of `RosbridgeBackend`.
+
+    Messages are decoded on the loop, when it is their turn: what a full queue drops costs nothing.
+    """
+
+    def __init__(
+        self,
+        node: BridgeNode,
+        topic: str,
+        type_name: str,
+        callback: Callable[[Sample], None],
+        qos: QoS,
+        on_event: Callable[[TopicEvent], None] | None,
+    ) -> None:
+        self.topic = topic
+        self.depth = qos.depth
+        self.latched = qos.durability == "transient_local"
+        self._node = node
+        self._type_name = type_name
+        self._callback = callback
+        self._on_event = on_event
+        self._told: set[str] = set()
+        self.queue: Handoff[Any] = Handoff(node.loop, qos.depth, self._deliver)
+        self._feed = node.members.feed(topic, lambda: node.written_type(type_name))
+        self._feed.add(self)
+        self._closed = False
+
+    @property
+    def publisher_count(self) -> int:
+        """How many nodes publish, as the bridge said a quarter of a second ago at most."""
+        return self._feed.publishers.value if self._node.connected and not self._closed else 0
+
+    def close(self) -> None:
+        """Leave the topic."""
+        self.queue.close()
+        if not self._closed:
+            self._closed = True
+            self._node.members.drop(self)
+            if self._feed.remove(self):
+                self._node.members.drop_feed(self._feed)
+
+    def trouble(self, text: str) -> None:
+        """Tell that the server does not send what we want, once for each reason."""
+        if text in self._told:
+            return
+        self._told.add(text)
+        if self._on_event is not None:
+            self._on_event(TopicEvent(TopicTrouble.OTHER_TYPE, text))
+        else:
+            self._node.log(text)
+
+    def _deliver(self, values: Any) -> None:
+        try:
+            message = self._node.translator.decode(self._type_name, values)
+        except ValueError as problem:
+            self.trouble(f"topic {self.topic}: a message is no {self._type_name}: {problem}")
+        else:
+            self._callback(self._node.sample(message, self.topic))
+
+
+class RawTopics:
+    """Subscriptions for the backend's own use, whose messages stay as the protocol writes them.
+
+    What comes on several topics is delivered in the order in which it came: the end of a goal not before its feedback.
+
+    Args:
+        node: subscribes.
+    """
+
+    def __init__(self, node: BridgeNode) -> None:
+        self._node = node
+        self._queue: Handoff[tuple[Callable[[Any], None], Any]] = Handoff(
+            node.loop, RAW_DEPTH, lambda item: item[0](item[1])
+        )
+        self._sinks: list[tuple[_RawSink, Feed]] = []
+
+    def listen(
+        self, topic: str, written_type: str, deliver: Callable[[Any], None], latched: bool = False
+    ) -> None:
+        """Have *deliver* called on the loop for each message, with *latched* also for the last one before."""
+        feed = self._node.members.feed(topic, lambda: written_type)
+        sink = _RawSink(self._node, self._queue, deliver, latched)
+        self._sinks.append((sink, feed))
+        feed.add(sink)
+
+    def close(self) -> None:
+        """Leave the topics."""
+        self._queue.close()
+        for sink, feed in self._sinks:
+            if feed.remove(sink):
+                self._node.members.drop_feed(feed)
+        self._sinks.clear()
+
+
+class _RawSink:
+    depth = RAW_DEPTH
+
+    def __init__(
+        self,
+        node: BridgeNode,
+        queue: Handoff[tuple[Callable[[Any], None], Any]],
+        deliver: Callable[[Any], None],
+        latched: bool,
+    ) -> None:
+        self.latched = latched
+        self._node = node
+        self._queue = queue
+        self._deliver = deliver
+
+    @property
+    def queue(self) -> "_RawSink":
+        return self
+
+    def put(self, item: Any) -> None:
+        self._queue.put((self._deliver, item))
+
+    def trouble(self, text: str) -> None:
+        self._node.log(text)

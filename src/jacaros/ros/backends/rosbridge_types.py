@@ -1,0 +1,112 @@
+"""Interface definitions: those of the ``rosbags`` store and of files, and what neither knows from the server's rosapi."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.names import message_type
+from jacaros.ros.typestore import RosbagsSchema
+
+Ask = Callable[[str, dict[str, Any]], dict[str, Any] | None]
+"""Calls a service of rosapi and waits for the fields of its response; None when there is none."""
+
+_DETAILS = {
+    "msg": ("message_details",),
+    "srv": ("service_request_details", "service_response_details"),
+    "action": ("action_goal_details", "action_result_details", "action_feedback_details"),
+}
+"""Services of rosapi that tell the parts of a definition, in the order of the file."""
+_BASES = {"double": "float64", "float": "float32", "boolean": "bool", "octet": "byte"}
+_ROS1_BASES = {
+    "char": "uint8",
+    "byte": "int8",
+    "time": "builtin_interfaces/Time",
+    "duration": "builtin_interfaces/Duration",
+}
+_ROS1_ONLY = {
+    "rosgraph_msgs/msg/Log": "std_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
+    "string function\nuint32 line\nstring[] topics\n"
+}
+"""Definitions of ROS 1 that we need ourselves."""
+_NO_FIELD = "structure_needs_at_least_one_member"
+_INTEGER = re.compile(r"-?\d+")
+_CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
+
+
+class BridgeSchema(RosbagsSchema):
+    """Message classes of `RosbagsSchema` that also knows what the server can tell.
+
+    Args:
+        roots: the user's own definition folders.
+        ask: asks the server; it waits, in the calling thread, but once for each type that nobody else knows.
+        describe: tells in words why the server cannot be asked, None when it can.
+    """
+
+    def __init__(self, roots: Sequence[Path], ask: Ask, describe: Callable[[], str | None]) -> None:
+        super().__init__(roots)
+        self._ask = ask
+        self._describe = describe
+        self._told: dict[str, str] = {}
+
+    def _definition(self, type_name: str, what: str, ending: str) -> str:
+        try:
+            return super()._definition(type_name, what, ending)
+        except UnknownInterface as unknown:
+            if type_name in _ROS1_ONLY:
+                return _ROS1_ONLY[type_name]
+            if type_name in self._told:  # part of a type that the server has told
+                return self._told[type_name]
+            reason = self._describe()
+            if reason is not None:
+                raise UnknownInterface(f"{unknown} ({reason})") from None
+            text = self._fetch(type_name, ending)
+            if text is None:
+                raise UnknownInterface(f"{unknown} (the rosbridge server does not know it either)") from None
+            return text
+
+    def _fetch(self, type_name: str, ending: str) -> str | None:
+        """Give the definition of a type as a file would have it, and remember those of its parts."""
+        parts = []
+        for service in _DETAILS[ending]:
+            answer = self._ask(f"/rosapi/{service}", {"type": type_name})
+            typedefs = None if answer is None else answer.get("typedefs")
+            if not typedefs:
+                return None
+            whole, *others = typedefs
+            parts.append(definition_text(whole))
+            for other in others:
+                self._told.setdefault(message_type(other["type"]), definition_text(other))
+        return "---\n".join(parts)
+
+
+def definition_text(typedef: Mapping[str, Any]) -> str:
+    """Write a ``rosapi_msgs/msg/TypeDef`` as the text of a definition.
+
+    Args:
+        typedef: its fields; the length of an array is -1 for a single value and 0 without a limit.
+    """
+    ros1 = "/msg/" not in "".join(typedef["fieldtypes"]) and not _BASES.keys() & set(typedef["fieldtypes"])
+    lines = list(_constants(typedef))
+    lengths = typedef.get("fieldarraylen") or [-1] * len(typedef["fieldnames"])
+    for name, kind, length in zip(typedef["fieldnames"], typedef["fieldtypes"], lengths, strict=True):
+        if name != _NO_FIELD:
+            array = "" if length < 0 else f"[{length or ''}]"
+            lines.append(f"{_base(kind, ros1)}{array} {name}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _base(kind: str, ros1: bool) -> str:
+    kind = re.sub(r"^(w?string)<\d+>$", "string", kind).replace("/msg/", "/")
+    if ros1 and kind in _ROS1_BASES:
+        return _ROS1_BASES[kind]
+    return _BASES.get(kind, kind)
+
+
+def _constants(typedef: Mapping[str, Any]) -> Iterator[str]:
+    # rosapi tells their values as texts, and beside them attributes of the class that are no constants.
+    pairs = zip(typedef.get("constnames") or (), typedef.get("constvalues") or (), strict=False)
+    for name, value in pairs:
+        if _CONSTANT.fullmatch(name) and name != "SLOT_TYPES" and _INTEGER.fullmatch(str(value)):
+            yield f"int64 {name}={value}"

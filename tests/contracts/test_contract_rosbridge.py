@@ -1,0 +1,436 @@
+"""What is particular to the rosbridge backend: the link comes and goes, and the server says little."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from bridges import BehindBridge, BridgeServer
+from presence import need
+
+from jacaros.clock import WallClock, run
+from jacaros.ros.errors import (
+    CallFailed,
+    CallTimedOut,
+    CapabilityMissing,
+    ParameterUnknown,
+    ServerLost,
+    UnknownInterface,
+)
+from jacaros.ros.open import open_backend
+
+pytestmark = pytest.mark.rosbridge
+
+STRING = "std_msgs/msg/String"
+FLAVOURS = ("ros1", "ros2")
+
+
+@pytest.fixture(params=FLAVOURS)
+def bridged(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
+    """A bridge of this test's own; the peer ``robot`` is a node behind it, the others are clients."""
+    need("rosbridge", request.config)
+    made = BehindBridge(f"rosbridge-{request.param}", BridgeServer(request.param), native=("robot",))
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def robot_of_ros2(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
+    """The same for ROS 2 alone."""
+    need("rosbridge", request.config)
+    made = BehindBridge("rosbridge-ros2", BridgeServer("ros2"), native=("robot",))
+    yield made
+    made.close()
+
+
+def talking(bridged: BehindBridge, *names: str) -> list[Any]:
+    """Peers that publish on /to_NAME what the other receives there: `robot` and a client."""
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    for sender, receiver, topic in ((robot, client, "/to_client"), (client, robot, "/to_robot")):
+        sender.advertise(topic, STRING)
+        receiver.subscribe(topic, STRING)
+        bridged.wait_until(lambda s=sender, t=topic: s.subscription_count(t) == 1, f"{topic} is joined")
+    return [robot, client]
+
+
+def heard(peer: Any, topic: str, text: str) -> Callable[[], bool]:
+    """Whether a text has arrived."""
+    return lambda: {"data": text} in peer.received(topic)
+
+
+def test_the_server_tells_which_ros_it_is(bridged: BehindBridge) -> None:
+    client = bridged.peer("client")
+    assert client.ros_version() == int(bridged.kind[-1])
+
+
+def test_a_restarted_server_is_found_again_and_learns_everything_anew(bridged: BehindBridge) -> None:
+    robot, client = talking(bridged)
+    client.serve("/sum")
+    client.advertise("/map", STRING, durability="transient_local", depth=1)
+    client.publish("/map", {"data": "the map"})
+    bridged.server.do("stop")
+    bridged.wait_until(lambda: client.connected() is False, "the loss is noticed")
+    assert any("rosbridge server at ws://127.0.0.1" in line for line in client.log())
+    client.publish("/to_robot", {"data": "lost"})
+    assert any("messages for /to_robot are lost" in line for line in client.log())
+    bridged.server.do("start")
+    bridged.wait_until(client.connected, "the connection is there again")
+    assert client.connection() == [True, False, True]
+    bridged.wait_until(lambda: client.publisher_count("/to_client") == 1, "the topic is subscribed again")
+    robot.publish("/to_client", {"data": "again"})
+    bridged.wait_until(heard(client, "/to_client", "again"), "messages come again")
+    client.publish("/to_robot", {"data": "here again"})
+    bridged.wait_until(heard(robot, "/to_robot", "here again"), "messages go again")
+    assert {"data": "lost"} not in robot.received("/to_robot")
+    assert robot.call("/sum", {"a": 1, "b": 2}, timeout=20) == {"sum": 3}
+    robot.subscribe("/map", STRING, durability="transient_local", depth=1)
+    bridged.wait_until(heard(robot, "/map", "the map"), "the latched message is there again")
+
+
+def test_a_server_that_starts_later_is_awaited(request: pytest.FixtureRequest) -> None:
+    need("rosbridge", request.config)
+    first = BridgeServer("ros2")
+    first.kill()
+    graph = BehindBridge("rosbridge-ros2", first)
+    try:
+        client = graph.peer("client")
+        assert client.connected() is False
+        client.subscribe("/a", STRING)
+        client.advertise("/a", STRING)
+        graph.wait_until(
+            lambda: any("rosbridge_websocket_launch.xml" in line for line in client.log()), "the cure is told"
+        )
+        graph.server = BridgeServer("ros2", port=first.port)
+        graph.wait_until(client.connected, "the server is found")
+        graph.wait_until(lambda: client.subscription_count("/a") == 1, "the topic is joined")
+        client.publish("/a", {"data": "x"})
+        graph.wait_until(heard(client, "/a", "x"), "the message arrives")
+        assert any(line.startswith("found the rosbridge server") for line in client.log())
+    finally:
+        graph.close()
+
+
+def test_a_frozen_network_is_noticed_and_survived(bridged: BehindBridge) -> None:
+    robot, client = talking(bridged)
+    bridged.server.do("freeze")
+    bridged.wait_until(lambda: client.connected() is False, "pings without an answer end the connection")
+    bridged.server.do("thaw")
+    bridged.wait_until(client.connected, "the connection is there again")
+    bridged.wait_until(lambda: client.publisher_count("/to_client") == 1, "the topic is subscribed again")
+    robot.publish("/to_client", {"data": "again"})
+    bridged.wait_until(heard(client, "/to_client", "again"), "messages come again")
+
+
+def test_a_failing_service_is_told_by_ros1_alone(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.serve("/fail", "fail")
+    bridged.wait_until(lambda: client.ready("/fail"), "the service is there")
+    expected = CallFailed if bridged.kind == "rosbridge-ros1" else CallTimedOut
+    with pytest.raises(expected, match="no sums today" if expected is CallFailed else "did not answer"):
+        client.call("/fail", {"a": 1, "b": 2}, timeout=1)
+
+
+def test_a_lost_link_fails_the_calls_under_way(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.serve("/never", "never")
+    bridged.wait_until(lambda: client.ready("/never"), "the service is there")
+    client.begin_call("c", "/never", {"a": 1, "b": 2})
+    assert client.connected(), "by now the call is on its way"
+    bridged.server.do("stop")
+    with pytest.raises(CallFailed, match="the connection to the rosbridge server was lost during the call"):
+        client.end_call("c")
+
+
+def test_a_lost_link_loses_the_goals_under_way(bridged: BehindBridge) -> None:
+    server, client = bridged.peer("server"), bridged.peer("client")
+    server.serve_action("/count")
+    client.send_goal("g", "/count", {"target": 1000, "period": 0.05}, timeout=20)
+    bridged.wait_until(lambda: client.feedback("g"), "the goal is under way")
+    client.begin_outcome("g")
+    bridged.server.do("stop")
+    with pytest.raises(ServerLost, match="whether it goes on is not known"):
+        client.end_outcome("g")
+    # On the other side the clients are told that the goal is aborted, so what it does is stopped.
+    bridged.wait_until(lambda: ["end", 1000, False] in server.deeds("/count"), "the code is stopped")
+    bridged.server.do("start")
+    bridged.wait_until(lambda: client.connected() and server.connected(), "both are there again")
+    client.send_goal("h", "/count", {"target": 2, "period": 0.01}, timeout=20)
+    assert client.outcome("h", timeout=20)["status"] == "succeeded"
+
+
+def test_a_dead_action_server_behind_the_bridge_is_noticed(robot_of_ros2: BehindBridge) -> None:
+    graph = robot_of_ros2
+    robot, client = graph.peer("robot"), graph.peer("client")
+    robot.serve_action("/count")
+    client.send_goal("g", "/count", {"target": 1000, "period": 0.05}, timeout=20)
+    client.begin_outcome("g")
+    graph.kill(robot)
+    with pytest.raises(ServerLost):
+        client.end_outcome("g")
+
+
+def test_a_big_message_goes_both_ways(bridged: BehindBridge) -> None:
+    left, right = bridged.peer("left"), bridged.peer("right")
+    left.advertise("/image", "sensor_msgs/msg/Image")
+    right.subscribe("/image", "sensor_msgs/msg/Image")
+    bridged.wait_until(lambda: left.subscription_count("/image") == 1, "the topic is joined")
+    data = [number % 256 for number in range(640 * 480 * 3)]
+    left.publish("/image", {"width": 640, "height": 480, "step": 1920, "data": data})
+    bridged.wait_until(lambda: right.received("/image"), "the image arrives")
+    assert right.received("/image")[0]["data"] == data
+
+
+def test_numbers_that_json_cannot_write_arrive_as_nan(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.advertise("/scan", "sensor_msgs/msg/LaserScan")
+    client.subscribe("/scan", "sensor_msgs/msg/LaserScan")
+    bridged.wait_until(lambda: robot.subscription_count("/scan") == 1, "the topic is joined")
+    robot.publish("/scan", {"ranges": [1.5, float("inf"), float("nan")], "range_max": float("inf")})
+    bridged.wait_until(lambda: client.received("/scan"), "the scan arrives")
+    [scan] = client.received("/scan")
+    assert scan["ranges"][0] == 1.5
+    assert [value != value for value in scan["ranges"]] == [False, True, True]
+    assert scan["range_max"] != scan["range_max"]
+
+
+def test_a_topic_of_another_type_is_told(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.advertise("/a", "geometry_msgs/msg/Twist")
+    client.subscribe("/a", STRING)
+    bridged.wait_until(
+        lambda: f"topic /a carries geometry_msgs/msg/Twist, not {STRING}" in client.log(),
+        "the server's refusal is passed on",
+    )
+
+
+def test_a_refused_message_is_told_once(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.subscribe("/a", "geometry_msgs/msg/Twist")
+    client.advertise("/a", STRING)
+    for _ in range(3):
+        client.publish("/a", {"data": "x"})
+    bridged.wait_until(lambda: any("Cannot infer topic type" in line for line in client.log()), "it is told")
+    client.serve("/sum")
+    bridged.wait_until(lambda: client.ready("/sum"), "the bridge has done all of that")
+    assert sum("Cannot infer topic type" in line for line in client.log()) == 1
+
+
+def test_what_cannot_be_is_told_clearly(robot_of_ros2: BehindBridge) -> None:
+    client = robot_of_ros2.peer("client")
+    with pytest.raises(CapabilityMissing, match="over rosbridge we are no node of the graph"):
+        client.get_parameter("a")
+    with pytest.raises(CapabilityMissing, match="cannot be declared"):
+        client.declare("a", 1, node="/robot")
+    with pytest.raises(CapabilityMissing, match="deadlines"):
+        client.subscribe("/a", STRING, deadline=1.0)
+    with pytest.raises(UnknownInterface, match="the rosbridge server does not know it either"):
+        client.subscribe("/a", "nowhere_msgs/msg/Nothing")
+
+
+def test_parameters_of_a_ros1_master(request: pytest.FixtureRequest) -> None:
+    need("rosbridge", request.config)
+    graph = BehindBridge("rosbridge-ros1", BridgeServer("ros1"))
+    try:
+        client = graph.peer("client")
+        client.set_parameter("speed", 0.5)
+        client.set_parameter("names", ["a", "b"], "/other")
+        assert client.get_parameter("speed") == 0.5
+        assert client.parameter_names() == ["speed"]
+        assert client.get_parameter("names", "/other") == ["a", "b"]
+        with pytest.raises(ParameterUnknown):
+            client.get_parameter("weight")
+    finally:
+        graph.close()
+
+
+def test_a_topic_of_1_khz_does_not_starve_the_loop(robot_of_ros2: BehindBridge) -> None:
+    robot, client = robot_of_ros2.peer("robot"), robot_of_ros2.peer("client")
+    robot.advertise("/fast", "nav_msgs/msg/Odometry", depth=1)
+    client.subscribe("/fast", "nav_msgs/msg/Odometry", depth=1)
+    robot_of_ros2.wait_until(lambda: robot.subscription_count("/fast") == 1, "the topic is joined")
+    robot.keep_publishing("/fast", {"child_frame_id": "base"}, 0.001)
+    robot_of_ros2.wait_until(lambda: len(client.received("/fast")) > 200, "messages come")
+    # A call needs the loop, and the link, while messages rush in.
+    robot.serve("/sum")
+    for number in range(20):
+        assert client.call("/sum", {"a": number, "b": 1}, timeout=20) == {"sum": number + 1}
+
+
+def test_types_that_nobody_here_knows_come_from_the_server(
+    request: pytest.FixtureRequest, tmp_path: Any
+) -> None:
+    need("rosbridge", request.config)
+    package = tmp_path / "odd_msgs"
+    for kind in ("msg", "srv"):
+        (package / kind).mkdir(parents=True)
+    (package / "msg" / "Part.msg").write_text("float32[3] sizes\nstring name\n")
+    (package / "msg" / "Thing.msg").write_text(
+        "int8 BIG=3\nstd_msgs/Header header\nPart[] parts\nbool ok\nbyte level\n"
+    )
+    (package / "srv" / "Find.srv").write_text("string name\n---\nThing thing\nbool found\n")
+    graph = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--interfaces", str(tmp_path)))
+    try:
+        client = graph.peer("client")
+        fields = client.fields("odd_msgs/msg/Thing")
+        assert fields == {
+            "header": "std_msgs/msg/Header",
+            "parts": "odd_msgs/msg/Part[]",
+            "ok": "bool",
+            "level": "byte",
+        }
+        client.advertise("/thing", "odd_msgs/msg/Thing")
+        client.subscribe("/thing", "odd_msgs/msg/Thing")
+        graph.wait_until(lambda: client.subscription_count("/thing") == 1, "the topic is joined")
+        client.publish("/thing", {"parts": [{"sizes": [1, 2, 3], "name": "n"}], "level": 2})
+        graph.wait_until(lambda: client.received("/thing"), "the message arrives")
+        [thing] = client.received("/thing")
+        assert thing["parts"] == [{"sizes": [1.0, 2.0, 3.0], "name": "n"}]
+        assert client.message("odd_msgs/srv/Find_Request", name="x") == {"name": "x"}
+    finally:
+        graph.close()
+
+
+def test_a_robot_behind_a_lost_link_gets_zero_when_the_program_ends(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.subscribe("/cmd_vel", "geometry_msgs/msg/Twist", depth=1000)
+    client.advertise("/cmd_vel", "geometry_msgs/msg/Twist")
+    bridged.wait_until(lambda: client.subscription_count("/cmd_vel") == 1, "the topic is joined")
+    client.hook("/cmd_vel", {})
+    client.keep_publishing("/cmd_vel", {"linear": {"x": 0.5}})
+    bridged.wait_until(lambda: robot.received("/cmd_vel"), "the robot drives")
+    bridged.dispose(client)
+    bridged.wait_until(lambda: robot.received("/cmd_vel")[-1]["linear"]["x"] == 0.0, "the robot stops")
+    count = len(robot.received("/cmd_vel"))
+    bridged.pass_time(0.2)
+    assert len(robot.received("/cmd_vel")) == count
+
+
+def test_two_nodes_one_after_the_other_in_one_process(robot_of_ros2: BehindBridge) -> None:
+    """Twisted's reactor could not do that."""
+
+    async def meet(name: str) -> int:
+        backend = open_backend("rosbridge", clock, name, url=robot_of_ros2.server.url)
+        await backend.start()
+        sum_ = (
+            await backend.client("/sum", "example_interfaces/srv/AddTwoInts").call({"a": 1, "b": 2}, 20)
+        ).sum
+        await backend.close()
+        return int(sum_)
+
+    robot_of_ros2.peer("robot").serve("/sum")
+    for name in ("first", "second"):
+        clock = WallClock()
+        results: list[int] = []
+
+        async def main(name: str = name, results: list[int] = results) -> None:
+            results.append(await meet(name))
+
+        run(main, clock)
+        assert results == [3]
+
+
+@pytest.fixture
+def roslibpy_client(bridged: BehindBridge) -> Iterator[Any]:
+    """The genuine client library as the other side."""
+    import roslibpy
+
+    client = roslibpy.Ros(bridged.server.url, transport="asyncio")
+    client.run(20)
+    yield client
+    client.close()
+
+
+def test_roslibpy_understands_us_and_we_understand_it(bridged: BehindBridge, roslibpy_client: Any) -> None:
+    import roslibpy
+
+    peer = bridged.peer("client")
+    peer.subscribe("/there", STRING)
+    peer.advertise("/back", STRING)
+    got: list[str] = []
+    kind = "std_msgs/String" if bridged.kind == "rosbridge-ros1" else STRING
+    back, there = (
+        roslibpy.Topic(roslibpy_client, "/back", kind),
+        roslibpy.Topic(roslibpy_client, "/there", kind),
+    )
+    back.subscribe(lambda message: got.append(message["data"]))
+    there.advertise()
+    bridged.wait_until(lambda: peer.subscription_count("/back") == 1, "roslibpy subscribes")
+    bridged.wait_until(lambda: peer.publisher_count("/there") == 1, "roslibpy advertises")
+    there.publish(roslibpy.Message({"data": "hello"}))
+    bridged.wait_until(heard(peer, "/there", "hello"), "its message arrives")
+    peer.publish("/back", {"data": "welcome"})
+    bridged.wait_until(lambda: got == ["welcome"], "ours arrives")
+
+
+def test_goals_between_us_and_roslibpys_actionlib(request: pytest.FixtureRequest) -> None:
+    need("rosbridge", request.config)
+    import roslibpy
+    from roslibpy.ros1 import actionlib
+
+    graph = BehindBridge("rosbridge-ros1", BridgeServer("ros1"))
+    other = roslibpy.Ros(graph.server.url, transport="asyncio")
+    other.run(20)
+    try:
+        peer = graph.peer("client")
+        peer.serve_action("/ours")
+        graph.wait_until(lambda: peer.action_ready("/ours"), "our server is there")
+        client = actionlib.ActionClient(other, "/ours", "jacaros_interfaces/CountAction")
+        goal = actionlib.Goal(client, roslibpy.Message({"target": 3, "period": 0.01}))
+        seen: list[int] = []
+        goal.on("feedback", lambda feedback: seen.append(feedback["current"]))
+        goal.send()
+        assert goal.wait(20)["last"] == 3
+        assert seen == [1, 2, 3]
+
+        def execute(goal: Any) -> None:
+            for number in range(goal["target"]):
+                server.send_feedback({"current": number})
+                time.sleep(0.01)
+            server.set_succeeded({"last": goal["target"], "message": "theirs"})
+
+        server = actionlib.SimpleActionServer(other, "/theirs", "jacaros_interfaces/CountAction")
+        server.start(execute)
+        peer.send_goal("g", "/theirs", {"target": 4, "period": 0.0}, timeout=20)
+        assert peer.outcome("g", timeout=20) == {
+            "status": "succeeded",
+            "result": {"last": 4, "message": "theirs"},
+            "text": "theirs",
+        }
+        assert peer.feedback("g") == [0, 1, 2, 3]
+    finally:
+        other.close()
+        graph.close()
+
+
+def test_a_server_without_rosapi_is_told_and_taken_for_ros2(robot_of_ros2: BehindBridge) -> None:
+    robot_of_ros2.server.do("rosapi", False)
+    client = robot_of_ros2.peer("client", start=False)
+    client.start()
+    assert client.ros_version() == 2
+    assert any("has no rosapi beside it" in line for line in client.log())
+    client.advertise("/a", STRING)
+    client.subscribe("/a", STRING)
+    robot_of_ros2.wait_until(lambda: _arrives(client), "topics work all the same")
+
+
+def _arrives(client: Any) -> bool:
+    client.publish("/a", {"data": "x"})
+    return bool(client.received("/a"))
+
+
+def test_no_thread_of_ours_is_left_behind_and_no_signal_handler_taken(robot_of_ros2: BehindBridge) -> None:
+    import signal
+
+    handlers = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+
+    async def main() -> None:
+        backend = open_backend("rosbridge", clock, "node", url=robot_of_ros2.server.url)
+        await backend.start()
+        await backend.close()
+
+    clock = WallClock()
+    run(main, clock)
+    assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)] == handlers
+    names = {thread.name for thread in threading.enumerate() if thread.name.startswith("roslibpy")}
+    assert names <= {"roslibpy-asyncio"}, "roslibpy keeps one thread, a daemon, for the next connection"

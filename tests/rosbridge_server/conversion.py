@@ -1,0 +1,124 @@
+"""JSON values and messages, by the rules of rosbridge_library's ``message_conversion``, error texts included.
+
+Written apart from the client's translation: what one of them gets wrong the other does not understand.
+"""
+
+import base64
+import math
+from typing import Any
+
+from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
+from jacaros.ros.node import Node
+
+TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+OCTETS = ("uint8", "char")
+
+
+class Mismatch(Exception):
+    """The values do not fit the type."""
+
+
+def short(type_name: str) -> str:
+    """``std_msgs/String`` for ``std_msgs/msg/String``."""
+    return f"{type_name.split('/')[0]}/{type_name.split('/')[-1]}"
+
+
+def to_json(node: Node, type_name: str, message: Any, ros1: bool) -> Any:
+    """Give the JSON values of a message."""
+    if type_name in TIMES:
+        if ros1:
+            return {"secs": message.sec, "nsecs": message.nanosec}
+        return {"sec": message.sec, "nanosec": message.nanosec}
+    values = {
+        name: _field_to_json(node, field, getattr(message, name), ros1)
+        for name, field in node.factory.fields(type_name).items()
+    }
+    if ros1 and type_name == "std_msgs/msg/Header":
+        values["seq"] = 0
+    return values
+
+
+def _field_to_json(node: Node, field: FieldType, value: Any, ros1: bool) -> Any:
+    if not field.array:
+        return _single_to_json(node, field, value, ros1)
+    if field.base in OCTETS:
+        return base64.b64encode(bytes(bytearray(int(each) & 255 for each in value))).decode()
+    return [_single_to_json(node, field, each, ros1) for each in value]
+
+
+def _single_to_json(node: Node, field: FieldType, value: Any, ros1: bool) -> Any:
+    if field.is_message:
+        return to_json(node, field.base, value, ros1)
+    if field.base in FLOATS:
+        return float(value) if math.isfinite(value) else None
+    if field.base == "string":
+        return str(value)
+    return bool(value) if field.base == "bool" else int(value)
+
+
+def from_json(node: Node, type_name: str, values: Any, ros1: bool) -> Any:
+    """Make a message.
+
+    Raises:
+        Mismatch: with the words of rosbridge.
+    """
+    return _message(node, type_name, values, ros1, short(type_name), ())
+
+
+def _message(node: Node, type_name: str, values: Any, ros1: bool, root: str, path: tuple[str, ...]) -> Any:
+    if not isinstance(values, dict):
+        if not path:
+            raise Mismatch(f"Expected a JSON object for type {root} but received a {type(values)}")
+        raise _wrong(root, path, short(type_name), values)
+    if type_name in TIMES:
+        seconds, rest = ("secs", "nsecs") if ros1 else ("sec", "nanosec")
+        # ROS 2's side reads the names of ROS 1 too; the other way round it does not work.
+        if not ros1:
+            seconds, rest = (
+                ("sec" if "sec" in values else "secs"),
+                ("nanosec" if "nanosec" in values else "nsecs"),
+            )
+        return node.factory.make(type_name, {"sec": values.get(seconds, 0), "nanosec": values.get(rest, 0)})
+    message = node.factory.schema.new(type_name)
+    fields = node.factory.fields(type_name)
+    for name, value in values.items():
+        where = (*path, name)
+        if name not in fields:
+            if ros1 and name == "seq":
+                continue
+            raise Mismatch(f"Message type {root} does not have a field {'.'.join(where)}")
+        setattr(message, name, _field(node, fields[name], value, ros1, root, where))
+    return message
+
+
+def _field(node: Node, field: FieldType, value: Any, ros1: bool, root: str, path: tuple[str, ...]) -> Any:
+    if not field.array:
+        return _single(node, field, value, ros1, root, path)
+    if field.base in OCTETS and isinstance(value, str):
+        value = list(base64.b64decode(value))
+    if not isinstance(value, list):
+        raise _wrong(root, path, str(field), value)
+    elements = [_single(node, field, each, ros1, root, path) for each in value]
+    if not field.is_numeric:
+        return elements
+    import numpy
+
+    return numpy.array(elements, dtype={"byte": "uint8", "char": "uint8"}.get(field.base, field.base))
+
+
+def _single(node: Node, field: FieldType, value: Any, ros1: bool, root: str, path: tuple[str, ...]) -> Any:
+    if field.is_message:
+        return _message(node, field.base, value, ros1, root, path)
+    if field.base in FLOATS:
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            return float(value)
+    elif field.base in INTEGER_RANGES:
+        if isinstance(value, int) and not isinstance(value, bool):
+            return value
+    elif isinstance(value, bool if field.base == "bool" else str):
+        return value
+    raise _wrong(root, path, field.base, value)
+
+
+def _wrong(root: str, path: tuple[str, ...], wanted: str, value: Any) -> Mismatch:
+    return Mismatch(f"{root} message requires a {wanted} for field {'.'.join(path)}, but got a {type(value)}")

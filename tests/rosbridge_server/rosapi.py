@@ -1,0 +1,236 @@
+"""The services of rosapi, the node beside a rosbridge server, for a graph inside the process."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from conversion import short
+
+from jacaros.ros.errors import CallFailed, JacarosError, ParameterError
+from jacaros.ros.fields import FieldType
+from jacaros.ros.interfaces import BUILT_IN, split_action
+from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
+from jacaros.ros.node import Node
+
+ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
+NEEDED = 0.5
+"""Seconds for asking a node of the graph for its parameters."""
+
+
+class RosApi:
+    """Answers about the graph of *node*.
+
+    Args:
+        node: looks.
+        ros1: answer as rosapi of ROS 1 does.
+
+    Attributes:
+        master: the parameters of ROS 1, by absolute name.
+        running: whether there is such a node.
+    """
+
+    def __init__(self, node: Node, ros1: bool) -> None:
+        self._node = node
+        self._ros1 = ros1
+        self.master: dict[str, Any] = {}
+        self.running = True
+        self._services: dict[str, Callable[..., Any]] = {
+            name: getattr(self, "_services_list" if name == "services" else f"_{name}")
+            for name in (
+                *("topics", "services", "nodes", "publishers", "subscribers", "topic_type", "service_type"),
+                *("action_servers", "message_details", "service_request_details", "service_response_details"),
+                *("get_param", "set_param", "has_param", "get_param_names"),
+            )
+        }
+        if not ros1:
+            self._services["get_ros_version"] = lambda: {"version": 2, "distro": "jazzy"}
+            for name in (
+                "action_type",
+                "action_goal_details",
+                "action_result_details",
+                "action_feedback_details",
+            ):
+                self._services[name] = getattr(self, f"_{name}")
+
+    @property
+    def names(self) -> list[str]:
+        """Absolute names of the services."""
+        return [f"/rosapi/{name}" for name in self._services]
+
+    async def call(self, service: str, arguments: dict[str, Any]) -> dict[str, Any]:
+        """Answer one call; raises `CallFailed` with what rosbridge would say."""
+        answer = self._services.get(service.removeprefix("/rosapi/"))
+        if answer is None or not self.running:
+            raise CallFailed(f"Service {service} does not exist")
+        try:
+            result = answer(**arguments)
+            return await result if hasattr(result, "__await__") else result
+        except (JacarosError, TypeError, KeyError) as problem:
+            raise CallFailed(str(problem)) from None
+
+    async def _contents(self) -> Any:
+        return await self._node.contents()
+
+    async def _topics(self) -> dict[str, Any]:
+        topics = (await self._contents()).topics
+        found = {name: self._written(info.types[0]) for name, info in topics.items()}
+        found["/rosout"] = "rosgraph_msgs/Log" if self._ros1 else "rcl_interfaces/msg/Log"
+        return {"topics": list(found), "types": list(found.values())}
+
+    async def _services_list(self) -> dict[str, Any]:
+        return {"services": [*(await self._contents()).services, *self.names]}
+
+    async def _nodes(self) -> dict[str, Any]:
+        return {"nodes": [*(await self._contents()).nodes, "/rosapi"]}
+
+    async def _publishers(self, topic: str) -> dict[str, Any]:
+        contents = await self._contents()
+        action = topic.removesuffix("/_action/status")
+        if action != topic:
+            return {"publishers": ["/server"] if action in contents.actions else []}
+        info = contents.topics.get(topic)
+        return {"publishers": sorted({each.node for each in info.publishers}) if info else []}
+
+    async def _subscribers(self, topic: str) -> dict[str, Any]:
+        info = (await self._contents()).topics.get(topic)
+        return {"subscribers": sorted({each.node for each in info.subscriptions}) if info else []}
+
+    async def _topic_type(self, topic: str) -> dict[str, Any]:
+        info = (await self._contents()).topics.get(topic)
+        return {"type": self._written(info.types[0]) if info else ""}
+
+    async def _service_type(self, service: str) -> dict[str, Any]:
+        return {"type": self._written((await self._contents()).services.get(service, ""))}
+
+    async def _action_servers(self) -> dict[str, Any]:
+        contents = await self._contents()
+        names = set(contents.actions)
+        for name in contents.topics:
+            stem = name.removesuffix("/status")
+            if all(f"{stem}/{part}" in contents.topics for part in ACTIONLIB):
+                names.add(stem)
+        return {"action_servers": sorted(names)}
+
+    async def _action_type(self, action: str) -> dict[str, Any]:
+        return {"type": (await self._contents()).actions.get(action, "")}
+
+    def _message_details(self, type: str) -> dict[str, Any]:
+        return self._details(_full(type, "msg"))
+
+    def _service_request_details(self, type: str) -> dict[str, Any]:
+        return self._details(request_type(_full(type, "srv")))
+
+    def _service_response_details(self, type: str) -> dict[str, Any]:
+        return self._details(response_type(_full(type, "srv")))
+
+    def _action_goal_details(self, type: str) -> dict[str, Any]:
+        return self._details(goal_type(_full(type, "action")))
+
+    def _action_result_details(self, type: str) -> dict[str, Any]:
+        return self._details(result_type(_full(type, "action")))
+
+    def _action_feedback_details(self, type: str) -> dict[str, Any]:
+        return self._details(feedback_type(_full(type, "action")))
+
+    def _details(self, type_name: str) -> dict[str, Any]:
+        """A type and all that it is made of."""
+        seen: dict[str, dict[str, Any]] = {}
+        waiting = [type_name]
+        while waiting:
+            each = waiting.pop(0)
+            if each not in seen:
+                fields = self._node.factory.fields(each)
+                seen[each] = self._typedef(each, fields)
+                waiting += [field.base for field in fields.values() if field.is_message]
+        return {"typedefs": list(seen.values())}
+
+    def _typedef(self, type_name: str, fields: Any) -> dict[str, Any]:
+        kind = type(self._node.factory.schema.new(type_name))
+        constants = [name for name in vars(kind) if name.isupper()]
+        return {
+            "type": short(type_name),
+            "fieldnames": list(fields),
+            "fieldtypes": [self._base(field) for field in fields.values()],
+            "fieldarraylen": [
+                (field.length if field.fixed else 0) if field.array else -1 for field in fields.values()
+            ],
+            "examples": ["" for _ in fields],
+            "constnames": [*constants, "SLOT_TYPES"],
+            "constvalues": [*(str(getattr(kind, name)) for name in constants), "(...)"],
+        }
+
+    def _base(self, field: FieldType) -> str:
+        if self._ros1:
+            times = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
+            return times.get(field.base, short(field.base) if field.is_message else field.base)
+        names = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet"}
+        return names.get(field.base, short(field.base) if field.is_message else field.base)
+
+    async def _get_param(self, name: str, default_value: str = "") -> dict[str, Any]:
+        if self._ros1:
+            return {"value": json.dumps(self.master[name]) if name in self.master else default_value}
+        node, _, parameter = name.partition(":")
+        try:
+            return {"value": json.dumps(await self._node.parameters(node).get(parameter, NEEDED))}
+        except (ParameterError, CallFailed):
+            return {"value": default_value}
+
+    async def _set_param(self, name: str, value: str) -> dict[str, Any]:
+        if self._ros1:
+            self.master[name] = json.loads(value)
+            return {}
+        node, _, parameter = name.partition(":")
+        try:
+            await self._node.parameters(node).set(parameter, json.loads(value), NEEDED)
+        except ParameterError as problem:
+            return {"successful": False, "reason": str(problem)}
+        return {"successful": True, "reason": ""}
+
+    async def _has_param(self, name: str) -> dict[str, Any]:
+        return {"exists": (await self._get_param(name, ""))["value"] != ""}
+
+    async def _get_param_names(self) -> dict[str, Any]:
+        if self._ros1:
+            return {"names": sorted(self.master)}
+        names = []
+        for node in (await self._contents()).nodes:
+            names += [f"{node}:{name}" for name in await self._node.parameters(node).names(NEEDED)]
+        return {"names": names}
+
+    def _written(self, type_name: str) -> str:
+        return short(type_name) if self._ros1 and type_name else type_name
+
+
+def _full(name: str, kind: str) -> str:
+    parts = name.split("/")
+    return name if len(parts) == 3 else f"{parts[0]}/{kind}/{parts[1]}"
+
+
+def write_ros1_types(folder: Path) -> None:
+    """Write what ROS 1 has beyond ROS 2: the messages of actionlib's topics for our actions, and the log's."""
+    for path in BUILT_IN.glob("*/action/*.action"):
+        package, name = path.parts[-3], path.stem
+        parts = dict(zip(("Goal", "Result", "Feedback"), split_action(path.read_text()), strict=True))
+        header = "std_msgs/Header header\n"
+        status = f"{header}actionlib_msgs/GoalStatus status\n"
+        texts = {
+            **{f"{name}{part}": text for part, text in parts.items()},
+            f"{name}ActionGoal": f"{header}actionlib_msgs/GoalID goal_id\n{package}/{name}Goal goal\n",
+            f"{name}ActionResult": f"{status}{package}/{name}Result result\n",
+            f"{name}ActionFeedback": f"{status}{package}/{name}Feedback feedback\n",
+        }
+        for message, text in texts.items():
+            _write(folder, f"{package}/{message}", text)
+    _write(
+        folder,
+        "rosgraph_msgs/Log",
+        "byte INFO=2\nstd_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
+        "string function\nuint32 line\nstring[] topics\n",
+    )
+
+
+def _write(folder: Path, name: str, text: str) -> None:
+    package, message = name.split("/")
+    (folder / package / "msg").mkdir(parents=True, exist_ok=True)
+    (folder / package / "msg" / f"{message}.msg").write_text(text)

@@ -1,0 +1,201 @@
+"""A rosbridge server for tests, in front of a ROS graph inside its process.
+
+    python server.py [--port 0] [--flavour ros1|ros2] [--nagle] [--interfaces FOLDER]
+
+It behaves like rosbridge_suite: version 0.11 for ROS 1, version 2 for ROS 2, each with rosapi beside it.  What it
+says is the line ``@{"port": N}``.  Then it takes commands as JSON lines on standard input, like the peers of the
+contract tests: nodes of its own graph, made by ``node``, do what ``peer`` is told, and the bridge itself can be
+stopped, started and frozen while the graph lives on, as on a robot.
+"""
+
+import argparse
+import asyncio
+import json
+import socket
+import sys
+import tempfile
+import threading
+from collections.abc import Coroutine
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "contracts"))
+
+from autobahn.asyncio.websocket import WebSocketServerFactory, WebSocketServerProtocol
+from connection import Connection
+from goals import SentGoals
+from peer import Peer
+from rosapi import RosApi, write_ros1_types
+
+from jacaros.clock import WallClock, run
+from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
+from jacaros.ros.handoff import post
+from jacaros.ros.node import NodeSettings
+
+
+class Socket(WebSocketServerProtocol):  # type: ignore[misc]
+    """The WebSocket of one client."""
+
+    connection: Connection | None = None
+
+    def onOpen(self) -> None:  # noqa: N802
+        if self.factory.bridge.nagle:
+            wire = self.transport.get_extra_info("socket")
+            wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 0)
+        self.connection = Connection(self.factory.bridge, self._write)
+        self.factory.bridge.connections[self.connection] = self
+
+    def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
+        if self.connection is not None:
+            self.connection.receive(payload)
+
+    def onClose(self, wasClean: bool, code: int, reason: str) -> None:  # noqa: N802, N803
+        if self.connection is not None:
+            self.factory.bridge.connections.pop(self.connection, None)
+            self.connection.close()
+
+    def _write(self, frame: bytes) -> None:
+        if not self.factory.bridge.frozen and self.state == self.STATE_OPEN:
+            self.sendMessage(frame)
+
+
+class Bridge:
+    """The server and its graph."""
+
+    def __init__(self, ros1: bool, nagle: bool, folders: tuple[Path, ...]) -> None:
+        self.ros1 = ros1
+        self.nagle = nagle
+        self.frozen = False
+        self.graph = MemoryGraph()
+        settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=folders)
+        self.node = MemoryBackend(settings, self.graph)
+        self.rosapi = RosApi(self.node, ros1)
+        self.goals = SentGoals(self)
+        self.connections: dict[Connection, Socket] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._server: asyncio.Server | None = None
+        self.port = 0
+
+    async def start(self, port: int) -> None:
+        """Listen."""
+        loop = asyncio.get_running_loop()
+        factory = WebSocketServerFactory(loop=loop)
+        factory.protocol, factory.bridge = Socket, self
+        self._server = await loop.create_server(factory, "127.0.0.1", port)
+        self.port = self._server.sockets[0].getsockname()[1]
+
+    def stop(self) -> None:
+        """Be gone at once, as after a crash."""
+        if self._server is not None:
+            self._server.close()
+        for connection, wire in list(self.connections.items()):
+            connection.close()
+            wire.transport.abort()
+        self.connections.clear()
+
+    def freeze(self, frozen: bool) -> None:
+        """Read and write nothing more, without closing anything, as behind a network that is gone."""
+        self.frozen = frozen
+        for wire in self.connections.values():
+            (wire.transport.pause_reading if frozen else wire.transport.resume_reading)()
+
+    def begin(self, work: Coroutine[Any, Any, None]) -> None:
+        """Do *work* beside the rest."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def topic_type(self, topic: str) -> str | None:
+        """The type of a topic that is there."""
+        return self.graph.topics().get(topic)
+
+    def is_latched(self, topic: str) -> bool:
+        """Whether all publishers keep their messages for late subscriptions."""
+        publishers = self.graph.topic(topic).publishers
+        return bool(publishers) and all(each.qos.durability == "transient_local" for each in publishers)
+
+
+async def obey(bridge: Bridge, command: dict[str, Any], peers: dict[str, Peer]) -> Any:
+    """Do one command."""
+    if command["peer"] in peers:
+        result = getattr(peers[command["peer"]], command["do"])(*command["args"], **command["kwargs"])
+        return await result if asyncio.iscoroutine(result) else result
+    match command["do"]:
+        case "stop":
+            bridge.stop()
+        case "start":
+            await bridge.start(bridge.port)
+        case "freeze":
+            bridge.freeze(True)
+        case "thaw":
+            bridge.freeze(False)
+        case "vanish":
+            bridge.graph.vanish(*command["args"])
+        case "rosapi":
+            bridge.rosapi.running = command["args"][0]
+        case "node":
+            made = Peer("memory", WallClock(), *command["args"], graph=bridge.graph, **command["kwargs"])
+            peers[command["peer"]] = made
+        case other:
+            raise ValueError(f"there is no command {other}")
+    return None
+
+
+def reply(answer: dict[str, Any]) -> None:
+    """Answer a command."""
+    print("@" + json.dumps(answer), flush=True)
+
+
+async def serve(port: int, ros1: bool, nagle: bool, folders: tuple[Path, ...]) -> None:
+    """Run until standard input ends."""
+    loop = asyncio.get_running_loop()
+    bridge, peers = Bridge(ros1, nagle, folders), dict[str, Peer]()
+    await bridge.node.start()
+    await bridge.start(port)
+    reply({"port": bridge.port})
+    commands: asyncio.Queue[dict[str, Any] | None] = asyncio.Queue()
+
+    def read() -> None:
+        for line in sys.stdin:
+            post(loop, commands.put_nowait, json.loads(line))
+        post(loop, commands.put_nowait, None)
+
+    async def do(command: dict[str, Any]) -> None:
+        try:
+            reply({"id": command["id"], "result": await obey(bridge, command, peers)})
+        except Exception as problem:
+            error = {
+                "error": type(problem).__name__,
+                "text": str(problem),
+                "reason": getattr(problem, "reason", None),
+            }
+            reply({"id": command["id"], **error})
+
+    threading.Thread(target=read, daemon=True).start()
+    while (command := await commands.get()) is not None:
+        bridge.begin(do(command))
+    for each in peers.values():
+        await each.close()
+    bridge.stop()
+    await bridge.node.close()
+
+
+def main() -> None:
+    """Read the options and serve."""
+    parser = argparse.ArgumentParser(description="A rosbridge server for tests.")
+    parser.add_argument("--port", type=int, default=0)
+    parser.add_argument("--flavour", choices=("ros1", "ros2"), default="ros2")
+    parser.add_argument("--nagle", action="store_true", help="collect small packets, as some servers do")
+    parser.add_argument(
+        "--interfaces", type=Path, action="append", default=[], help="a folder with definitions"
+    )
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        if options.flavour == "ros1":
+            write_ros1_types(Path(folder))
+        folders = (Path(folder), *options.interfaces)
+        run(lambda: serve(options.port, options.flavour == "ros1", options.nagle, folders), WallClock())
+
+
+if __name__ == "__main__":
+    main()
