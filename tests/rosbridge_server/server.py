@@ -1,6 +1,6 @@
 """A rosbridge server for tests, in front of a ROS graph inside its process.
 
-    python server.py [--port 0] [--flavour ros1|ros2] [--nagle] [--interfaces FOLDER]
+    python server.py [--port 0] [--flavour ros1|ros2] [--interfaces FOLDER]
 
 It behaves like rosbridge_suite: version 0.11 for ROS 1, version 2 for ROS 2, each with rosapi beside it.  What it
 says is the line ``@{"port": N}``.  Then it takes commands as JSON lines on standard input, like the peers of the
@@ -11,7 +11,6 @@ stopped, started and frozen while the graph lives on, as on a robot.
 import argparse
 import asyncio
 import json
-import socket
 import sys
 import tempfile
 import threading
@@ -39,9 +38,6 @@ class Socket(WebSocketServerProtocol):  # type: ignore[misc]
     connection: Connection | None = None
 
     def onOpen(self) -> None:  # noqa: N802
-        if self.factory.bridge.nagle:
-            wire = self.transport.get_extra_info("socket")
-            wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 0)
         self.connection = Connection(self.factory.bridge, self._write)
         self.factory.bridge.connections[self.connection] = self
 
@@ -62,9 +58,8 @@ class Socket(WebSocketServerProtocol):  # type: ignore[misc]
 class Bridge:
     """The server and its graph."""
 
-    def __init__(self, ros1: bool, nagle: bool, folders: tuple[Path, ...]) -> None:
+    def __init__(self, ros1: bool, folders: tuple[Path, ...]) -> None:
         self.ros1 = ros1
-        self.nagle = nagle
         self.frozen = False
         self.graph = MemoryGraph()
         settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=folders)
@@ -146,10 +141,10 @@ def reply(answer: dict[str, Any]) -> None:
     print("@" + json.dumps(answer), flush=True)
 
 
-async def serve(port: int, ros1: bool, nagle: bool, folders: tuple[Path, ...]) -> None:
+async def serve(port: int, ros1: bool, folders: tuple[Path, ...]) -> None:
     """Run until standard input ends."""
     loop = asyncio.get_running_loop()
-    bridge, peers = Bridge(ros1, nagle, folders), dict[str, Peer]()
+    bridge, peers = Bridge(ros1, folders), dict[str, Peer]()
     await bridge.node.start()
     await bridge.start(port)
     reply({"port": bridge.port})
@@ -185,7 +180,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="A rosbridge server for tests.")
     parser.add_argument("--port", type=int, default=0)
     parser.add_argument("--flavour", choices=("ros1", "ros2"), default="ros2")
-    parser.add_argument("--nagle", action="store_true", help="collect small packets, as some servers do")
     parser.add_argument(
         "--interfaces", type=Path, action="append", default=[], help="a folder with definitions"
     )
@@ -194,7 +188,7 @@ def main() -> None:
         if options.flavour == "ros1":
             write_ros1_types(Path(folder))
         folders = (Path(folder), *options.interfaces)
-        run(lambda: serve(options.port, options.flavour == "ros1", options.nagle, folders), WallClock())
+        run(lambda: serve(options.port, options.flavour == "ros1", folders), WallClock())
 
 
 if __name__ == "__main__":

@@ -11,10 +11,8 @@ A link is up while the server answers pings: a robot that drove out of reach clo
 import asyncio
 import json
 import logging
-import socket
 import threading
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any
 
 from roslibpy.comm.comm_asyncio import (  # type: ignore[import-untyped]
@@ -30,7 +28,6 @@ PING_EVERY, PING_PATIENCE = 1.0, 4.0
 """Seconds between pings, and for the answer."""
 BACKLOG = 4_000_000
 """Bytes that may wait for a slow network; what is published beyond is dropped, for it would arrive too late anyway."""
-_QUICKACK = getattr(socket, "TCP_QUICKACK", None)
 
 
 class _Protocol(AsyncioRosBridgeProtocol):  # type: ignore[misc]
@@ -38,24 +35,8 @@ class _Protocol(AsyncioRosBridgeProtocol):  # type: ignore[misc]
 
     factory: "_Factory"
 
-    def onOpen(self) -> None:  # noqa: N802 (autobahn's name)
-        self.acknowledge_at_once()
-        super().onOpen()
-
     def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
-        self.acknowledge_at_once()
         self.factory.link.received(payload)
-
-    def acknowledge_at_once(self) -> None:
-        """Keep the kernel from delaying acknowledgements, which it begins again after each packet.
-
-        A server that collects small packets (Nagle's algorithm) holds each message back until the one before is
-        acknowledged, which the kernel does 40 ms later, or with the next message of ours.
-        """
-        if _QUICKACK is not None:
-            wire = self.transport.get_extra_info("socket")
-            with suppress(OSError):
-                wire.setsockopt(socket.IPPROTO_TCP, _QUICKACK, 1)
 
     def backlog(self) -> int:
         """Bytes that wait for the network."""
