@@ -54,7 +54,7 @@ class _Look:
         return GraphContents(
             {info.name: info for info in infos},
             {name: _full(service_type, kind) for name, kind in zip(plain, kinds, strict=True)},
-            dict(found),
+            {name: kind for name, kind, served in found if served},
             tuple(sorted(_absolute(nodes["nodes"]))),
         )
 
@@ -76,12 +76,15 @@ class _Look:
             return []
         return list(answer.get("action_servers", ()))
 
-    async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str]:
+    async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str, bool]:
+        """Its name, its type, and whether somebody serves it."""
         goal = types.get(f"{name}/goal", "")
         if goal.endswith("ActionGoal"):  # ROS 1
-            return name, _full(action_type, goal.removesuffix("ActionGoal"))
+            # rosapi of ROS 1 goes by the names of topics, and a client alone makes all five too.
+            servers = await self._ask("publishers", topic=f"{name}/status")
+            return name, _full(action_type, goal.removesuffix("ActionGoal")), bool(servers["publishers"])
         kind = await self._type("action_type", "action", name)
-        return name, _full(action_type, kind)
+        return name, _full(action_type, kind), True
 
     async def _type(self, service: str, argument: str, name: str) -> str:
         try:
