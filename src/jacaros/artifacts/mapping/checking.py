@@ -15,7 +15,7 @@ from jacaros.artifacts.mapping.declared import (
 )
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.extracting import extractor
-from jacaros.artifacts.mapping.filling import filler
+from jacaros.artifacts.mapping.filling import filler, fitting
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WrongPath
 from jacaros.artifacts.mapping.taking import taker
@@ -98,7 +98,7 @@ def _check_operation(
     types = message_types(operation.kind, written.text)
     if not known(written, types[0], interfaces, problems):
         return
-    filler(operation.values, types[0], interfaces, problems)
+    filler(fitting(operation, types[0], interfaces), types[0], interfaces, problems)
     if operation.at_end is not None:
         filler(operation.at_end, types[0], interfaces, problems)
     if len(types) > 1:

@@ -235,6 +235,7 @@ class OperationPart:
         target: topic, service, action or parameter of a node.
         type_name: None: found at run time, or there is none.
         values: fields of the message, request or goal; the value of a parameter.
+        other_values: the same for other versions of the type, tried one after the other when ``values`` does not fit.
         outputs: fields of the response or result that go to output parameters.
         success: None: a field ``success`` if there is one.
         any_success: nothing is looked at.
@@ -251,6 +252,7 @@ class OperationPart:
     target: Written = NOTHING
     type_name: Written | None = None
     values: tuple[ValuePart, ...] = ()
+    other_values: tuple[tuple[ValuePart, ...], ...] = ()
     outputs: tuple[FieldPart, ...] = ()
     success: Success | None = None
     any_success: bool = False

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from jacaros.artifacts.mapping.declared import Conversion, Source, ValuePart
+from jacaros.artifacts.mapping.declared import Conversion, OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.handle import MessageHandle
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.paths import WrongPath, follow
@@ -75,6 +75,16 @@ def filler(
         return {name: _lists(value) for name, value in found.items()}
 
     return fill
+
+
+def fitting(part: OperationPart, type_name: str, interfaces: Interfaces) -> tuple[ValuePart, ...]:
+    """The fields of an operation that fit a version of the type; those that stand first when none do."""
+    for values in (part.values, *part.other_values) if part.other_values else ():
+        problems: list[Problem] = []
+        filler(values, type_name, interfaces, problems)
+        if not problems:
+            return values
+    return part.values
 
 
 def _put(into: dict[Any, Any], part: ValuePart, value: Any) -> None:

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from jacaros.artifacts.mapping.checking import check_answer, message_types
 from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
 from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
-from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler
+from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
@@ -73,7 +73,7 @@ class _Answered:
         host, part = self._host, self._part
         types = message_types(part.kind, type_name)
         problems: list[Problem] = []
-        fill = filler(part.values, types[0], host.ros, problems, host.adapted)
+        fill = filler(fitting(part, types[0], host.ros), types[0], host.ros, problems, host.adapted)
         check_answer(part, types[1], host.ros, problems)
         self._more(types, problems)
         if problems:

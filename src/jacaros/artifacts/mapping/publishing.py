@@ -6,7 +6,7 @@ from typing import Any
 
 from jacaros.artifacts.mapping.checking import TWISTS
 from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
-from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler
+from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.ros.acting import missing_number
@@ -40,8 +40,9 @@ class Publishing:
     def _open(self, type_name: str) -> None:
         host, part = self._host, self._part
         problems: list[Problem] = []
-        self._fill = filler(part.values, type_name, host.ros, problems, host.adapted)
-        if (end := self._end_values(type_name)) is not None:
+        values = fitting(part, type_name, host.ros)
+        self._fill = filler(values, type_name, host.ros, problems, host.adapted)
+        if (end := self._end_values(type_name, values)) is not None:
             self._fill_end = filler(end, type_name, host.ros, problems, host.adapted)
         if problems:
             host.tell(problems)
@@ -52,13 +53,13 @@ class Publishing:
             host.at_dispose(host.ros.add_exit_hook(self._halt))
             host.at_dispose(self._halt)
 
-    def _end_values(self, type_name: str) -> tuple[ValuePart, ...] | None:
+    def _end_values(self, type_name: str, values: tuple[ValuePart, ...]) -> tuple[ValuePart, ...] | None:
         """What the last message says: unless it is written, velocities end with zero."""
         if self._part.at_end is not None:
             return self._part.at_end
         if type_name not in TWISTS:
             return None
-        return tuple(each for each in self._part.values if ".header" in each.target.steps)
+        return tuple(each for each in values if ".header" in each.target.steps)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Publish, once or for a while."""

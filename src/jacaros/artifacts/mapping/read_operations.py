@@ -3,6 +3,7 @@
 import dataclasses
 import re
 from collections.abc import Callable
+from typing import Any
 
 from jacaros.artifacts.mapping.declared import (
     FieldPart,
@@ -77,6 +78,16 @@ def _parameters(node: Node) -> tuple[str, ...]:
     return tuple(names)
 
 
+def _filled(node: Node | None, parameters: tuple[str, ...]) -> dict[str, Any]:
+    """What fills a message: fields, or a list of them for several versions of its type."""
+    if node is None:
+        return {}
+    if not isinstance(node.value, list):
+        return {"values": read_values(node, parameters)}
+    first, *others = [read_values(each, parameters) for each in node.sequence()] or [()]
+    return {"values": first, "other_values": tuple(others)}
+
+
 def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
     rate, duration = entries.get("rate"), entries.get("duration")
     if rate is None and duration is not None:
@@ -91,7 +102,7 @@ def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         part,
         target=ros_name(entries["publish"]),
         type_name=_type(entries, "msg"),
-        values=read_values(entries["fields"], part.parameters) if "fields" in entries else (),
+        **_filled(entries.get("fields"), part.parameters),
         qos=read_qos(entries["qos"]) if "qos" in entries else None,
         rate=_seconds(rate) if rate is not None else None,
         duration=spell,
@@ -104,7 +115,7 @@ def _service(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         _answered(part, entries),
         target=ros_name(entries["service"]),
         type_name=_type(entries, "srv"),
-        values=read_values(entries["request"], part.parameters) if "request" in entries else (),
+        **_filled(entries.get("request"), part.parameters),
         timeout=_timeout(entries, CALL_TIMEOUT),
     )
 
@@ -115,7 +126,7 @@ def _action(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         _answered(part, entries),
         target=ros_name(entries["action"]),
         type_name=_type(entries, "action"),
-        values=read_values(entries["goal"], part.parameters) if "goal" in entries else (),
+        **_filled(entries.get("goal"), part.parameters),
         feedback=tuple(read_feedback(key, value) for key, value in feedback),
         timeout=_timeout(entries, None),
         suspend=entries["suspend"].choice("go_on", "cancel") if "suspend" in entries else "go_on",

@@ -109,8 +109,13 @@ async def ask_type(host: Host, kind: str, written: Written) -> str:
         OperationFailed: ``type_unknown(Name)``.
     """
     name = host.ros.resolve(host.robot_topic(written.text))
+    patience = host.clock.now() + MISSING_AFTER
     try:
-        found = type_in(await host.step(host.ros.contents()), kind, name)
+        # A node that has just come takes a while to know its graph.
+        while not (found := type_in(await host.step(host.ros.contents()), kind, name)):
+            if host.clock.now() >= patience:
+                break
+            await host.sleep(LOOK)
     except RosError as error:
         host.fail(str(error), "type_unknown", name)
     if not found:

@@ -7,15 +7,23 @@
 //
 //     place(kitchen, 2, 2, 90).   // where to stand, in metres, and where to look, in degrees
 //     attempts(5).                // so often a way is tried (3)
-//     charged_at(100).            // percent at which the battery is full enough (95)
+//     low_at(30).                 // percent at which the battery is low (20)
+//     charged_at(100).            // percent at which it is full enough (95)
+//     dock_id("dock_1").          // how Nav2 calls the robot's dock, where Nav2 docks it
 //
 // A plan of the program that stands before the include goes first, so every step below can be done otherwise.
 
 attempts_allowed(N) :- attempts(N).
 attempts_allowed(3) :- not attempts(_).
 
-full_enough(Percent) :- charged_at(Least) & Percent >= Least.
-full_enough(Percent) :- not charged_at(_) & Percent >= 95.
+percent_left(Percent) :- battery(Percent, _).
+percent_left(Percent) :- battery(Percent).
+
+battery_low :- percent_left(Percent) & low_at(Least) & Percent <= Least.
+battery_low :- percent_left(Percent) & not low_at(_) & Percent <= 20.
+
+battery_full :- percent_left(Percent) & charged_at(Least) & Percent >= Least.
+battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 /* Going somewhere */
 
@@ -35,10 +43,11 @@ full_enough(Percent) :- not charged_at(_) & Percent >= 95.
 
 // It did not work: see what can be done about the reason, and try again.
 -!go_to(X, Y, Yaw, Attempt)[env_failure_reason(Reason)]
-    : attempts_allowed(Most) & Attempt < Most
+    : attempts_allowed(Most) & Attempt < Most & not Reason = canceled
   <- !recover(Reason);
      !go_to(X, Y, Yaw, Attempt + 1).
 
+// Tried often enough; or somebody took the goal back, and trying again would be wrong.
 -!go_to(_, _, _, _)[error_msg(Text), env_failure_reason(Reason)]
   <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
 
@@ -46,15 +55,11 @@ full_enough(Percent) :- not charged_at(_) & Percent >= 95.
 +!drive_there(X, Y, Yaw)
   <- navigate_to(X, Y, Yaw).
 
-/* When the way failed */
-
-// Somebody took the goal back, or the place is no place: trying again would be wrong.
-+!recover(canceled)
-  <- .fail(error(action_failed), error_msg("the way was cancelled"), env_failure_reason(canceled)).
+/* When the way failed, before the next attempt */
 
 // The server is starting, or is gone and may come back.
-+!recover(Reason) : Reason = rejected | Reason = server_lost
-  <- .wait(3000).
++!recover(rejected) <- .wait(3000).
++!recover(server_lost) <- .wait(3000).
 
 // No way was found, or it took too long: forget obstacles that may have gone, and give them time to go.
 +!recover(_)
@@ -69,12 +74,13 @@ full_enough(Percent) :- not charged_at(_) & Percent >= 95.
 
 /* Patrol */
 
-// From place to place, again and again.
+// From place to place, again and again; or so many rounds.
++!patrol([]).
+
 +!patrol(Places)
   <- !round(Places);
-     !!patrol(Places).
+     !patrol(Places).
 
-// So many rounds.
 +!patrol(_, Rounds) : Rounds <= 0.
 
 +!patrol(Places, Rounds)
@@ -83,45 +89,83 @@ full_enough(Percent) :- not charged_at(_) & Percent >= 95.
 
 +!round([]).
 
-+!round([Place | Rest])
++!round([Place|Rest])
   <- !visit(Place);
      !round(Rest).
 
-// Be there; a program that has something to do there has its own plan for `arrived`.
+// Be there, and do there what the program has a plan `arrived` for.
 +!visit(Place)
   <- !go_to(Place);
+     .abolish(unreachable(Place, _));
      !arrived(Place).
 
-// A place that cannot be reached is left out, and known.
--!visit(Place)[env_failure_reason(Reason)]
+// A place that cannot be reached is left out and known, after a moment: there may be no other place.
+-!visit(Place)[env_failure_reason(Reason)] : not Reason = unknown_place(_)
   <- .abolish(unreachable(Place, _));
-     +unreachable(Place, Reason).
+     +unreachable(Place, Reason);
+     .wait(1000).
 
-+!arrived(Place)
-  <- .abolish(unreachable(Place, _)).
+// Nobody knows the place: a mistake of who patrols.
+-!visit(_)[error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(unknown_place), error_msg(Text), env_failure_reason(Reason)).
 
-/* The battery */
++!arrived(_).
 
-// To the dock, wait there until the battery is full, and out again.  The battery is known as battery(Percent, _) or
-// battery(Percent).
+/* The battery, which is known as battery(Percent, _) or battery(Percent) */
+
+// As long as this goal is pursued, another one, such as patrol(_), rests whenever the battery is low, until it is full.
++!keep_charged(Goal)
+  <- .wait(battery_low);
+     .suspend(Goal);
+     !dock_and_charge;
+     .resume(Goal);
+     !keep_charged(Goal).
+
+// To the dock, wait there until the battery is full, and out again.
 +!dock_and_charge
-  <- !into_dock;
+  <- !into_dock(1);
      !wait_until_charged;
-     !out_of_dock.
+     !out_of_dock(1).
 
-// In front of the dock, if it is a place of the program's, and in.
-+!into_dock : place(dock, X, Y, Yaw)
++!into_dock(_)
+  <- !drive_into_dock.
+
+-!into_dock(Attempt)[env_failure_reason(Reason)]
+    : attempts_allowed(Most) & Attempt < Most & not Reason = canceled
+  <- !recover(Reason);
+     !into_dock(Attempt + 1).
+
+-!into_dock(_)[error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
+
++!out_of_dock(_)
+  <- !drive_out_of_dock.
+
+-!out_of_dock(Attempt)[env_failure_reason(Reason)]
+    : attempts_allowed(Most) & Attempt < Most & not Reason = canceled
+  <- !recover(Reason);
+     !out_of_dock(Attempt + 1).
+
+-!out_of_dock(_)[error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
+
+// Where Nav2 knows the dock by a name, it finds the way.
++!drive_into_dock : dock_id(Name)
+  <- dock_at(Name).
+
+// Others drive to a place in front of it, if the program knows one, and in.
++!drive_into_dock : place(dock, X, Y, Yaw)
   <- !go_to(X, Y, Yaw);
      dock.
 
-+!into_dock
++!drive_into_dock
   <- dock.
 
-+!out_of_dock
++!drive_out_of_dock : dock_id(_)
+  <- leave_dock.
+
++!drive_out_of_dock
   <- undock.
 
-+!wait_until_charged : (battery(Percent, _) | battery(Percent)) & full_enough(Percent).
-
 +!wait_until_charged
-  <- .wait(1000);
-     !wait_until_charged.
+  <- .wait(battery_full).

@@ -36,7 +36,8 @@ class NavigationServers:
         self._simple: asyncio.Task[None] | None = None
 
     def offer_nav2(self) -> None:
-        """``/navigate_to_pose``, ``/navigate_through_poses``, ``/follow_waypoints`` and the topic ``/goal_pose``."""
+        """``/navigate_to_pose``, ``/navigate_through_poses``, ``/follow_waypoints``, the topic ``/goal_pose``, and the
+        services ``/global_costmap/clear_entirely_global_costmap`` and ``/local_costmap/clear_entirely_local_costmap``."""
         self.offers.action(
             "/navigate_to_pose",
             "nav2_msgs/action/NavigateToPose",
@@ -52,16 +53,23 @@ class NavigationServers:
         self.offers.action(
             "/follow_waypoints", "nav2_msgs/action/FollowWaypoints", self._waypoints, _poses_fault
         )
+        for map_ in ("global", "local"):
+            self.offers.service(
+                f"/{map_}_costmap/clear_entirely_{map_}_costmap",
+                "nav2_msgs/srv/ClearEntireCostmap",
+                self._forget_obstacles,
+            )
         self._hear("/goal_pose")
 
     def offer_move_base(self) -> None:
-        """``/move_base`` and the topic ``/move_base_simple/goal``."""
+        """``/move_base``, the topic ``/move_base_simple/goal`` and the service ``/move_base/clear_costmaps``."""
         self.offers.action(
             "/move_base",
             "move_base_msgs/action/MoveBase",
             self._move_base,
             lambda goal: fault_of(goal.target_pose),
         )
+        self.offers.service("/move_base/clear_costmaps", "std_srvs/srv/Empty", self._forget_obstacles)
         self._hear("/move_base_simple/goal")
 
     def close(self) -> None:
@@ -70,6 +78,10 @@ class NavigationServers:
             subscription.close()
         if self._simple is not None:
             self._simple.cancel()
+
+    def _forget_obstacles(self, request: Any) -> Mapping[str, Any]:
+        """Nothing is to be done: what these robots see is looked at anew for every way."""
+        return {}
 
     def _hear(self, topic: str) -> None:
         name = self.offers.prefix + topic

@@ -1,10 +1,13 @@
-"""Offering actions of a robot: those whose types are known here, with results that fit whatever release is installed."""
+"""Offering actions and services of a robot: those whose types are known here.
+
+Results fit whatever release is installed.
+"""
 
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, NoReturn
 
 from jacaros.ros.action import Abort, Accept, ActionPolicy, ActionServer, ServerGoal
-from jacaros.ros.backend import ACTIONS, Backend
+from jacaros.ros.backend import ACTIONS, Backend, Handler, Service
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.names import result_type
 from jacaros.sim.navigation.wheels import OVERTAKEN, Overtaken
@@ -45,7 +48,7 @@ class Offers:
 
     def __init__(self, backend: Backend, prefix: str) -> None:
         self.backend, self.prefix = backend, prefix
-        self._servers: list[ActionServer] = []
+        self._servers: list[ActionServer | Service] = []
 
     def action(self, name: str, type_name: str, execute: Execute, accept: Accept | None = None) -> None:
         """Offer an action whose newer goals take over from older ones; where its type is unknown, say so and go on."""
@@ -66,6 +69,13 @@ class Offers:
             self.left_out(f"action {self.prefix}{name}", type_name)
             return
         self._servers.append(server)
+
+    def service(self, name: str, type_name: str, handler: Handler) -> None:
+        """Offer a service; where its type is unknown, say so and go on."""
+        try:
+            self._servers.append(self.backend.service(self.prefix + name, type_name, handler))
+        except UnknownInterface:
+            self.left_out(f"service {self.prefix}{name}", type_name)
 
     def left_out(self, what: str, type_name: str) -> None:
         """Write one line about something that cannot be offered here."""

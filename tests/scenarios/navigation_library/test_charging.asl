@@ -1,0 +1,120 @@
+// Plans of $jacaros/navigation.asl for the battery; the robot is faked.
+
+{ include("$jacaros/tester_agent.asl") }
+{ include("$jacaros/navigation.asl") }
+
+place(a, 1, 0, 0).
+place(b, 2, 0, 0).
+
++!fakes
+  <- !fake_action(navigate_to(_, _, _), after(1000));
+     !fake_action(dock, after(500));
+     !fake_action(undock, after(500));
+     !fake_action(dock_at(_), after(500));
+     !fake_action(leave_dock, after(500));
+     !fake_action(clear_costmaps).
+
+@charges_in_the_middle_of_a_patrol_and_goes_on[test]
++!test_low
+  <- !fakes;
+     +battery(50, discharging);
+     !!patrol([a, b]);
+     !!keep_charged(patrol(_));
+     .wait(1500);
+     !assert_not_did(dock);
+     -+battery(20, discharging);
+     .wait(10000);
+     !assert_did(dock, 1);
+     !assert_did(navigate_to(_, _, _), 2);
+     !assert_not_did(undock);
+     -+battery(94, charging);
+     .wait(5000);
+     !assert_not_did(undock);
+     -+battery(95, charging);
+     .wait(1200);
+     !assert_did(undock, 1);
+     .wait(300);
+     !assert_did(navigate_to(1, 0, 0), 2);
+     !assert_did(dock, 1);
+     .drop_desire(patrol(_));
+     .drop_desire(keep_charged(_)).
+
+@charges_again_and_again[test]
++!test_again
+  <- !fakes;
+     !!keep_charged(patrol(_));
+     +battery(10);
+     .wait(1000);
+     -+battery(100);
+     .wait(1000);
+     -+battery(15);
+     .wait(1000);
+     !assert_did(dock, 2);
+     .drop_desire(keep_charged(_)).
+
+@the_program_says_what_is_low_and_what_is_full[test]
++!test_levels
+  <- !fakes;
+     +low_at(40);
+     +charged_at(60);
+     +battery(39);
+     !!keep_charged(patrol(_));
+     .wait(1000);
+     !assert_did(dock, 1);
+     -+battery(60);
+     .wait(1000);
+     !assert_did(undock, 1);
+     .drop_desire(keep_charged(_)).
+
+@drives_to_its_place_before_the_dock[test]
++!test_place
+  <- !fakes;
+     +place(dock, 4, 5, 180);
+     +battery(100);
+     !dock_and_charge;
+     !assert_did(navigate_to(4, 5, 180), 1);
+     !assert_did(dock, 1);
+     !assert_did(undock, 1).
+
+@nav2_docks_it_by_the_name_of_the_dock[test]
++!test_name
+  <- !fakes;
+     +dock_id("dock_2");
+     +battery(100, full);
+     !dock_and_charge;
+     !assert_did(dock_at("dock_2"), 1);
+     !assert_did(leave_dock, 1);
+     !assert_not_did(dock).
+
+@tries_again_to_dock[test]
++!test_retry
+  <- !fakes;
+     !fake_action(dock, failed(aborted(0, "not seen"), "the dock is not seen"));
+     +battery(100);
+     !!dock_and_charge;
+     .wait(1000);
+     !assert_not_did(undock);
+     !fake_action(dock);
+     .wait(3000);
+     !assert_did(dock, 2);
+     !assert_did(undock, 1).
+
+@the_patrol_rests_while_the_robot_cannot_dock[test]
++!test_no_dock
+  <- !fakes;
+     !fake_action(dock, failed(aborted(0, "not seen"), "the dock is not seen"));
+     +battery(10);
+     !!patrol([a, b]);
+     !!mind;
+     .wait(trouble(_), 60000);
+     !assert_true(trouble(aborted(0, "not seen")));
+     !assert_did(dock, 3);
+     .wait(5000);
+     !assert_true(.intention(_, suspended));
+     .drop_desire(patrol(_)).
+
++!mind
+  <- !keep_charged(patrol(_)).
+
+-!mind[env_failure_reason(Reason)]
+  <- +trouble(Reason).

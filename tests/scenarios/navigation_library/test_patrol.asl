@@ -1,0 +1,68 @@
+// Plans of $jacaros/navigation.asl for patrols; the robot is faked.
+
+{ include("$jacaros/tester_agent.asl") }
+
++!arrived(Place)
+  <- +been(Place).
+
+{ include("$jacaros/navigation.asl") }
+
+place(a, 1, 0, 0).
+place(b, 2, 0, 0).
+place(c, 3, 0, 0).
+
++!fakes
+  <- !fake_action(navigate_to(_, _, _), after(1000));
+     !fake_action(clear_costmaps).
+
+@goes_round_and_round[test]
++!test_round
+  <- !fakes;
+     !!patrol([a, b]);
+     .wait(4500);
+     !assert_did(navigate_to(1, 0, 0), 3);
+     !assert_did(navigate_to(2, 0, 0), 2);
+     .drop_desire(patrol(_));
+     .wait(3000);
+     !assert_did(navigate_to(_, _, _), 5).
+
+@goes_so_many_rounds[test]
++!test_rounds
+  <- !fakes;
+     !patrol([a, b, c], 2);
+     !assert_did(navigate_to(_, _, _), 6).
+
+@rests_while_it_is_suspended_and_goes_on_where_it_was[test]
++!test_suspended
+  <- !fakes;
+     !!patrol([a, b, c]);
+     .wait(1500);
+     .suspend(patrol(_));
+     .wait(10000);
+     !assert_not_did(navigate_to(3, 0, 0));
+     .resume(patrol(_));
+     .wait(been(c), 3000);
+     .drop_desire(patrol(_)).
+
+@leaves_out_a_place_that_it_cannot_reach[test]
++!test_unreachable
+  <- +attempts(1);
+     !fakes;
+     !fake_action(navigate_to(2, 0, 0), failed(aborted(208, "no way"), "no way"));
+     !patrol([a, b, c], 1);
+     !assert_true(unreachable(b, aborted(208, _)));
+     !assert_true(been(a) & been(c) & not been(b));
+     !fakes;
+     !patrol([b], 1);
+     !assert_false(unreachable(b, _)).
+
+@a_place_that_nobody_knows_ends_the_patrol[test]
++!test_unknown
+  <- !fakes;
+     !assert_fail(patrol([a, nowhere]));
+     !assert_true(been(a)).
+
+@has_nothing_to_do_without_places[test]
++!test_empty
+  <- !patrol([]);
+     !assert_not_did(navigate_to(_, _, _)).
