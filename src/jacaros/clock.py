@@ -35,6 +35,10 @@ class Clock(Protocol):
     def virtual(self) -> bool:
         """True when time moves in jumps."""
 
+    @property
+    def elapsed(self) -> float:
+        """Seconds from some moment on, as `call_later` counts them: they never go back, whatever `now` does."""
+
     def now(self) -> float:
         """Seconds since the Unix epoch."""
 
@@ -52,6 +56,11 @@ class WallClock:
     """The time of day, as the machine tells it; delays are measured on the monotonic clock."""
 
     virtual = False
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds on the monotonic clock: nobody sets it."""
+        return time.monotonic()
 
     def now(self) -> float:
         """Seconds since the Unix epoch."""

@@ -111,7 +111,7 @@ class OperationExecution:
         if not self.pausable or self.ended or self.paused or self._turns is None:
             return
         pause = self._pauses(self._turns)
-        pause.since = self._turns.clock.now()
+        pause.since = self._turns.clock.elapsed
         for callback in pause.callbacks:
             try:
                 callback()
@@ -184,7 +184,7 @@ class Pause:
         """End the present pause and wake who waits for that; False when there is none."""
         if self.since is None:
             return False
-        self._spent += self._clock.now() - self.since
+        self._spent += self._clock.elapsed - self.since
         self.since = None
         waiting, self._waiting = self._waiting, []
         for future in waiting:

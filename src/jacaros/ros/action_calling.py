@@ -173,14 +173,14 @@ class GoalSender:
     ) -> PendingGoal:
         """Send a goal and wait until the server has accepted it."""
         message = checked_message(self._factory, self._goal_type, goal)
-        deadline = None if timeout is None else self.clock.now() + timeout
+        deadline = None if timeout is None else self.clock.elapsed + timeout
         await self._server(timeout)
         pending = PendingGoal(self, self.wire.new_id(), on_feedback)
         self._goals[pending.goal_id] = pending
         try:
             self.wire.send_goal(pending.goal_id, message)
             await within(
-                self.clock, pending.acceptance, None if deadline is None else deadline - self.clock.now()
+                self.clock, pending.acceptance, None if deadline is None else deadline - self.clock.elapsed
             )
         except TimeoutError:
             self._abandon(pending)
@@ -288,14 +288,14 @@ class GoalSender:
         if self.wire.offered:
             return
         what = f"action {self.name} ({self.type_name})"
-        deadline = None if timeout is None else self.clock.now() + timeout
+        deadline = None if timeout is None else self.clock.elapsed + timeout
         with Waiting(self.clock, self._log, what, "Is the node that offers it running?"):
             while not self.wire.offered:
                 arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
                 self._arrivals.append(arrival)
                 try:
                     await within(
-                        self.clock, arrival, None if deadline is None else deadline - self.clock.now()
+                        self.clock, arrival, None if deadline is None else deadline - self.clock.elapsed
                     )
                 except TimeoutError:
                     raise ServerUnavailable(f"nobody offered {what} within {timeout:g} s") from None

@@ -105,7 +105,7 @@ class ActionlibWire:
         """Ask the server to cancel a goal."""
         goal = self._goals.get(goal_id)
         if goal is not None and goal.cancelling is None:
-            goal.cancelling, goal.unmoved = self._node.clock.now(), 0
+            goal.cancelling, goal.unmoved = self._node.clock.elapsed, 0
         self._cancel.publish(self._cancel.message(id=goal_id))
 
     def forget_goal(self, goal_id: str) -> None:
@@ -229,7 +229,7 @@ class ActionlibWire:
             self._sender.cancel_answered(goal_id, True)
         elif state is State.ACTIVE:
             goal.unmoved += 1
-            if goal.unmoved >= ENOUGH_NEWS and self._node.clock.now() - goal.cancelling >= REFUSED_AFTER:
+            if goal.unmoved >= ENOUGH_NEWS and self._node.clock.elapsed - goal.cancelling >= REFUSED_AFTER:
                 goal.cancelling = None
                 self._sender.cancel_answered(goal_id, False)
 

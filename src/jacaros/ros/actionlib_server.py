@@ -1,5 +1,6 @@
 """Action servers in ROS 1 graphs: actionlib's protocol around `ServedGoals`."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -41,7 +42,7 @@ class _Goal:
         text: what is said about that.
         told_until: when it is dropped from the list; None while it is not over.
         status: ``actionlib_msgs/GoalStatus`` message that says this, once it was made.
-        feedback_at: when feedback was sent last.
+        feedback_at: when feedback was sent last, on `Clock.elapsed`.
     """
 
     goal_id: str
@@ -50,7 +51,7 @@ class _Goal:
     text: str = ""
     told_until: float | None = None
     status: Any = None
-    feedback_at: float = 0.0
+    feedback_at: float = -math.inf
 
     def change(self, state: State, text: str = "") -> None:
         """Go to another state."""
@@ -150,7 +151,7 @@ class ActionlibServer:
 
     def send_feedback(self, goal: _Goal, feedback: Any) -> None:
         """Tell how far a goal is."""
-        goal.feedback_at = self._node.clock.now()
+        goal.feedback_at = self._node.clock.elapsed
         self._feedback.publish(
             self._feedback.message(
                 header={"stamp": self._node.clock.now()}, status=self._status_of(goal), feedback=feedback
@@ -170,9 +171,9 @@ class ActionlibServer:
                 self._finish(goal, states[outcome.status], outcome.text, outcome.result)
 
         self._ending[goal.goal_id] = finish
-        wait = goal.feedback_at + AFTER_FEEDBACK - self._node.clock.now()
+        wait = goal.feedback_at + AFTER_FEEDBACK - self._node.clock.elapsed
         if wait > 0.0:
-            self._node.clock.call_later(min(wait, AFTER_FEEDBACK), finish)
+            self._node.clock.call_later(wait, finish)
         else:
             finish()
 
@@ -190,7 +191,7 @@ class ActionlibServer:
         self._tell()
 
     def _tell_regularly(self) -> None:
-        now = self._node.clock.now()
+        now = self._node.clock.elapsed
         over = [goal_id for goal_id, goal in self._goals.items() if (goal.told_until or now) < now]
         for goal_id in over:
             del self._goals[goal_id]
@@ -219,7 +220,7 @@ class ActionlibServer:
         return goal.status
 
     def _later(self) -> float:
-        return self._node.clock.now() + STATUS_KEPT
+        return self._node.clock.elapsed + STATUS_KEPT
 
 
 class _Listener:

@@ -135,16 +135,16 @@ async def call_when_offered(
         ServiceUnavailable: nobody offered the service in time.
         CallTimedOut: it was called but did not answer in time.
     """
-    deadline = None if timeout is None else clock.now() + timeout
+    deadline = None if timeout is None else clock.elapsed + timeout
     waiting: Waiting | None = None
     try:
         while True:
             try:
-                return await attempt(None if deadline is None else deadline - clock.now())
+                return await attempt(None if deadline is None else deadline - clock.elapsed)
             except TimeoutError:
                 raise CallTimedOut(f"{what} did not answer within {timeout:g} s") from None
             except ServiceUnavailable:
-                if deadline is not None and clock.now() + RETRY > deadline:
+                if deadline is not None and clock.elapsed + RETRY > deadline:
                     raise ServiceUnavailable(f"nobody offered {what} within {timeout:g} s") from None
             if waiting is None:
                 waiting = Waiting(clock, log, what, "Is the node that offers it running?").__enter__()

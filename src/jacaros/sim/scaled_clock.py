@@ -20,9 +20,14 @@ class ScaledClock:
         self.speed = speed
         self._epoch, self._began = time.time(), time.monotonic()
 
+    @property
+    def elapsed(self) -> float:
+        """Seconds of this clock since it was made."""
+        return (time.monotonic() - self._began) * self.speed
+
     def now(self) -> float:
         """Seconds since the Unix epoch, as far as this clock has come."""
-        return self._epoch + (time.monotonic() - self._began) * self.speed
+        return self._epoch + self.elapsed
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* on the running loop after *delay* seconds of this clock."""

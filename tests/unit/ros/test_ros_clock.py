@@ -5,9 +5,11 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from jacaros.clock import VirtualClock, run
+from jacaros.ros.errors import CallTimedOut, ServerUnavailable, ServiceUnavailable
 from jacaros.ros.message import stamp
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
+from jacaros.ros.serving import call_when_offered
 
 
 def on_loop(main: Callable[[RosClock, list[str]], Awaitable[None]]) -> list[str]:
@@ -156,3 +158,72 @@ def test_it_follows_the_graph_and_tells_of_silence_and_pauses() -> None:
         await real.sleep(0.1)
 
     run(main, real)
+
+
+async def pass_by(clock: RosClock, *times: float) -> None:
+    for time in times:
+        clock.move_to(time)
+        for _ in range(20):
+            await asyncio.sleep(0)
+
+
+def test_the_time_out_of_a_call_keeps_its_length_when_the_clock_jumps_back() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        clock.move_to(100.0)
+        backend = open_backend("memory", clock, "both", log=lines.append)
+        await backend.start()
+        called: list[Any] = []
+
+        async def mute(request: Any) -> None:
+            called.append(request)
+            await asyncio.Event().wait()
+
+        client = backend.client("/add", "example_interfaces/srv/AddTwoInts")
+        call = asyncio.ensure_future(client.call(timeout=2.0))
+        await pass_by(clock, 100.0, 101.5, 5.0)
+        backend.service("/add", "example_interfaces/srv/AddTwoInts", mute)
+        await pass_by(clock, 5.4)
+        assert called
+        assert not call.done()
+        await pass_by(clock, 5.6)
+        assert isinstance(call.exception(), CallTimedOut)
+        await backend.close()
+
+    on_loop(main)
+
+
+def test_the_time_out_of_a_goal_keeps_its_length_when_the_clock_jumps_back() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        clock.move_to(100.0)
+        backend = open_backend("memory", clock, "both", log=lines.append)
+        await backend.start()
+        client = backend.action_client("/count", "jacaros_interfaces/action/Count")
+        sending = asyncio.ensure_future(client.send(timeout=2.0))
+        await pass_by(clock, 100.0, 101.5, 5.0, 5.4)
+        client.wire.server_came()  # type: ignore[attr-defined]  # a false alarm: it waits for what is left
+        await pass_by(clock, 5.45)
+        assert not sending.done()
+        await pass_by(clock, 5.6)
+        assert isinstance(sending.exception(), ServerUnavailable)
+        await backend.close()
+
+    on_loop(main)
+
+
+def test_attempts_to_call_end_in_time_when_the_clock_jumps_back() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        rests: list[float | None] = []
+
+        async def nobody(rest: float | None) -> None:
+            rests.append(rest)
+            raise ServiceUnavailable("nobody is there")
+
+        clock.move_to(100.0)
+        call = asyncio.ensure_future(call_when_offered(clock, lines.append, "service /x", nobody, 1.0))
+        await pass_by(clock, 100.0, 100.5, 5.0, 5.2)
+        assert not call.done()
+        await pass_by(clock, 5.6)
+        assert isinstance(call.exception(), ServiceUnavailable)
+        assert [round(rest or 0.0, 3) for rest in rests] == [1.0, 0.5, 0.3, -0.1]
+
+    on_loop(main)

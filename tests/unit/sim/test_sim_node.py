@@ -215,6 +215,10 @@ class HeldUpClock:
         self.time = 1000.0
         self.timers: list[tuple[float, Callable[[], None]]] = []
 
+    @property
+    def elapsed(self) -> float:
+        return self.time
+
     def now(self) -> float:
         return self.time
 

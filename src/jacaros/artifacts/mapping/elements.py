@@ -34,7 +34,7 @@ class Elements:
 
     def take(self, rows: list[Row], cause: Cause | None) -> None:
         """Take the elements of a message."""
-        now, expire = self._host.clock.now(), self._part.policy.expire
+        now, expire = self._host.clock.elapsed, self._part.policy.expire
         new = {row.key: self._kept(row) for row in rows}
         if expire is not None:
             self._seen.update(dict.fromkeys(new, now))
@@ -75,11 +75,9 @@ class Elements:
                 host.update_property(name, *row.values, annotations=row.annotations, where=old.values)
 
     def _alive(self, now: float, expire: float) -> dict[object, Row]:
-        """The elements that were seen a short while ago; a clock that was set back makes none immortal."""
+        """The elements that were seen a short while ago."""
         alive = {
-            key: row
-            for key, row in self._wanted.items()
-            if abs(now - self._seen.get(key, now)) < expire - 1e-9
+            key: row for key, row in self._wanted.items() if now - self._seen.get(key, now) < expire - 1e-9
         }
         self._seen = {key: at for key, at in self._seen.items() if key in alive or at == now}
         return alive
@@ -87,7 +85,7 @@ class Elements:
     def _look(self) -> None:
         expire = self._part.policy.expire
         assert expire is not None
-        now = self._host.clock.now()
+        now = self._host.clock.elapsed
         alive = self._alive(now, expire)
         self._want(alive, None)
         self._expiry = None

@@ -143,7 +143,7 @@ class Feed:
         if self.part.when_changed:
             before, self._sent = self._sent, {row.key: row.values for row in rows}
             rows = [row for row in rows if before.get(row.key) != row.values]
-        now = self._host.clock.now()
+        now = self._host.clock.elapsed
         rate = self.part.policy.rate
         if not rows or (rate is not None and self._quiet_until - 1.0 / rate <= now < self._quiet_until):
             return

@@ -26,7 +26,7 @@ class FrameFeed:
         self._reading = host.reading_of(part.name, part.policy)
         self._values = [(field.path.text, converted(field.conversion)) for field in part.fields]
         self._notes = [(note.name, note.path.text, converted(note.conversion)) for note in part.annotations]
-        self._began = host.clock.now()
+        self._began = host.clock.elapsed
         try:
             host.ros.tf_listen()
         except CapabilityMissing as error:
@@ -52,7 +52,7 @@ class FrameFeed:
     def _lose(self, error: TransformUnavailable) -> None:
         self._withdraw()
         part = self._part
-        if self._host.clock.now() - self._began >= MISSING_AFTER:
+        if self._host.clock.elapsed - self._began >= MISSING_AFTER:
             message = f"{part.name} is not known: {error}; still listening"
             self._host.tell_once(
                 part.name, part.place, message, "are the nodes that send these frames running?"

@@ -100,10 +100,10 @@ class Publishing:
                 if not lane.enter(ticket):
                     await host.step(ticket.wait(host.clock, None))
                 elif not ticket.aborted:
-                    began = host.clock.now()
+                    began = host.clock.elapsed
                     self._send(inputs)
                     await host.step(ticket.wait(host.clock, min(period, left)))
-                    left -= max(0.0, host.clock.now() - began)
+                    left -= host.clock.elapsed - began
                 if ticket.aborted:
                     host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
         finally:

@@ -56,7 +56,7 @@ class TypeSearch:
             self._host.start(self._host.run_process, self._search)
 
     async def _search(self) -> None:
-        host, began = self._host, self._host.clock.now()
+        host, began = self._host, self._host.clock.elapsed
         told, missed = False, False
         while self._wanted:
             contents = await self._contents()
@@ -67,7 +67,7 @@ class TypeSearch:
                 told = True
                 for each in self._wanted:
                     host.log(f"waiting for the topic {each.name}, to learn its type")
-            if self._wanted and not missed and host.clock.now() - began >= MISSING_AFTER:
+            if self._wanted and not missed and host.clock.elapsed - began >= MISSING_AFTER:
                 missed = True
                 for each in self._wanted:
                     self._miss(each)

@@ -154,7 +154,7 @@ class Pursuit:
     async def _send(self) -> GoalHandle | None:
         """Send the goal; None when the intention was suspended before the server accepted it, which cancels it."""
         conduct = self._conduct
-        began, self._share = self._clock.now(), ACCEPTANCE
+        began, self._share = self._clock.elapsed, ACCEPTANCE
         if conduct.timeout is not None:
             self._share = min(ACCEPTANCE, conduct.timeout - self._used)
         sending = asyncio.ensure_future(self._client.send(self._goal, conduct.on_feedback, self._share))
@@ -167,7 +167,7 @@ class Pursuit:
                         return None
                 else:
                     await any_of(self._clock, (sending,), None)
-            self._used += max(0.0, self._clock.now() - began)
+            self._used += self._clock.elapsed - began
             return sending.result()
         except asyncio.CancelledError:
             if sending.done() and not sending.cancelled() and sending.exception() is None:
@@ -185,9 +185,9 @@ class Pursuit:
                 elif await self._is_cancelled(handle, ending):
                     return None
                 continue
-            began = self._clock.now()
+            began = self._clock.elapsed
             await self._first_of(ending, None if timeout is None else timeout - self._used)
-            self._used += max(0.0, self._clock.now() - began)
+            self._used += self._clock.elapsed - began
             if timeout is not None and self._used >= timeout - 1e-6 and not ending.done():
                 text = f"action {self._client.name} did not end within {timeout:g} s"
                 raise GoalFailed(text, "timeout", _figure(timeout))

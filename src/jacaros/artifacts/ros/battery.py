@@ -148,14 +148,14 @@ class ArtSimBattery(RosArtifact):
             share = self._share
         # Many drivers know no status: there, a charge that rises tells of the current.
         if charging or full or share > self._share:
-            self._fed_at = sample.stamp
+            self._fed_at = self.clock.elapsed
         self._share = share
         if math.isfinite(float(state.percentage)):
             level = FULL if full else min(FULL, max(0, round(100.0 * share)))
             if level < FULL:
                 self._full_since = math.inf
             elif self._full_since == math.inf:
-                self._full_since = sample.stamp
+                self._full_since = self.clock.elapsed
             self.start(self.show_battery, level, charging, cause=sample.cause)
             self._told.take((level,))
 
@@ -175,9 +175,9 @@ class ArtSimBattery(RosArtifact):
 
     async def _charge_in_dock(self) -> None:
         patience = self._option("dock_timeout", 5.0)
-        begin = self.clock.now()
+        begin = self.clock.elapsed
         while not self._is_full(patience):
-            if self._level < FULL and self.clock.now() - max(begin, self._fed_at) > patience:
+            if self._level < FULL and self.clock.elapsed - max(begin, self._fed_at) > patience:
                 self.fail("the robot's battery gets no current: it does not stand in a dock", "not_docked")
             await self.sleep(CHARGE_PERIOD)
 
@@ -185,7 +185,7 @@ class ArtSimBattery(RosArtifact):
         """Whether the robot stopped to charge at 100 %, or goes on charging there for long."""
         if self._level < FULL:
             return False
-        return not self._charging or self.clock.now() - self._full_since > patience
+        return not self._charging or self.clock.elapsed - self._full_since > patience
 
     # Operations.
 

@@ -82,10 +82,10 @@ class ArtCleaning(RosArtifact):
         """Take so many seconds, pauses not counted."""
         while seconds > 0.0:
             await self.sleep(seconds)
-            over = self.clock.now()
+            over = self.clock.elapsed
             paused = await self.pause_point()
             # What was paused while the sleep went on is still to be done.
-            seconds = round(paused - (self.clock.now() - over), 6)
+            seconds = round(paused - (self.clock.elapsed - over), 6)
 
     def _publish(self, task: str) -> None:
         if self._tasks is not None:

@@ -39,7 +39,7 @@ class Connection:
 
     def hear(self, sample: Sample) -> None:
         """A message came."""
-        self._heard = sample.stamp
+        self._heard = self._clock.elapsed
         if not self.connected:
             self.look()
 
@@ -62,7 +62,7 @@ class Connection:
             return False
         if self._expire is None:
             return True
-        return self._heard is not None and self._clock.now() - self._heard < self._expire
+        return self._heard is not None and self._clock.elapsed - self._heard < self._expire
 
     def _look_again(self) -> None:
         self.look()

@@ -226,15 +226,14 @@ class Reading:
 
     def _confirm(self, seconds: float) -> None:
         # One timer looks after any number of messages: a fast sensor costs no more than a slow one.
-        self._taken = self._clock.now()
+        self._taken = self._clock.elapsed
         if self._expiry is None:
             self._expiry = self._clock.call_later(seconds, self._look_at_age)
 
     def _look_at_age(self) -> None:
         assert self.policy.expire is not None
-        left = self._taken + self.policy.expire - self._clock.now()
-        # A clock that jumped back must not keep values for ever.
-        if 1e-9 < left <= self.policy.expire:
+        left = self._taken + self.policy.expire - self._clock.elapsed
+        if left > 1e-9:
             self._expiry = self._clock.call_later(left, self._look_at_age)
             return
         self._expiry = None
@@ -268,8 +267,8 @@ class Queue:
     def wait(self) -> bool:
         """Look again soon; False when it has waited long enough."""
         if not self.waits:
-            self.waits, self._turns, self._began = True, 0, self._clock.now()
-        elif not 0.0 <= self._clock.now() - self._began < LONGEST_WAIT:
+            self.waits, self._turns, self._began = True, 0, self._clock.elapsed
+        elif self._clock.elapsed - self._began >= LONGEST_WAIT:
             return False
         self._turns += 1
         if self._turns <= TURNS:

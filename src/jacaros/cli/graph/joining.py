@@ -99,14 +99,14 @@ async def _settled(backend: Backend, clock: Clock, timeout: float) -> GraphConte
     if clock.virtual:
         await clock.sleep(FIRST_LOOK)
         return without(await backend.contents(timeout), backend.node_name)
-    begin = clock.now()
+    begin = clock.elapsed
     found = without(await backend.contents(timeout), backend.node_name)
     if backend.ros_version == 1:
         return found
-    while clock.now() - begin < timeout:
+    while clock.elapsed - begin < timeout:
         await clock.sleep(PAUSE)
         before, found = found, without(await backend.contents(timeout), backend.node_name)
-        if found == before and found.nodes and clock.now() - begin >= DISCOVERY:
+        if found == before and found.nodes and clock.elapsed - begin >= DISCOVERY:
             break
     return found
 

@@ -69,14 +69,14 @@ class MemoryClient:
         """Call the service and give its response."""
         clock = self._node.clock
         message = checked_message(self._node.factory, request_type(self._type_name), request)
-        deadline = None if timeout is None else clock.now() + timeout
+        deadline = None if timeout is None else clock.elapsed + timeout
         server = await self._server(timeout)
         if server.type_name != self._type_name:
             raise CallFailed(f"service {self.name} is of type {server.type_name}, not {self._type_name}")
         answer = self._pending.new()
         server.handle(message, answer)
         try:
-            return await within(clock, answer, None if deadline is None else deadline - clock.now())
+            return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         except TimeoutError:
             raise CallTimedOut(f"service {self.name} did not answer within {timeout:g} s") from None
 

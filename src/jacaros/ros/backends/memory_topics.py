@@ -243,7 +243,7 @@ class _Deadline:
 
     def kept(self) -> None:
         """A message has come."""
-        self._last = self._clock.now()
+        self._last = self._clock.elapsed
         self._missing = False
         if self._timer is None:
             self._wait(self._seconds)
@@ -258,11 +258,11 @@ class _Deadline:
         self._timer = self._clock.call_later(seconds, self._check)
 
     def _check(self) -> None:
-        rest = self._last + self._seconds - self._clock.now()
+        rest = self._last + self._seconds - self._clock.elapsed
         if rest > 1e-9:
             self._wait(rest)
             return
         first, self._missing = not self._missing, True
-        self._last = self._clock.now()
+        self._last = self._clock.elapsed
         self._wait(self._seconds)
         self._missed(first)

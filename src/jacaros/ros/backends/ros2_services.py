@@ -137,7 +137,7 @@ class Ros2Client:
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         clock = self._node.clock
-        deadline = None if rest is None else clock.now() + rest
+        deadline = None if rest is None else clock.elapsed + rest
         if not self.ready:
             self._acquainted = False
             raise ServiceUnavailable(f"nobody offers service {self.name}")
@@ -158,7 +158,7 @@ class Ros2Client:
         call = self._client.call_async(message)
         call.add_done_callback(finished)
         try:
-            return await within(clock, answer, None if deadline is None else deadline - clock.now())
+            return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         finally:
             self._client.remove_pending_request(call)
 
