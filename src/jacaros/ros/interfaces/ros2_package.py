@@ -38,6 +38,8 @@ COMMON = frozenset(
 """Packages that every ROS 2 has; their definitions are here for the backends that have no packages."""
 OWN_NAME = frozenset({"tf2_msgs"})
 """Packages that are built under their own name."""
+ROS_1_ALONE = frozenset({("kobuki_msgs", "SensorState")})
+"""Types that no robot on ROS 2 needs, and whose names others have there."""
 KINDS = ("msg", "srv", "action")
 
 _REFERENCE = re.compile(r"^[ \t]*(?P<package>[a-z]\w*)/(?:msg/)?(?P<name>\w+)", re.MULTILINE)
@@ -81,7 +83,7 @@ def look_alikes(root: Path = BUILT_IN) -> dict[str, Definition]:
     """
     found: dict[str, Definition] = {}
     for definition in definitions(root):
-        if definition.package in COMMON | OWN_NAME:
+        if definition.package in COMMON | OWN_NAME or (definition.package, definition.name) in ROS_1_ALONE:
             continue
         other = found.setdefault(definition.relative, definition)
         if _meaning(other) != _meaning(definition):
