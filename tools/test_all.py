@@ -78,6 +78,7 @@ def parts() -> list[Part]:
             (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2"),
         ),
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2")),
+        Part("faults", (*PYTEST, "tests/faults")),
         Part("examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml")),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2")),
         Part(

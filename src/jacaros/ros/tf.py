@@ -136,7 +136,7 @@ class TransformListener:
     def _take(self, sample: Sample, static: bool) -> None:
         now = self._node.clock.now()
         if now < self._latest - JUMP:
-            self._buffer.clear(f"the clock went back by {self._latest - now:.3g} s")
+            self._buffer.clear(f"the clock went back by {self._latest - now:.6g} s")
         self._latest = now
         for stamped in sample.message.transforms:
             transform = stamped.transform

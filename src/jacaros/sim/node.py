@@ -61,9 +61,10 @@ class SimNode:
         if not self.clock.virtual:
             # From the start, not from the last tick: delays of the loop must not add up.  Ticks that were
             # missed (the process was held up, the computer slept) are left out, not made up for in a burst.
-            passed = self.clock.now() - self.time.epoch
+            passed = self.time.passed()
             self._ticks = max(self._ticks + 1, math.floor(passed / period) + 1)
-            delay = max(0.0, self._ticks * period - passed)
+            # A clock that was set back must not keep the world waiting.
+            delay = min(max(0.0, self._ticks * period - passed), 2.0 * period)
         self._timer = self.clock.call_later(delay, self._tick)
 
     def _tick(self) -> None:

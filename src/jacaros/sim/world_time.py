@@ -5,6 +5,9 @@ import math
 from jacaros.clock import Clock
 from jacaros.sim.world import STEP, World
 
+SET_BACK = 0.1
+"""Seconds by which a clock is behind the world when it was set back; rounding is less."""
+
 _NEARLY = 1e-3
 """Part of a step by which a float's error may make a step seem not yet due."""
 
@@ -28,9 +31,17 @@ class WorldTime:
 
     def catch_up(self) -> None:
         """Make all steps that are due now."""
-        due = math.floor((self.clock.now() - self.epoch) / STEP + _NEARLY) - round(self.world.time / STEP)
+        due = math.floor(self.passed() / STEP + _NEARLY) - round(self.world.time / STEP)
         for _ in range(due):
             self.world.step()
+
+    def passed(self) -> float:
+        """Seconds since the world began; when the clock was set back the world goes on from where it is."""
+        passed = self.clock.now() - self.epoch
+        if passed < self.world.time - SET_BACK:
+            self.epoch = self.clock.now() - self.world.time
+            return self.world.time
+        return passed
 
     def now(self) -> float:
         """When the present state of the world was, on the clock (seconds): the stamp of its messages."""

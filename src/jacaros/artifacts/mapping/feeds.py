@@ -145,7 +145,7 @@ class Feed:
             rows = [row for row in rows if before.get(row.key) != row.values]
         now = self._host.clock.elapsed
         rate = self.part.policy.rate
-        if not rows or (rate is not None and self._quiet_until - 1.0 / rate <= now < self._quiet_until):
+        if not rows or (rate is not None and now < self._quiet_until):
             return
         if rate is not None:
             self._quiet_until = now + 1.0 / rate

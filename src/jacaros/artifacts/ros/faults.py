@@ -92,6 +92,11 @@ class Header:
         self._stragglers: list[float] = []
         self._good_at = -math.inf
 
+    @property
+    def frame(self) -> str:
+        """The frame in which messages are believed now; empty while it is not known."""
+        return self._frame
+
     def accepts(self, sample: Sample) -> bool:
         """Whether a message may be used; notes it when not."""
         header: Any = sample.message.header

@@ -96,6 +96,7 @@ class Motion:
         self._begun = False
         self._active = 0.0
         self._blind_since: float | None = None
+        self._frame = ""
         self._progress = Progress()
 
     def halt(self) -> None:
@@ -243,6 +244,7 @@ class Motion:
         age = odometer.age(self._wheels.clock.now())
         # By a clock that was set back the newest odometry is from the future: then too it tells nothing of now.
         if odometer.trusted and age is not None and abs(age) <= STALE:
+            self._stay_in(odometer.frame)
             self._blind_since = None
             return True
         if self._blind_since is None:
@@ -252,6 +254,14 @@ class Motion:
             bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""
             raise MotionFailed(f"no odometry came for {limit:g} s{bad}", "no_odometry", limit)
         return False
+
+    def _stay_in(self, frame: str) -> None:
+        """Fail when poses are given in another frame than at the beginning: the goal is a place in the first one."""
+        self._frame = self._frame or frame
+        if frame != self._frame:
+            since = self._active if self._blind_since is None else self._blind_since
+            text = f"odometry is given in the frame {frame} now, no more in {self._frame}"
+            raise MotionFailed(text, "no_odometry", round(self._active - since, 1))
 
     def _check(self, command: Velocity | None) -> None:
         """Fail when the motion takes too long or does not get on."""

@@ -95,6 +95,11 @@ class Odometer:
         """How many messages were bad."""
         return self._faults.total
 
+    @property
+    def frame(self) -> str:
+        """The frame of the newest poses; empty while it is not known."""
+        return self._header.frame
+
     def take(self, sample: Sample) -> None:
         """Take a message; the callback of the subscription."""
         wrong = not_finite(sample)

@@ -81,7 +81,9 @@ class _Wait:
         """The wait ends well."""
         self.forget()
         if self.elapsed is not None:
-            milliseconds = float(round((self.ctx.architecture.now() - self.began) * 1000))
+            # A clock may be set back meanwhile.
+            seconds = max(0.0, self.ctx.architecture.now() - self.began)
+            milliseconds = float(round(seconds * 1000))
             self.ctx.unify(self.elapsed, milliseconds)
             del self.ctx.trail[:]
         self.waiting.resume()

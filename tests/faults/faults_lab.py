@@ -1,0 +1,312 @@
+"""A whole system under faults: agents in a graph that is disturbed, and a robot that is watched.
+
+The robot lives in the same process, as a node of its own on a clock of its own: it can be killed and started anew, and its
+time can be set back, while the agents go on.  What truly happens is noted ten times a second.
+"""
+
+import asyncio
+import copy
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from jacaros.clock import Clock, Timer, VirtualClock, run
+from jacaros.mas.loading import load_deployment
+from jacaros.mas.mappings import with_mappings
+from jacaros.mas.options import RunOptions
+from jacaros.mas.ros_graph import RosGraph
+from jacaros.mas.system import System
+from jacaros.ros.backend import Backend
+from jacaros.ros.backends.memory_graph import MemoryGraph
+from jacaros.ros.open import open_backend
+from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
+from jacaros.sim.ground_truth import GroundTruth
+from jacaros.sim.node import SimNode
+from jacaros.sim.world import World
+
+PROGRAMS = Path(__file__).parent / "programs"
+
+GLANCE = 0.1
+"""Seconds between two looks at the robot."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """What the robot truly did: m/s and rad/s, and where it was."""
+
+    time: float
+    speed: float
+    turn_rate: float
+    x: float
+    y: float
+
+    @property
+    def still(self) -> bool:
+        """Whether it stood."""
+        return self.speed == 0.0 and self.turn_rate == 0.0
+
+
+class SimulatorClock:
+    """The time of a simulator: it passes as that of the laboratory does, from another beginning that can be set back."""
+
+    virtual = False
+
+    def __init__(self, clock: VirtualClock, begin: float) -> None:
+        self._clock, self._ahead = clock, begin - clock.now()
+
+    @property
+    def elapsed(self) -> float:
+        return self._clock.elapsed
+
+    def now(self) -> float:
+        return self._clock.now() + self._ahead
+
+    def reset(self, to: float) -> None:
+        """Set it back, as a simulator that begins again does."""
+        self._ahead = to - self._clock.now()
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        return self._clock.call_later(delay, callback)
+
+    async def sleep(self, delay: float) -> None:
+        await self._clock.sleep(delay)
+
+    def busy(self, cycles: int) -> None:
+        self._clock.busy(cycles)
+
+
+class RobotElsewhere(RosGraph):
+    """The graph of a run whose robot is somebody else's affair."""
+
+    node: Backend
+
+    async def start(self) -> None:
+        """All is made by the laboratory."""
+
+    def backend(self) -> Backend:
+        return self.node
+
+    async def close(self) -> None:
+        await self.node.close()
+
+
+@dataclass
+class Lab:
+    """One run.
+
+    Attributes:
+        told: what agents printed, with the seconds since the beginning.
+        errors: what people were told besides.
+        moments: what the robot truly did.
+    """
+
+    clock: VirtualClock
+    robot_clock: Clock
+    graph: MemoryGraph
+    world: World
+    told: list[tuple[float, str]] = field(default_factory=list)
+    errors: list[str] = field(default_factory=list)
+    moments: list[Moment] = field(default_factory=list)
+    exit_code: int | None = None
+    _nodes: Any = field(default_factory=lambda: itertools.count(1))
+
+    # Faults
+
+    def at(self, seconds: float, fault: Callable[[], object]) -> None:
+        """Have a fault happen so many seconds after the beginning."""
+        self.clock.call_later(seconds - self.clock.elapsed, fault)  # type: ignore[arg-type]  # what it gives is dropped
+
+    def node(self, name: str = "", clock: Clock | None = None) -> Backend:
+        """A further node in the graph."""
+        made = open_backend(
+            "memory",
+            clock or self.clock,
+            name or f"other_{next(self._nodes)}",
+            log=self.errors.append,
+            graph=self.graph,
+        )
+        with_no_wait(made.start())
+        return made
+
+    def start_robot(self) -> None:
+        """Let the robot join the graph; it stands where it is."""
+        self.robot_node = self.node("world", self.robot_clock)
+        self.sim = SimNode(self.world, self.robot_node, self.robot_clock)
+        self.sim.start()
+
+    def kill_robot(self) -> None:
+        """The process that talks to the wheels is gone without a word: they stop for want of commands."""
+        self.graph.vanish("/world")
+        self.sim.stop()
+        world, clock = self.world, self.clock
+
+        def step() -> None:
+            if world.robot().moving:
+                for _ in range(5):
+                    world.step()
+                clock.call_later(0.1, step)
+
+        step()
+
+    def change(self, topic: str, type_name: str, change: Callable[[Any], None]) -> Callable[[], None]:
+        """Change all messages of a topic on their way, as a driver that goes wrong would; gives what ends it."""
+        publisher = self.node().publisher(topic, type_name)
+        forged: dict[int, Any] = {}
+        seen: dict[int, Any] = {}
+        loop = asyncio.get_running_loop()
+
+        def fate(message: Any) -> tuple[float, ...]:
+            if id(message) in forged:
+                return (0.0,)
+            if id(message) not in seen:
+                # Kept, so that no other message gets the number.
+                seen[id(message)] = message
+                false = copy.deepcopy(message)
+                change(false)
+                forged[id(false)] = false
+                loop.call_soon(publisher.publish, false)
+            return ()
+
+        end = self.graph.disturb(topic, fate)
+
+        def over() -> None:
+            end()
+            publisher.close()
+
+        return over
+
+    # What was perceived
+
+    @property
+    def lines(self) -> list[str]:
+        """What agents printed."""
+        return [text for _, text in self.told]
+
+    def when(self, beginning: str) -> float:
+        """When a line that begins so was printed first; fails when none was."""
+        for time, text in self.told:
+            if text.startswith(beginning):
+                return time
+        raise AssertionError(f"{beginning!r} is not among {self.told}")
+
+    # What truly happened
+
+    @property
+    def truth(self) -> GroundTruth:
+        return self.world.ground_truth
+
+    def stands(self, begin: float, end: float) -> bool:
+        """Whether the robot stood all the time between two moments; both are within the run."""
+        between = [each for each in self.moments if begin <= each.time <= end]
+        assert between, f"the run lasted {self.clock.elapsed:g} s only"
+        return all(each.still for each in between)
+
+    def drives(self, begin: float, end: float) -> bool:
+        """Whether it moved at some time between two moments."""
+        return any(not each.still for each in self.moments if begin <= each.time <= end)
+
+    @property
+    def safe(self) -> bool:
+        """Whether the robot stands at the end and never touched anything."""
+        return self.moments[-1].still and not self.truth.events_of("bump", "collision", "bad_command")
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """Where the robot is, rounded to centimetres."""
+        robot = self.world.robot()
+        return round(robot.x, 2) + 0.0, round(robot.y, 2) + 0.0
+
+    # The port of a run's console
+
+    def print(self, agent: str, text: str) -> None:
+        self.told.append((round(self.clock.elapsed, 2), text))
+
+    def log(self, text: str, level: str = "info") -> None:
+        self.errors.append(text)
+
+
+def with_no_wait(coroutine: Any) -> None:
+    """Run a coroutine that waits for nothing."""
+    try:
+        coroutine.send(None)
+    except StopIteration:
+        return
+    raise AssertionError("it waits")
+
+
+def in_lab(
+    program: str,
+    faults: Callable[[Lab], None] = lambda lab: None,
+    *,
+    mapping: str | None = None,
+    world: str = "empty",
+    seconds: float = 60.0,
+    simulated: float | None = None,
+    followed: bool = True,
+) -> Lab:
+    """Run a program of the folder `programs` under faults, to its end or for so many seconds.
+
+    Args:
+        program: its name.
+        faults: arranges what goes wrong.
+        mapping: mapping file of that folder whose artifacts the agent focuses.
+        world: where the robot is.
+        seconds: longest time; a run that should have ended before tells so by its exit code, which is None.
+        simulated: time of the robot's own clock at the beginning; without it there is one clock for all.
+        followed: that clock is told on ``/clock``, as a simulator does, and the agents follow it.
+    """
+    clock = VirtualClock()
+    robot_clock = clock if simulated is None else SimulatorClock(clock, simulated)
+    lab = Lab(clock, robot_clock, MemoryGraph(), World.load(world, 0))
+    time: Clock = (
+        clock if simulated is None or not followed else RosClock(lambda text: lab.log(f"[ros] {text}"))
+    )
+    deployment = load_deployment(PROGRAMS / program)
+    if mapping is not None:
+        deployment = with_mappings(deployment, (str(PROGRAMS / mapping),))
+    timers: list[Timer] = []
+
+    def every(period: float, what: Callable[[], None]) -> None:
+        def tick() -> None:
+            timers.append(clock.call_later(period, tick))
+            del timers[:-10]
+            what()
+
+        tick()
+
+    def glance() -> None:
+        robot = lab.world.robot()
+        lab.moments.append(Moment(round(clock.elapsed, 3), robot.speed, robot.turn_rate, robot.x, robot.y))
+
+    async def main() -> None:
+        mas = System(deployment, time, lab, RunOptions(seed=0))
+        mas.ros = RobotElsewhere(mas.options, time, "agents", None, lab.log)
+        mas.ros.node = open_backend(
+            "memory", time, "agents", log=lambda text: lab.log(f"[ros] {text}"), graph=lab.graph
+        )
+        await mas.ros.node.start()
+        lab.start_robot()
+        if isinstance(time, RosClock):
+            time.listen(mas.ros.node)
+            ticks = lab.node("simulator").publisher("/clock", CLOCK_TYPE)
+            every(0.02, lambda: ticks.publish(ticks.message(clock=robot_clock.now())))
+        every(GLANCE, glance)
+        faults(lab)
+        timer = clock.call_later(seconds, lambda: mas.end(99))
+        lab.exit_code = await mas.run()
+        timer.cancel()
+        if isinstance(time, RosClock):
+            time.close()
+        # Commands that are on their way arrive, and the robot obeys.
+        await clock.sleep(1.0)
+        for each in timers:
+            each.cancel()
+        lab.sim.close()
+        await lab.robot_node.close()
+
+    run(main, clock)
+    if lab.exit_code == 99:
+        lab.exit_code = None
+    return lab

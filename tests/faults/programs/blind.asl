@@ -1,0 +1,17 @@
+// Drives by time alone, three times two seconds, whatever odometry says, and tells what it perceives.
+!begin.
+
++!begin
+  <- !drive(3);
+     .wait(1000);
+     .stopMAS.
+
++!drive(0).
++!drive(N)
+  <- drive(0.3, 2);
+     .print("driven");
+     !drive(N - 1).
+
++odom(X, Y)[frame(F)] <- .print("odom ", X, " ", F).
+-odom(_, _) : not odom(_, _) <- .print("odom unknown").
++bad_message(Topic, Why) <- .print("bad ", Topic, " ", Why).

@@ -1,0 +1,22 @@
+// Lets the robot's own navigation bring it to a point and back, as often as it takes, and tells what it perceives.
+!begin.
+
++!begin
+  <- !there(2, 0);
+     !there(0, 0);
+     .stopMAS.
+
++!there(X, Y)
+  <- navigate_to(X, Y);
+     .print("at ", X, " ", Y).
+
+-!there(X, Y)[error(E), env_failure_reason(Why)]
+  <- .print(E, " ", Why);
+     .wait(1000);
+     !there(X, Y).
+
++connected(Topic) <- .print("connected ", Topic).
+-connected(Topic) <- .print("lost ", Topic).
+-pose(_) : not pose(_) <- .print("nobody knows where I am").
+
++bad_message(Topic, Why) <- .print("bad ", Topic, " ", Why).

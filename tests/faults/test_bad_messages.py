@@ -1,0 +1,116 @@
+"""Messages with numbers that are none, and in wrong frames, while the robot drives."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from faults_lab import Lab, in_lab
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+
+def odometry_is(change: Callable[[Any], None], begin: float, end: float) -> Callable[[Lab], None]:
+    """Change odometry on its way from one moment to another."""
+
+    def faults(lab: Lab) -> None:
+        lab.at(begin, lambda: lab.at(end, lab.change("/odom", ODOMETRY, change)))
+
+    return faults
+
+
+def without_position(number: float) -> Callable[[Any], None]:
+    def change(message: Any) -> None:
+        message.pose.pose.position.x = number
+
+    return change
+
+
+def without_heading(message: Any) -> None:
+    message.pose.pose.orientation.w = math.nan
+
+
+def elsewhere(message: Any) -> None:
+    """The pose is right, in a map whose origin is somewhere else."""
+    message.header.frame_id = "map"
+    message.pose.pose.position.x += 5.0
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (without_position(math.nan), "pose.pose.position.x"),
+        (without_position(math.inf), "pose.pose.position.x"),
+        (without_heading, "pose.pose.orientation.w"),
+    ],
+    ids=["nan", "infinite", "no heading"],
+)
+def test_a_robot_stands_while_it_does_not_know_where_it_is(change: Callable[[Any], None], what: str) -> None:
+    lab = in_lab("driving.asl", odometry_is(change, 2, 9))
+    bad = f'bad /odom not_finite("{what}")'
+    assert lab.lines == [
+        "connected /odom",
+        *[bad] * 3,
+        "action_failed no_odometry(5)",
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert lab.when(bad) <= 2.1
+    assert lab.drives(1.9, 2.1)
+    assert lab.stands(3.2, 9.0)
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
+    assert len(lab.errors) == 3, "140 messages, of which the first, the tenth and the hundredth are told"
+
+
+def test_a_few_bad_numbers_are_told_once_and_the_robot_arrives() -> None:
+    lab = in_lab("driving.asl", odometry_is(without_position(math.nan), 2, 2.2))
+    assert lab.lines == [
+        "connected /odom",
+        'bad /odom not_finite("pose.pose.position.x")',
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert lab.errors == ["[wheels] /odom: pose.pose.position.x is nan; the message is dropped"]
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
+
+
+def test_a_place_in_another_frame_is_no_place_to_drive_by() -> None:
+    lab = in_lab("driving.asl", odometry_is(elsewhere, 2, 5))
+    assert lab.lines == [
+        "connected /odom",
+        *['bad /odom wrong_frame("map")'] * 2,
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert lab.stands(3.5, 5.0)
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
+
+
+def test_a_motion_does_not_outlive_a_change_of_frames() -> None:
+    """Who gives poses in another frame for good was started anew; what was a goal before is another place there."""
+    lab = in_lab("driving.asl", odometry_is(elsewhere, 2, 60), seconds=7.5)
+    assert lab.lines[-1] == "action_failed no_odometry(4.5)"
+    assert 7.0 <= lab.when("action_failed") <= 7.1
+    assert lab.stands(3.5, 7.5)
+    assert lab.safe
+
+
+def test_a_mapped_property_goes_and_comes_back_and_a_drive_by_time_ends() -> None:
+    lab = in_lab("blind.asl", odometry_is(without_position(math.nan), 1, 3), mapping="robot.yaml")
+    bad = 'bad /odom not_finite("pose.pose.position.x")'
+    assert [line for line in lab.lines if not line.startswith("odom 1")] == [
+        "odom 0 odom",
+        "odom 0.1 odom",
+        bad,
+        "odom 0.2 odom",
+        bad,
+        "odom unknown",
+        "driven",
+        "odom 0.9 odom",
+        "driven",
+        "driven",
+    ]
+    assert lab.stands(6.8, 8.0)
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
+    [told] = lab.errors
+    assert "odom is not shown: pose.pose.position.x is nan" in told

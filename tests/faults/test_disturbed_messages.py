@@ -1,0 +1,80 @@
+"""Messages that come late, twice, overtake each other, or not at all: odometry, and commands."""
+
+from collections.abc import Callable
+
+import pytest
+from faults_lab import Lab, in_lab
+
+from jacaros.ros.backends.memory_faults import Fate, both, delayed, dropped, duplicated
+
+
+@pytest.mark.parametrize("topic", ["/odom", "/cmd_vel"])
+@pytest.mark.parametrize(
+    "fate",
+    [
+        delayed(0.05),
+        delayed(0.0, jitter=0.3, seed=1),
+        duplicated(3, apart=0.1),
+        dropped(0.5, seed=1),
+        both(dropped(0.3, seed=2), both(duplicated(2, apart=0.05), delayed(0.02, jitter=0.1, seed=3))),
+    ],
+    ids=["late", "overtaking", "repeated", "lost", "all of it"],
+)
+def test_a_robot_arrives_over_a_bad_line(topic: str, fate: Fate) -> None:
+    lab = in_lab("driving.asl", lambda lab: lab.at(1, lambda: lab.graph.disturb(topic, fate)))
+    assert [line for line in lab.lines if not line.startswith("bad /odom out_of_order")] == [
+        "connected /odom",
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert len(lab.errors) <= 3, "the first, the tenth and the hundredth are told"
+    assert lab.exit_code == 0
+    assert lab.safe
+    assert abs(lab.place[0]) <= 0.05
+
+
+def test_odometry_that_is_late_by_long_makes_a_robot_overshoot_and_give_up() -> None:
+    """Nobody can tell a late message from another clock: the bound is what a robot drives in that time."""
+    lab = in_lab("driving.asl", lambda lab: lab.at(1, lambda: lab.graph.disturb("/odom", delayed(1.0))))
+    assert any(line.startswith("action_failed blocked") for line in lab.lines)
+    assert max(moment.x for moment in lab.moments) < 2.0 + 1.0 * 0.65
+    assert lab.safe
+
+
+def lost(topic: str, begin: float, end: float) -> Callable[[Lab], None]:
+    def faults(lab: Lab) -> None:
+        lab.at(begin, lambda: lab.at(end, lab.graph.disturb(topic, dropped())))
+
+    return faults
+
+
+def test_without_odometry_the_robot_stands_and_the_motion_fails() -> None:
+    lab = in_lab("driving.asl", lost("/odom", 2, 10))
+    assert lab.lines == [
+        "connected /odom",
+        "lost /odom",
+        "action_failed no_odometry(5)",
+        "connected /odom",
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert 2.9 <= lab.when("lost") <= 3.5
+    assert lab.stands(3.6, 10.0)
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
+
+
+def test_odometry_that_pauses_makes_the_robot_pause() -> None:
+    lab = in_lab("driving.asl", lost("/odom", 2, 5))
+    assert lab.lines == ["connected /odom", "lost /odom", "connected /odom", "at 2 0", "at 0 0"]
+    assert lab.stands(3.6, 5.0)
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
+
+
+def test_a_robot_that_gets_no_commands_stands_and_the_motion_is_blocked() -> None:
+    lab = in_lab("driving.asl", lost("/cmd_vel", 2, 8))
+    first, *others = [line for line in lab.lines if line.startswith("action_failed")]
+    assert first.startswith("action_failed blocked(")
+    assert others == ["action_failed blocked(0)"]
+    assert lab.stands(2.7, 8.0)
+    assert lab.lines[-2:] == ["at 2 0", "at 0 0"]
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)

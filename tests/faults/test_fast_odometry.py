@@ -1,0 +1,38 @@
+"""Odometry that comes a thousand times a second: the agent reacts to what is now."""
+
+from typing import Any
+
+import pytest
+from faults_lab import Lab, in_lab
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+
+def flood(lab: Lab) -> None:
+    """Tell the robot's true place a thousand times a second, each number once."""
+    publisher = lab.node().publisher("/fast_odom", ODOMETRY)
+
+    def tick() -> None:
+        robot = lab.world.robot()
+        lab.sim.time.catch_up()
+        pose: Any = {
+            "pose": {"position": {"x": robot.x + 1e-7 * lab.clock.elapsed}, "orientation": {"w": 1.0}}
+        }
+        header = {"frame_id": "odom", "stamp": lab.clock.now()}
+        publisher.publish(publisher.message(header=header, pose=pose))
+        lab.clock.call_later(0.001, tick)
+
+    tick()
+
+
+def test_a_busy_agent_stops_its_robot_where_it_should() -> None:
+    lab = in_lab("meeting.asl", flood, seconds=6)
+    seen = float(lab.lines[0].removeprefix("seen at "))
+    assert lab.lines[1].startswith("stopped aborted(")
+    # At 0.65 m/s a message is 0.65 mm; the true place has 20 ms steps of 13 mm.
+    assert seen == pytest.approx(1.0, abs=0.02)
+    assert lab.stands(4.0, 6.0)
+    assert lab.safe
+    braking = lab.place[0] - seen
+    assert 0.0 <= braking < 0.45, "0.65 m/s and 0.5 m/s2"
+    assert lab.errors == []

@@ -1,0 +1,104 @@
+"""An action server, a robot or the whole graph that is gone in the middle of a motion, and comes back."""
+
+from faults_lab import Lab, in_lab
+
+LOST = [
+    "connected /odom",
+    "lost /odom",
+    "nobody knows where I am",
+    "action_failed server_lost",
+    "connected /odom",
+    "at 2 0",
+    "at 0 0",
+]
+
+MISSING = [
+    "[ros] waiting for the action /navigate_to_pose (nav2_msgs/action/NavigateToPose)",
+    (
+        "[ros] the action /navigate_to_pose (nav2_msgs/action/NavigateToPose) is missing; still trying. "
+        "Is the node that offers it running?"
+    ),
+    "[ros] found the action /navigate_to_pose (nav2_msgs/action/NavigateToPose)",
+]
+
+
+def robot_dies(lab: Lab) -> None:
+    lab.at(3, lab.kill_robot)
+    lab.at(10, lab.start_robot)
+
+
+def graph_goes(lab: Lab) -> None:
+    lab.at(3, lab.graph.interrupt)
+    lab.at(10, lab.graph.restore)
+
+
+def assert_arrived(lab: Lab) -> None:
+    assert lab.exit_code == 0
+    assert lab.safe
+    assert abs(lab.place[0]) <= 0.05
+
+
+def test_an_action_server_that_dies_leaves_the_robot_standing_and_the_plan_with_a_reason() -> None:
+    def faults(lab: Lab) -> None:
+        lab.at(3, lambda: lab.graph.vanish("/navigate_to_pose"))
+        lab.at(10, lambda: (lab.sim.close(), lab.sim.start()))
+
+    lab = in_lab("navigating.asl", faults, mapping="robot.yaml")
+    assert [line for line in lab.lines if "/odom" not in line] == [
+        "action_failed server_lost",
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert 6.0 <= lab.when("action_failed") <= 6.1, "three seconds without a sign of life"
+    assert lab.stands(3.5, 10.0)
+    assert lab.errors == MISSING
+    assert_arrived(lab)
+
+
+def test_a_robot_that_is_started_anew_is_navigated_again() -> None:
+    lab = in_lab("navigating.asl", robot_dies, mapping="robot.yaml")
+    assert lab.lines == LOST
+    assert lab.stands(3.5, 10.0)
+    assert lab.errors[1:] == MISSING
+    assert "the topic /odom (nav_msgs/msg/Odometry) is missing; still listening" in lab.errors[0]
+    assert_arrived(lab)
+
+
+def test_a_robot_that_is_started_anew_is_driven_again() -> None:
+    lab = in_lab("driving.asl", robot_dies)
+    assert lab.lines == [
+        "connected /odom",
+        "lost /odom",
+        "action_failed no_odometry(5)",
+        "connected /odom",
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert lab.stands(3.5, 10.0)
+    assert len(lab.errors) == 1
+    assert_arrived(lab)
+
+
+def test_a_graph_that_is_cut_and_whole_again_needs_no_restart() -> None:
+    for program, mapping in (("navigating.asl", "robot.yaml"), ("driving.asl", None)):
+        lab = in_lab(program, graph_goes, mapping=mapping)
+        expected = LOST if mapping else [*LOST[:2], "action_failed no_odometry(5)", *LOST[4:]]
+        assert lab.lines == expected
+        assert lab.when("lost /odom") <= 3.1
+        assert lab.when("connected /odom") <= 0.1
+        assert lab.stands(3.7, 10.0), "the wheels stop for want of commands"
+        assert lab.errors == (MISSING if mapping else [])
+        assert_arrived(lab)
+
+
+def test_a_graph_that_is_cut_often_is_found_again_each_time() -> None:
+    def faults(lab: Lab) -> None:
+        for number in range(6):
+            lab.at(1 + 2 * number, lab.graph.interrupt)
+            lab.at(1.5 + 2 * number, lab.graph.restore)
+
+    lab = in_lab("driving.asl", faults)
+    assert lab.lines.count("lost /odom") == 6
+    assert lab.lines.count("connected /odom") == 7
+    assert [line for line in lab.lines if "/odom" not in line] == ["at 2 0", "at 0 0"]
+    assert_arrived(lab)
