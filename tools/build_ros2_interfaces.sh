@@ -93,13 +93,16 @@ done
 
 export PATH=$venv/bin:$PATH AMENT_PREFIX_PATH=$venv CMAKE_PREFIX_PATH=$venv LD_LIBRARY_PATH=$venv/lib
 export _ROS_WHEELS_BOOTSTRAP_COMPLETE=1      # the library path is set already: no second start of the interpreter
+# The generators do the same again and again; see there.
+export PYTHONPATH=$root/tools/rosidl_cache ROSIDL_CACHE=$sources/parsed
+mkdir "$ROSIDL_CACHE"
 for package in "${missing_packages[@]}"; do
   say "building $package"
   build=$sources/build/$package
   mkdir -p "$build"
   {
     cmake -S "$sources/$package" -B "$build" -G Ninja -DCMAKE_INSTALL_PREFIX="$venv" -DCMAKE_BUILD_TYPE=Release \
-      -DCMAKE_C_FLAGS_RELEASE=-O0 -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
+      -DCMAKE_C_FLAGS_RELEASE=-O0 -DCMAKE_CXX_FLAGS_RELEASE=-O0 \
       -DBUILD_TESTING=OFF -DPython3_EXECUTABLE="$venv/bin/python" -DPYTHON_EXECUTABLE="$venv/bin/python"
     ninja -C "$build" -j2 install
   } >"$build.log" 2>&1 || { tail -40 "$build.log" >&2; say "the build of $package failed"; exit 1; }

@@ -10,7 +10,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs, not a package
 
 from bridges import BRIDGED, behind_bridge
-from expected import BEYOND, NOT_YET
+from expected import BEYOND
 from graphs import InMemory, InProcesses
 from masters import Master
 from presence import is_wanted, need, ros2_environment
@@ -34,20 +34,18 @@ def pytest_configure(config: pytest.Config) -> None:
     """Make the marker `only` known."""
     config.addinivalue_line("markers", "only(kinds): run a contract test on these kinds of graph alone")
     config.addinivalue_line(
-        "markers", "needs(words): skip while a backend does not have these yet (expected.py)"
+        "markers", "needs(words): skip where these cannot be shown (BEYOND in expected.py)"
     )
 
 
 @pytest.fixture(autouse=True)
 def _has_what_is_needed(request: pytest.FixtureRequest) -> None:
-    """Skip what a backend is still to learn."""
+    """Skip what cannot be shown on a kind of graph."""
     if "graph" in request.fixturenames:
         kind = request.getfixturevalue("graph").kind
         needed = {word for marker in request.node.iter_markers("needs") for word in marker.args}
         if needed & BEYOND.get(kind, set()):
             pytest.skip(f"cannot be shown on {kind}: {', '.join(sorted(needed & BEYOND[kind]))}")
-        if needed & NOT_YET.get(kind, set()):
-            pytest.skip(f"{kind} DOES NOT HAVE YET: {', '.join(sorted(needed & NOT_YET[kind]))}")
 
 
 @pytest.fixture(scope="session")

@@ -1,7 +1,4 @@
-"""What each kind of graph can do in the end, and what its backend does not have yet.
-
-The owner of a backend takes words out of `NOT_YET` as the backend learns; when it is empty it goes, with what reads it.
-"""
+"""What each kind of graph can do, and what cannot be shown on it."""
 
 from bridges import BRIDGED
 
@@ -29,10 +26,3 @@ BEYOND = {
     "rosbridge-ros1-left": {"events", "actions", "parameters", "contents", "failing services", "rosout"},
 }
 """Kind of graph → what cannot be shown on it, though its backend has the capability."""
-
-NOT_YET = {
-    "memory": set[str](),
-    "ros1": set[str](),
-    "ros2": set[str](),
-}
-"""Kind of graph → capabilities, and other words that tests need (marker `needs`), that are still to come."""

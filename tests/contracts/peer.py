@@ -178,6 +178,8 @@ class Peer(ActionCommands, GraphCommands):
         return {"total": 1}
 
     async def _never(self, request: Any) -> None:
+        self._running += 1
+        self._most_running = max(self._most_running, self._running)
         await asyncio.get_running_loop().create_future()
 
     def _nothing(self, request: Any) -> None:
@@ -194,6 +196,9 @@ class Peer(ActionCommands, GraphCommands):
 
     async def end_call(self, key: str) -> Any:
         return await self._calls.pop(key)
+
+    def call_over(self, key: str) -> bool:
+        return self._calls[key].done()
 
     async def give_up_call(self, key: str) -> bool:
         task = self._calls.pop(key)

@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from expected import CAPABILITIES, NOT_YET
+from expected import CAPABILITIES
 
 from jacaros.ros.errors import RosError
 
@@ -14,7 +14,7 @@ COUNT = "jacaros_interfaces/action/Count"
 
 def test_the_capabilities_are_those_that_were_promised(graph: Any, pair: Pair) -> None:
     left, _ = pair
-    assert set(left.capabilities()) == CAPABILITIES[graph.kind] - NOT_YET.get(graph.kind, set())
+    assert set(left.capabilities()) == CAPABILITIES[graph.kind]
 
 
 @pytest.mark.needs("contents")

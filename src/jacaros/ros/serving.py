@@ -6,12 +6,16 @@ import sys
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from jacaros.clock import Clock
+from jacaros.clock import Clock, Timer
+from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.backend import Handler
 from jacaros.ros.errors import CallFailed, CallTimedOut, MessageMismatch, ServiceUnavailable
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import response_type
 from jacaros.ros.waiting import Waiting
+
+LOOK = 1.0
+"""Seconds between two looks whether the server of a call is still there."""
 
 RETRY = 0.1
 """Seconds between two attempts to call a service that is not there."""
@@ -101,6 +105,56 @@ class PendingCalls:
         """Fail what is under way."""
         for future in list(self._futures):
             settle(future, None, CallFailed(f"the client of service {self._name} was closed during the call"))
+
+
+class ServerWatch:
+    """Fails a call whose server has gone, where the middleware does not tell; a context manager around the wait.
+
+    A server is gone when it has been seen and then not been there for `SERVER_LOST_AFTER`.
+
+    Args:
+        clock: measures the patience.
+        name: absolute name of the service.
+        answer: the future of the call.
+        is_there: whether the server that was asked is still in the graph, as far as is known.
+    """
+
+    def __init__(
+        self, clock: Clock, name: str, answer: "asyncio.Future[Any]", is_there: Callable[[], bool]
+    ) -> None:
+        self._clock, self._name, self._answer, self._is_there = clock, name, answer, is_there
+        self._seen = False
+        self._missed = 0.0
+        self._timer: Timer | None = None
+
+    def __enter__(self) -> "ServerWatch":
+        self._seen = self._is_there()
+        self._look_later()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _look_later(self) -> None:
+        self._timer = self._clock.call_later(LOOK, self._look)
+
+    def _look(self) -> None:
+        if self._is_there():
+            self._seen, self._missed = True, 0.0
+        elif self._seen:
+            self._missed += LOOK
+        if self._missed > SERVER_LOST_AFTER:
+            settle(self._answer, None, server_gone(self._name))
+        else:
+            self._look_later()
+
+
+def server_gone(name: str) -> CallFailed:
+    """What a call fails with whose server has gone."""
+    return CallFailed(
+        f"the server of service {name} went away during the call; whether it was done is not known"
+    )
 
 
 def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None) -> None:

@@ -32,6 +32,14 @@ def test_all_definitions_are_in_it_and_in_its_list_of_files(tmp_path: Path) -> N
     assert listed == files
 
 
+def test_types_of_ros_1_alone_are_not_in_it() -> None:
+    assert {"AutoDocking", "BumperEvent", "MoveBase"}.isdisjoint(
+        found.name for found in look_alikes().values()
+    )
+    assert look_alikes()["msg/SensorState.msg"].package == "turtlebot3_msgs"
+    assert origin("action", "MoveBase") is None
+
+
 def test_the_manifest_names_what_the_definitions_need(tmp_path: Path) -> None:
     manifest = ElementTree.parse(write_package(tmp_path) / "package.xml").getroot()
     depends = {element.text for element in manifest.findall("depend")}

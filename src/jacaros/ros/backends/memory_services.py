@@ -1,14 +1,16 @@
 """Services and their clients of `jacaros.ros.backends.memory`."""
 
 import asyncio
+from functools import partial
 from typing import Any
 
+from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.backend import Handler
 from jacaros.ros.backends.memory_members import GraphService
 from jacaros.ros.backends.memory_node import MemoryNode
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceUnavailable
 from jacaros.ros.names import request_type
-from jacaros.ros.serving import PendingCalls, Responder, checked_message, settle
+from jacaros.ros.serving import PendingCalls, Responder, checked_message, server_gone, settle
 from jacaros.ros.waiting import Waiting, within
 
 
@@ -21,6 +23,8 @@ class MemoryService:
         self._graph = node.graph
         self._responder = Responder(node.factory, name, type_name, handler, node.log)
         self._vanished = False
+        self._clock = node.clock
+        self._answers: set[asyncio.Future[Any]] = set()
         self._graph.offer(self)
 
     def handle(self, request: Any, answer: asyncio.Future[Any]) -> None:
@@ -29,11 +33,13 @@ class MemoryService:
         def done(response: Any, problem: CallFailed | None) -> None:
             if self._vanished:
                 return
+            self._answers.discard(answer)
             if self._graph.up:
                 settle(answer, response, problem)
             else:
                 self._graph.tell(settle, answer, response, problem)
 
+        self._answers.add(answer)
         self._responder.answer(request, done)
 
     def close(self) -> None:
@@ -42,8 +48,11 @@ class MemoryService:
         self._responder.close()
 
     def vanish(self) -> None:
-        """Be gone without a word: calls under way get no answer."""
+        """Be gone without a word: its clients find that out after a while."""
         self._vanished = True
+        for answer in self._answers:
+            self._clock.call_later(SERVER_LOST_AFTER, partial(settle, answer, None, server_gone(self.name)))
+        self._answers.clear()
         self.close()
 
 

@@ -10,7 +10,14 @@ from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
 from jacaros.ros.names import request_type
-from jacaros.ros.serving import PendingCalls, Responder, call_when_offered, checked_message, settle
+from jacaros.ros.serving import (
+    PendingCalls,
+    Responder,
+    ServerWatch,
+    call_when_offered,
+    checked_message,
+    settle,
+)
 from jacaros.ros.waiting import within
 
 SETTLING = 0.5
@@ -136,14 +143,14 @@ class Ros2Client:
         return await call_when_offered(node.clock, node.log, what, attempt, timeout)
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
-        clock = self._node.clock
+        node, clock = self._node, self._node.clock
         deadline = None if rest is None else clock.elapsed + rest
         if not self.ready:
             self._acquainted = False
             raise ServiceUnavailable(f"nobody offers service {self.name}")
         if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
-            if (mismatch := service_mismatch(self._node, self.name, self._type_name)) is not None:
+            if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
                 raise CallFailed(mismatch)
             self._acquainted = True
         if self._closed:
@@ -153,12 +160,20 @@ class Ros2Client:
         def finished(future: Any) -> None:
             problem = future.exception()
             failure = None if problem is None else CallFailed(f"service {self.name}: {problem}")
-            post(self._node.loop, settle, answer, None if problem else future.result(), failure)
+            post(node.loop, settle, answer, None if problem else future.result(), failure)
 
         call = self._client.call_async(message)
         call.add_done_callback(finished)
+        asked = service_servers(node, self.name)
+
+        def is_there() -> bool:
+            if self._closed or node.ended:
+                return True  # then the call ends in another way
+            return not asked.isdisjoint(service_servers(node, self.name)) if asked else self.ready
+
         try:
-            return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
+            with ServerWatch(clock, self.name, answer, is_there):
+                return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         finally:
             self._client.remove_pending_request(call)
 

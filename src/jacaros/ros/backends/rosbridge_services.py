@@ -7,7 +7,7 @@ from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_requests import Sight
 from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError
 from jacaros.ros.names import request_type, response_type
-from jacaros.ros.serving import PendingCalls, Responder, call_when_offered, checked_message
+from jacaros.ros.serving import PendingCalls, Responder, ServerWatch, call_when_offered, checked_message
 from jacaros.ros.waiting import within
 
 _NOT_OUR_DEFINITION = ("does not have a field", "message requires a", "Expected a JSON object")
@@ -56,7 +56,8 @@ class BridgeClient:
         arguments = node.translator.encode(request_type(self._type_name), message)
         number = node.requests.begin(self.name, arguments, node.settling(answer), rest or FOR_EVER)
         try:
-            values = await within(node.clock, answer, rest)
+            with ServerWatch(node.clock, self.name, answer, lambda: self._offered.value):
+                values = await within(node.clock, answer, rest)
         except CallFailed as problem:
             if "Timeout exceeded" in str(problem) and rest is not None:
                 raise TimeoutError from None

@@ -2,10 +2,10 @@
 
     python -m jacaros.ros.interfaces.ros2_package FOLDER
 
-writes ``FOLDER/jacaros_interfaces``, ready for ``colcon build``.  That one package holds a look-alike of every type here,
-whatever its package: ``nav2_msgs/action/NavigateToPose`` becomes ``jacaros_interfaces/action/NavigateToPose``.  One
-package instead of one per robot builds in a fraction of the time, and it cannot hide or break a genuine one that is
-installed later.  With ``tf2_msgs`` as a second argument that package is written instead, under its own name: the topic
+writes ``FOLDER/jacaros_interfaces``, ready for ``colcon build``.  That one package holds a look-alike of every type here
+that ROS 2 has, whatever its package: ``nav2_msgs/action/NavigateToPose`` becomes
+``jacaros_interfaces/action/NavigateToPose``.  One package instead of one per robot builds in a fraction of the time, and
+it cannot hide or break a genuine one that is installed later.  With ``tf2_msgs`` as a second argument that package is written instead, under its own name: the topic
 ``/tf`` is of use only with the very type that everybody else has.
 """
 
@@ -36,10 +36,10 @@ COMMON = frozenset(
     }
 )
 """Packages that every ROS 2 has; their definitions are here for the backends that have no packages."""
+ROS1_ONLY = frozenset({"kobuki_msgs", "move_base_msgs"})
+"""Packages of robots and stacks that stayed with ROS 1: nobody in a ROS 2 graph has these types."""
 OWN_NAME = frozenset({"tf2_msgs"})
 """Packages that are built under their own name."""
-ROS_1_ALONE = frozenset({("kobuki_msgs", "SensorState")})
-"""Types that no robot on ROS 2 needs, and whose names others have there."""
 KINDS = ("msg", "srv", "action")
 
 _REFERENCE = re.compile(r"^[ \t]*(?P<package>[a-z]\w*)/(?:msg/)?(?P<name>\w+)", re.MULTILINE)
@@ -83,7 +83,7 @@ def look_alikes(root: Path = BUILT_IN) -> dict[str, Definition]:
     """
     found: dict[str, Definition] = {}
     for definition in definitions(root):
-        if definition.package in COMMON | OWN_NAME or (definition.package, definition.name) in ROS_1_ALONE:
+        if definition.package in COMMON | OWN_NAME | ROS1_ONLY:
             continue
         other = found.setdefault(definition.relative, definition)
         if _meaning(other) != _meaning(definition):
