@@ -5,8 +5,8 @@
 writes ``FOLDER/jacaros_interfaces``, ready for ``colcon build``.  That one package holds a look-alike of every type here
 that ROS 2 has, whatever its package: ``nav2_msgs/action/NavigateToPose`` becomes
 ``jacaros_interfaces/action/NavigateToPose``.  One package instead of one per robot builds in a fraction of the time, and
-it cannot hide or break a genuine one that is installed later.  With ``tf2_msgs`` as a second argument that package is written instead, under its own name: the topic
-``/tf`` is of use only with the very type that everybody else has.
+it cannot hide or break a genuine one that is installed later.  With ``tf2_msgs`` as a second argument that package is
+written instead, under its own name: the topic ``/tf`` is of use only with the very type that everybody else has.
 """
 
 import argparse
