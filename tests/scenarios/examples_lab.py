@@ -28,6 +28,7 @@ PROJECTS = (
     "05_house_cleaning/house_cleaning.jcm",
     "07_shared_robot/shared_robot.jcm",
     "08_parcels/parcels.jcm",
+    "09_three_robots/three_robots.jcm",
 )
 
 LONGEST = 3000.0

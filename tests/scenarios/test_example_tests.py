@@ -22,7 +22,7 @@ def failed(suites: list[Suite]) -> set[str]:
 
 
 def test_every_example_has_tests() -> None:
-    assert len(FOLDERS) == 6
+    assert len(FOLDERS) == 7
     tests = {folder.name: sum(len(suite.tests) for suite in collect([folder])) for folder in FOLDERS}
     assert [name for name, number in tests.items() if number < 2] == []
 
@@ -45,6 +45,7 @@ def test_the_tests_of_an_example_pass(folder: Path) -> None:
         ("04_patrol", "operationRecharge; ", "", "goes_to_the_dock_when_the_battery_is_low"),
         ("04_patrol", "Percent < Least", "Percent > Least", "remembers_the_lowest_percentage_only"),
         ("05_house_cleaning", "!return;", "", "comes_back_into_its_room_after_a_recharge"),
+        ("09_three_robots", "     !hand_over;\n", "", "charges_in_its_dock_when_the_battery_is_low"),
         ("07_shared_robot", "     hand_over;\n", "", "takes_the_robot_when_the_battery_is_low_and_gives_it_back_full"),
     ],
 )  # fmt: skip

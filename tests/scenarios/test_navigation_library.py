@@ -54,7 +54,7 @@ def test_the_plans_with_faked_robots() -> None:
     [
         pytest.param('dock_id("dock").', ("nav2.yaml", "turtlebot3.yaml"), id="nav2 docks"),
         pytest.param("place(dock, 0.4, 1, 0).", ("nav2.yaml", "turtlebot4.yaml"), id="turtlebot 4 docks"),
-        pytest.param("place(dock, 0.4, 1, 0).", ("move_base.yaml", "turtlebot4.yaml"), id="move_base"),
+        pytest.param("place(dock, 0.4, 1, 0).", ("move_base.yaml", "turtlebot2.yaml"), id="move_base"),
     ],
 )
 def test_a_patrol_charges_in_between(tmp_path: Path, beliefs: str, mappings: tuple[str, ...]) -> None:

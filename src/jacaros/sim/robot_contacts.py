@@ -7,6 +7,7 @@ topic (below the namespace)         type                                        
 ``/dock_status``                    ``irobot_create_msgs/msg/DockStatus``             TurtleBot 4, 2 Hz
 ``/sensor_state``                   ``turtlebot3_msgs/msg/SensorState``               TurtleBot 3, 20 Hz
 ``/mobile_base/events/bumper``      ``kobuki_msgs/msg/BumperEvent``                   TurtleBot 2, on changes
+``/mobile_base/sensors/core``       ``kobuki_msgs/msg/SensorState``                   TurtleBot 2, 2 Hz
 =================================== ================================================= ===================
 
 Nothing is computed unless somebody listens.
@@ -24,6 +25,7 @@ from jacaros.sim.world_time import WorldTime
 
 _TICKS_PER_HAZARD = 2
 _TICKS_PER_DOCK = 10
+_TICKS_PER_CORE = 10
 _DOCK_SEEN_FROM = 2.0
 _WHEEL_RADIUS = 0.033
 _TICKS_PER_TURN = 4096
@@ -53,6 +55,7 @@ class RobotContacts:
         self._dock = self._join("/dock_status", "irobot_create_msgs/msg/DockStatus")
         self._state = self._join("/sensor_state", "turtlebot3_msgs/msg/SensorState")
         self._bumper = self._join("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent")
+        self._core = self._join("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
         self._pressed: frozenset[str] = frozenset()
         self._docked: bool | None = None
 
@@ -77,6 +80,17 @@ class RobotContacts:
         if _wanted(self._dock) and (ticks % _TICKS_PER_DOCK == 0 or docked != self._docked):
             self._publish_dock(self._dock, docked)
         self._docked = docked
+        if _wanted(self._core) and ticks % _TICKS_PER_CORE == 0:
+            self._publish_core(self._core, docked)
+
+    def _publish_core(self, publisher: Any, docked: bool) -> None:
+        """A Kobuki's battery, in tenths of a volt: 13.2 V are empty, 16.5 V full."""
+        battery = self._robot.battery
+        message = publisher.message(battery=round(132 + 0.33 * battery.level))
+        state = "DOCKING_CHARGING" if battery.charging else "DOCKING_CHARGED" if docked else "DISCHARGING"
+        message.charger = constant(message, state)
+        self._head(message.header, "base_link")
+        publisher.publish(message)
 
     def _publish_hazards(self, publisher: Any, pressed: frozenset[str]) -> None:
         detections = []
@@ -131,7 +145,7 @@ class RobotContacts:
 
     def close(self) -> None:
         """Leave the topics."""
-        for publisher in (self._hazards, self._dock, self._state, self._bumper):
+        for publisher in (self._hazards, self._dock, self._state, self._bumper, self._core):
             if publisher is not None:
                 publisher.close()
 

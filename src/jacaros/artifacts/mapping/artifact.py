@@ -29,7 +29,7 @@ class MappedArtifact(RosArtifact):
     """An artifact made from a mapping file; `mapped_type` makes a class of its own for each.
 
     Options:
-        tf_prefix(P): stands before names of frames, in place of the namespace.
+        tf_prefix(P): stands before names of frames, in place of the namespace (with the node's in front).
 
     Attributes:
         mapping: the file.
@@ -88,7 +88,10 @@ class MappedArtifact(RosArtifact):
     def tf_prefix(self) -> str:
         """What stands before names of frames."""
         given = self.options.get("tf_prefix", self.part.tf_prefix)
-        return self.robot_prefix.strip("/") if given is None else str(given).strip("/")
+        if given is not None:
+            return str(given).strip("/")
+        # The namespace with that of the node in front: everything before a relative name.
+        return self.ros.resolve(self.robot_topic("frame")).rpartition("/")[0].strip("/")
 
     def frame(self, name: str) -> str:
         """The name of a frame in the graph."""

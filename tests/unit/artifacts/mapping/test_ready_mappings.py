@@ -63,7 +63,8 @@ def with_ready(
         watcher = lab.watch(artifact)
         await lab.sleep(1.5)
         await body(Ready(lab, file, artifact, watcher))
-        silence = ("waiting", "missing", "is not known: no transform") if world is None else ()
+        # No robot of the world falls off a cliff.
+        silence = ("/events/cliff",) if world is not None else ("waiting", "missing", "is not known: no transform")
         assert [line for line in lab.logged if not any(each in line for each in silence)] == []
 
     return in_lab(in_it, world)
@@ -154,7 +155,7 @@ def test_docking_by_the_base(file: str) -> None:
         await robot.lab.sleep(2)
         if file == "turtlebot4.yaml":
             assert robot.value("docked") == (True,)
-            assert robot.value("battery")[1] in (Atom("charging"), Atom("full"))
+        assert robot.value("battery")[1] in (Atom("charging"), Atom("full"))
         await robot.do("undock")
         await robot.lab.sleep(2)
         assert robot.lab.world.robot(None).dock is None
@@ -179,8 +180,7 @@ def test_driving_and_seeing(file: str) -> None:
         ranges = robot.value("laserrange")
         assert len(ranges) == 5
         assert all(0.1 < each < 10 for each in ranges)  # type: ignore[operator]
-        if file != "turtlebot2.yaml":
-            assert robot.value("battery") == (pytest.approx(99, abs=2), Atom("discharging"))
+        assert robot.value("battery") == (pytest.approx(99, abs=3), Atom("discharging"))
 
     with_ready(file, body)
 

@@ -1,0 +1,111 @@
+"""Did each robot watch its places, and that of another while it charged, each in its own dock and without a bump?
+
+Judged from the ground truth.
+"""
+
+import sys
+
+from jacaros.sim import GroundTruth
+from jacaros.testing import Verdict, judge
+from jacaros.testing.docking import Stay, stays
+from jacaros.testing.paths import distance
+
+PLACES = {
+    "robot_1": ((-1.5, 2.2), (3.2, 0.0)),
+    "robot_2": ((-1.5, 0.0), (3.2, -2.2)),
+    "robot_3": ((-1.5, -2.2), (3.2, 2.2)),
+}
+"""What each robot watches, in metres."""
+
+DOCKS = {"robot_1": "dock_1", "robot_2": "dock_2", "robot_3": "dock_3"}
+
+SEEN = 0.1
+"""A place is looked at when a robot comes so near, in metres."""
+
+UNSEEN = 180.0
+"""So long, in seconds, a place may be out of everybody's sight while anybody is on duty."""
+
+
+def check(truth: GroundTruth, recharges: int = 2) -> Verdict:
+    """Judge a run in which each robot recharges at least so often."""
+    verdict = Verdict()
+    bumps = truth.events_of("bump", "collision")
+    verdict.expect(not bumps, f"a robot bumped into something ({len(bumps)} times)")
+    verdict.expect(not truth.events_of("battery_empty"), "a battery was empty")
+    found = {robot: stays(truth, robot) for robot in PLACES}
+    for robot, places in PLACES.items():
+        judge_charging(verdict, truth, robot, found[robot], recharges)
+        for place in places:
+            verdict.expect(len(looks(truth, robot, place)) >= 2, f"{robot} was not twice at {place}")
+    on_duty = min(each[-1].begin for each in found.values() if each) if any(found.values()) else 0.0
+    longest = max(unseen(truth, place, on_duty) for places in PLACES.values() for place in places)
+    verdict.at_most("seconds without a look at a place", longest, UNSEEN)
+    helped = sum(is_helped(truth, robot, stay) for robot in PLACES for stay in found[robot])
+    verdict.measure("recharges with a helper", helped)
+    verdict.expect(helped >= 2, f"others watched in {helped} recharges only")
+    verdict.measure("metres between two robots at the least", nearest(truth))
+    return verdict
+
+
+def judge_charging(
+    verdict: Verdict, truth: GroundTruth, robot: str, found: list[Stay], recharges: int
+) -> None:
+    """Expect that a robot charges so often, when its battery is low, until it is full, and in its own dock."""
+    verdict.expect(len(found) >= recharges, f"{robot}: {len(found)} recharges, not {recharges}")
+    verdict.expect(
+        all(stay.charged or stay.level < 20.5 for stay in found), f"{robot} left its dock too early"
+    )
+    for event in truth.events_of("docked", robot=robot):
+        dock = event.data["dock"]
+        verdict.expect(dock == DOCKS[robot], f"{robot} was in {dock}")
+    for event in truth.events_of("charging", robot=robot):
+        level = event.data["level"]
+        verdict.expect(5 < level <= 20 or level > 90, f"{robot} charged at {level:.0f} %")
+
+
+def looks(truth: GroundTruth, robot: str, place: tuple[float, float]) -> list[float]:
+    """When a robot came to a place."""
+    found: list[float] = []
+    there = False
+    for sample in truth.path(robot):
+        near = distance(sample, *place) <= SEEN
+        if near and not there:
+            found.append(sample.time)
+        there = near
+    return found
+
+
+def unseen(truth: GroundTruth, place: tuple[float, float], end: float) -> float:
+    """The longest time without a robot at a place, until *end*."""
+    times = sorted(time for robot in PLACES for time in looks(truth, robot, place) if time < end)
+    gaps = zip([0.0, *times], [*times, end], strict=True)
+    return max(later - sooner for sooner, later in gaps)
+
+
+def is_helped(truth: GroundTruth, robot: str, stay: Stay) -> bool:
+    """Whether another robot was at a place of one that charged."""
+    end = stay.end if stay.end is not None else truth.latest(robot).time
+    others = [other for other in PLACES if other != robot]
+    return any(
+        stay.begin < time < end
+        for place in PLACES[robot]
+        for other in others
+        for time in looks(truth, other, place)
+    )
+
+
+def nearest(truth: GroundTruth) -> float:
+    """The least distance of the middles of two robots."""
+    paths = {robot: {round(s.time, 1): s for s in truth.path(robot)} for robot in PLACES}
+    robots = list(PLACES)
+    pairs = [(one, other) for n, one in enumerate(robots) for other in robots[n + 1 :]]
+    return min(
+        distance(sample, paths[other][time].x, paths[other][time].y)
+        for one, other in pairs
+        for time, sample in paths[one].items()
+        if time in paths[other]
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(judge(check, sys.argv[1:]))

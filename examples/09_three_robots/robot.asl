@@ -1,0 +1,124 @@
+// A robot that watches over some places of a storehouse, and over those of another robot while that one charges.
+
+{ include("$jacaros/artifacts.asl") }
+
+/* What the agent knows; the project says what robot it has, what that robot watches, and where it charges */
+
+place(north_west, -1.5, 2.2, 0).  // metres, and degrees
+place(north_east, 3.2, 2.2, 180).
+place(middle_west, -1.5, 0, 0).
+place(middle_east, 3.2, 0, 180).
+place(south_west, -1.5, -2.2, 0).
+place(south_east, 3.2, -2.2, 180).
+shift(2).  // it ends after so many recharges
+recharges(0).
+
+colleague(Name) :- .all_names(Names) & .member(Name, Names) & not .my_name(Name).
+
+// Whoever is asked for help looks at its own battery first.
+can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not off_duty.
+
+!start.
+
++!start
+  <- !use_robot;
+     .wait(pose(_, _, _));
+     !!keep_charged(watch);
+     !!watch.
+
+// One parameter, the robot's name, stands before all topics, actions and frames.
++!use_robot : robot(Name)
+  <- .concat(Name, "_nav", Nav);
+     .concat(Name, "_base", Base);
+     !use_artifact(Nav, "nav2.yaml", [Name]);
+     !use_artifact(Base, "turtlebot4.yaml", [Name]).
+
+// Alone in its process it may have it from the command line: jacaros run robot.asl --namespace robot_1
++!use_robot
+  <- !use_artifact(nav, "nav2.yaml", []);
+     !use_artifact(base, "turtlebot4.yaml", []).
+
+/* Watching: what is to be watched may change from round to round */
+
++!watch : not watched(_)
+  <- .wait(watched(_));
+     !watch.
+
++!watch
+  <- .findall(Place, watched(Place), Places);
+     !round(Places);
+     !watch.
+
++!arrived(Place) : watched(Place)[source(Owner)] & Owner \== self & not watched(Place)[source(self)]
+  <- .print("at ", Place, " for ", Owner).
+
++!arrived(_).
+
+/* Charging: in the library's steps, with words for the others before and after */
+
++!dock_and_charge
+  <- +charging;
+     !hand_over;
+     !into_dock(1);
+     !wait_until_charged;
+     -charging;
+     !count;
+     !end_of_shift;
+     !out_of_dock(1);
+     !take_back.
+
++!count : recharges(N)
+  <- -+recharges(N + 1).
+
+// The colleague with the fullest battery watches what this robot watches; that is a matter of telling it.
++!hand_over
+  <- for (colleague(Name)) {
+        .send(Name, askOne, can_help(_), Answer, 2000);
+        if (can_help(Percent) = Answer) {  // it may be false
+           +offer(Percent, Name)
+        }
+     };
+     .findall(offer(Percent, Name), offer(Percent, Name), Offers);
+     .abolish(offer(_, _));
+     !choose(Offers).
+
++!choose([])
+  <- .print("battery low, and nobody has time for my places").
+
++!choose(Offers)
+  <- .max(Offers, offer(_, Helper));
+     .print("battery low, ", Helper, " has my places");
+     +helper(Helper);
+     for (watched(Place)[source(self)]) {
+        .send(Helper, tell, watched(Place))
+     }.
+
++!take_back : helper(Helper)
+  <- -helper(Helper);
+     .print("battery full, thank you, ", Helper);
+     for (watched(Place)[source(self)]) {
+        .send(Helper, untell, watched(Place))
+     }.
+
++!take_back
+  <- .print("battery full").
+
+/* The end of the shift: in the dock; whoever is the last one closes the house */
+
++!end_of_shift : shift(Most) & recharges(N) & N >= Most
+  <- +off_duty;
+     .drop_desire(watch);
+     .print("my shift is over");
+     .broadcast(tell, off_duty);
+     .wait(not (colleague(Name) & not off_duty[source(Name)]));
+     .stopMAS.
+
++!end_of_shift.
+
+{ include("$jacaros/navigation.asl") }
+
+/* Something went wrong that the library could not help */
+
+-!keep_charged(_)[error_msg(Text)]
+  <- .print("I need help: ", Text);
+     .stopMAS(0, 1).

@@ -1,0 +1,12 @@
+// Two stops from wherever the robot stands: one program for robots of any name.
+{ include("$jacaros/navigation.asl") }
+
+!start.
+
++!start
+  <- .wait(pose(X, Y, _));
+     .print("begins");
+     !go_to(X + 1, Y, 0);
+     !go_to(X + 1, Y + 0.4, 90);
+     .print("is there");
+     .stopMAS.
