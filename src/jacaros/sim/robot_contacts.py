@@ -56,6 +56,8 @@ class RobotContacts:
         self._state = self._join("/sensor_state", "turtlebot3_msgs/msg/SensorState")
         self._bumper = self._join("/mobile_base/events/bumper", "kobuki_msgs/msg/BumperEvent")
         self._core = self._join("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
+        # There is nothing to fall off, and so nothing is told.
+        self._cliff = self._join("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
         self._pressed: frozenset[str] = frozenset()
         self._docked: bool | None = None
 
@@ -145,7 +147,7 @@ class RobotContacts:
 
     def close(self) -> None:
         """Leave the topics."""
-        for publisher in (self._hazards, self._dock, self._state, self._bumper, self._core):
+        for publisher in (self._hazards, self._dock, self._state, self._bumper, self._core, self._cliff):
             if publisher is not None:
                 publisher.close()
 
