@@ -144,6 +144,8 @@ def _option(option: click.Option) -> str:
         if option.required
         else ""
     )
+    if option.show_envvar:
+        default += f" The variable `{option.envvar}` of the environment says it, too."
     names = "`, `".join([f"{option.opts[0]}{value}", *option.secondary_opts])
     return f"| `{names}` | {_cell(option.help or '')}{default} |"
 

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pages import Block, blocks
+from pages import Block, blocks, is_file
 
 from jacaros.testing.run import RunResult, run_project
 
@@ -42,12 +42,6 @@ class Example:
     output: str = ""
     errors: str = ""
     shown: set[str] = field(default_factory=set)
-
-
-def is_file(block: Block) -> bool:
-    """Whether a block is a file that commands or examples may use."""
-    others = ("excerpt", "wrong", "right", "formatted")
-    return bool(block.purpose) and block.purpose.partition(" ")[0] not in others
 
 
 def examples(page: Path) -> Iterator[Example]:

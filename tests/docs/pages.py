@@ -3,7 +3,9 @@
 What stands behind the language of a block says what becomes of it::
 
     ```agentspeak hello.asl        a file that the page's commands find
-    ```console                     commands that are run, with what they print ("..." stands for any lines)
+    ```console                     commands that are run, with what they print ("..." stands for any lines);
+                                   `following` tells of those that only some readers or other terminals run
+    ```diff robot.yaml             what to change in a file
     ```output                      what the file before it prints (see `examples`)
     ```errors                      what is told besides when that file is run
     ```sh                          commands that are only read: set-up, real robots
@@ -56,6 +58,14 @@ def blocks(page: Path) -> Iterator[Block]:
         yield Block(
             language, purpose.strip(), "\n".join(lines) + "\n", text.count("\n", 0, fence.start()) + 1
         )
+
+
+def is_file(block: Block) -> bool:
+    """Whether a block is a file that commands or examples may use."""
+    others = ("excerpt", "wrong", "right", "formatted")
+    if block.language in ("console", "diff"):
+        return False
+    return bool(block.purpose) and block.purpose.partition(" ")[0] not in others
 
 
 def prose(page: Path) -> str:

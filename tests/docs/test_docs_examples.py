@@ -1,74 +1,23 @@
 """Every program of the documentation runs, and prints what the page says."""
 
-import os
-import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from examples import SHOWN, examples, is_file
-from pages import PAGES, ROOT, blocks, name_of
+from examples import SHOWN, examples
+from following import Reader
+from pages import PAGES, ROOT, blocks, is_file, name_of
 
-LANGUAGES = {"agentspeak", "console", "jcm", "mas2j", "python", "sh", "text", "xml", "yaml", *SHOWN}
+LANGUAGES = {"agentspeak", "console", "diff", "jcm", "mas2j", "python", "sh", "text", "xml", "yaml", *SHOWN}
 
 RUN = [page for page in PAGES if any(block.language == "console" for block in blocks(page))]
-
-
-def commands(text: str) -> list[tuple[str, str]]:
-    """The commands of a console block, each with what it is said to print."""
-    parts = re.split(r"^\$ ", text, flags=re.MULTILINE)
-    assert not parts[0].strip(), "a console block begins with a command"
-    found = []
-    for part in parts[1:]:
-        command, _, output = re.sub(r"\\\n\s*(?:> )?", "", part).partition("\n")
-        found.append((command, output))
-    return found
-
-
-def printed(command: str, folder: Path) -> str:
-    """What a command prints, errors included."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        ["sh", "-c", command],
-        cwd=folder,
-        env={**os.environ, "PATH": path, "COLUMNS": "100", "NO_COLOR": "1"},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    return done.stdout
-
-
-def pattern(expected: str) -> str:
-    """A regular expression for an expected output: lines `...` stand for any lines, `...` within for any text."""
-    lines = []
-    for line in expected.rstrip("\n").splitlines():
-        if line.strip() == "...":
-            lines.append(r"(?:[^\n]*\n)*?")
-        else:
-            lines.append(re.escape(line.rstrip()).replace(re.escape("..."), "[^\\n]*") + r"[ ]*\n")
-    return "".join(lines)
 
 
 @pytest.mark.parametrize("page", RUN, ids=name_of)
 def test_the_commands_of_a_page_print_what_it_says(page: Path, tmp_path: Path) -> None:
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     (tmp_path / "runs").mkdir()
-    for block in blocks(page):
-        where = f"{name_of(page)}:{block.line}"
-        if block.language == "console":
-            for command, expected in commands(block.text):
-                output = printed(command, tmp_path)
-                found = re.fullmatch(pattern(expected), output)
-                assert found, f"{where}: $ {command}\nprints\n{output}\nand not\n{expected}"
-        elif is_file(block):
-            file = tmp_path / block.purpose
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(block.text, encoding="utf-8")
+    with Reader(tmp_path) as reader:
+        reader.follow(page)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)

@@ -18,10 +18,18 @@ _OPTIONS = (
         "--ros",
         type=click.Choice(ROS_KINDS),
         default="memory",
+        envvar="JACAROS_ROS",
         show_default=True,
+        show_envvar=True,
         help="The ROS graph: that of the embedded world, or a real one.",
     ),
-    click.option("--world", metavar="FILE", help="World file or name, with --ros memory."),
+    click.option(
+        "--world",
+        metavar="FILE",
+        envvar="JACAROS_WORLD",
+        show_envvar=True,
+        help="World file or name, with --ros memory.",
+    ),
     click.option(
         "--domain-id", type=int, metavar="N", help="Domain of the ROS 2 graph, in place of ROS_DOMAIN_ID."
     ),

@@ -20,7 +20,9 @@ from jacaros.mas.system import System
     "--clock",
     type=click.Choice(["real", "fast", "ros"]),
     default="real",
+    envvar="JACAROS_CLOCK",
     show_default=True,
+    show_envvar=True,
     help="In real time; as fast as the machine can (not with a real ROS graph); or as /clock of a real ROS graph says.",
 )
 @click.option("--seed", type=int, help="Makes random numbers repeatable; with --clock fast the whole run.")
@@ -28,10 +30,18 @@ from jacaros.mas.system import System
     "--ros",
     type=click.Choice(ROS_KINDS),
     default="memory",
+    envvar="JACAROS_ROS",
     show_default=True,
+    show_envvar=True,
     help="The ROS graph: inside the process, or a real one.",
 )
-@click.option("--world", metavar="FILE", help="World file, or the name of a world that comes with jacaros.")
+@click.option(
+    "--world",
+    metavar="FILE",
+    envvar="JACAROS_WORLD",
+    show_envvar=True,
+    help="World file, or the name of a world that comes with jacaros.",
+)
 @click.option(
     "--mapping",
     "mappings",

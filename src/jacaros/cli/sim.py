@@ -65,8 +65,13 @@ def command(
     loaded = World.load(Path(world) if Path(world).is_file() else world, seed)
     loaded.ground_truth.keep = 1000
 
+    def tell() -> None:
+        names = ", ".join(robot.name for robot in loaded.description.robots)
+        click.echo(f"the world {loaded.description.name} with {names} runs; Ctrl-C ends it")
+
     async def main() -> None:
         backend = open_backend(ros, time, "world", url=bridge)
-        await serve(loaded, backend, time, seconds, ground_truth, publish_clock or speed is not None)
+        clock_too = publish_clock or speed is not None
+        await serve(loaded, backend, time, seconds, ground_truth, clock_too, tell)
 
     run(main, time)

@@ -131,7 +131,9 @@ class TerminalView:
         """The whole view."""
         head = Text(f"{self._drawing.get('name', '')}  ", style="bold")
         head.append(f"{_minutes(self._t)}  ×{self._factor:.0f}", style="not bold dim")
-        rows = [head, self._map(), *(self._gauge(robot, i) for i, robot in enumerate(self._robots))]
+        # Robots of another process, or real ones: there is nothing to draw, but goals and prints are worth a look.
+        rows = [head, self._map()] if self._drawing else [head]
+        rows += [self._gauge(robot, i) for i, robot in enumerate(self._robots)]
         if self._goals:
             rows.append(Text(self._goal_text().strip(), style="dim"))
         for agent, text in self._prints:

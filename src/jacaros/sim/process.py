@@ -3,6 +3,7 @@
 import asyncio
 import json
 import signal
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 
@@ -57,6 +58,7 @@ async def serve(
     duration: float | None = None,
     ground_truth_path: str | Path | None = None,
     publish_clock: bool = False,
+    when_open: Callable[[], None] | None = None,
 ) -> None:
     """Run *world* as a node of its own until SIGTERM or SIGINT, or for *duration* seconds of the clock.
 
@@ -67,6 +69,7 @@ async def serve(
         duration: seconds, or None for no end.
         ground_truth_path: file to write; `jacaros.sim.ground_truth.GroundTruth.read` reads it.
         publish_clock: whether *clock* goes to ``/clock``, for nodes in simulated time.
+        when_open: called as soon as the robots are in the graph.
 
     Raises:
         OSError: the file cannot be written.
@@ -83,6 +86,8 @@ async def serve(
         await backend.start()
         node.start()
         time = ClockPublisher(clock, backend) if publish_clock else None
+        if when_open is not None:
+            when_open()
         if ground_truth_path is None:
             await stop.wait()
         else:

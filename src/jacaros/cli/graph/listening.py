@@ -17,6 +17,7 @@ FRAMES_OVER = 2.0
 """Seconds in which every moving frame is told at least once (REP 105's trees are published ten times a second or more)."""
 
 TF_TYPE = "tf2_msgs/msg/TFMessage"
+_FRAMES = ("/tf", "/tf_static")
 
 
 def hearing(info: TopicInfo) -> QoS:
@@ -89,11 +90,12 @@ async def frames(joined: Joined) -> dict[str, str]:
 
     topics = joined.contents.topics
     subscriptions = []
-    for name in ("/tf", "/tf_static"):
-        if name in topics and topics[name].publishers:
+    # A node may publish static frames only when it hears of a listener for the others, and so be no publisher yet.
+    if any(name in topics and topics[name].publishers for name in _FRAMES):
+        for name in _FRAMES:
             with suppress(RosError):
                 made = joined.backend.subscription(
-                    name, TF_TYPE, take, _of_frames(topics[name]), on_event=lambda event: None
+                    name, TF_TYPE, take, _of_frames(name), on_event=lambda event: None
                 )
                 subscriptions.append(made)
     if subscriptions:
@@ -103,9 +105,9 @@ async def frames(joined: Joined) -> dict[str, str]:
     return found
 
 
-def _of_frames(info: TopicInfo) -> QoS:
+def _of_frames(name: str) -> QoS:
     # Many nodes send frames at once, each its own; static ones are kept for late comers.
-    if info.name == "/tf_static":
+    if name == "/tf_static":
         return QoS(durability="transient_local", depth=100)
     return QoS("best_effort", depth=100)
 
