@@ -132,7 +132,9 @@ class Reader:
         environment: variables in all terminals.
     """
 
-    def __init__(self, folder: Path, kind: str = MEMORY, environment: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self, folder: Path, kind: str = MEMORY, environment: Mapping[str, str] | None = None
+    ) -> None:
         self._folder = folder
         self._kind = kind
         path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -180,10 +182,11 @@ class Reader:
             running.press_ctrl_c()
             output = running.end()
             assert came, f"{where}: $ {command}\nprints\n{output}\nand not, before Ctrl-C,\n{before}"
-            before += "...\n"  # what comes while the key is pressed
         else:
             output = running.end()
-        found = re.fullmatch(pattern(before + after), output)
+        # While the key is pressed agents may print further lines, and nobody else does.
+        meanwhile = r"(?:\[[^\n]*\n)*" if pressed else ""
+        found = re.fullmatch(pattern(before) + meanwhile + pattern(after), output)
         assert found, f"{where}: $ {command}\nprints\n{output}\nand not\n{expected}"
         if command.startswith("export "):
             self._exports += f"{command}\n"
@@ -191,7 +194,9 @@ class Reader:
     def _in_terminal(self, command: str, expected: str, where: str) -> None:
         running = self._start(command)
         self._terminals.append(running)
-        assert running.prints(expected), f"{where}: $ {command}\nprints\n{running.output}\nand not\n{expected}"
+        assert running.prints(expected), (
+            f"{where}: $ {command}\nprints\n{running.output}\nand not\n{expected}"
+        )
 
     def _change(self, block: Block, where: str) -> None:
         """Change a file as a diff says; its lines must stand in the file, once."""
@@ -200,7 +205,9 @@ class Reader:
         old = "".join(line[1:] for line in lines if line[0] in " -")
         new = "".join(line[1:] for line in lines if line[0] in " +")
         text = file.read_text(encoding="utf-8")
-        assert text.count(old) == 1, f"{where}: {file.name} does not have these lines, once:\n{old}\nbut\n{text}"
+        assert text.count(old) == 1, (
+            f"{where}: {file.name} does not have these lines, once:\n{old}\nbut\n{text}"
+        )
         file.write_text(text.replace(old, new), encoding="utf-8")
 
     def __enter__(self) -> "Reader":
@@ -212,4 +219,3 @@ class Reader:
         for terminal in reversed(self._terminals):
             terminal.press_ctrl_c()
             terminal.end()
-

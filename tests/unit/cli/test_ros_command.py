@@ -31,6 +31,17 @@ def test_everything_is_listed_a_line_for_each(capsys: pytest.CaptureFixture[str]
     assert not any("jacaros_ros" in line for line in lines), "our own node is there for the look alone"
 
 
+def test_variables_of_the_environment_say_which_graph(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JACAROS_WORLD", "two_robots")
+    assert "action /robot_2/dock irobot_create_msgs/action/Dock" in told(capsys, "list").splitlines()
+    monkeypatch.setenv("JACAROS_ROS", "ros3")
+    code, _, errors = outcome(capsys, "list")
+    assert code == 2
+    assert "'ros3' is not one of" in errors
+
+
 def test_rates_are_measured(capsys: pytest.CaptureFixture[str]) -> None:
     lines = told(capsys, "list", "--rates").splitlines()
     assert "topic /odom nav_msgs/msg/Odometry publishers=1 subscriptions=0 rate=20" in lines

@@ -110,6 +110,15 @@ def test_without_a_terminal_there_is_a_plain_line_now_and_then() -> None:
     view.close()
 
 
+def test_without_a_world_there_are_goals_and_prints() -> None:
+    view = TerminalView({}, Console(file=io.StringIO(), force_terminal=True, width=80), Wall())
+    view.event(0.0, "goal", {"agent": "a", "goal": "!go", "state": "pursued"})
+    view.text(0.0, "a", "on the way")
+    view.frame(1.0, [])
+    view.close()
+    assert rendered(view).splitlines()[1:] == ["pursuing !go", "[a] on the way"]
+
+
 def test_two_robots_have_a_gauge_each() -> None:
     view, _, _, _ = view_of("two_robots")
     view.frame(
