@@ -35,7 +35,7 @@ def test_variables_of_the_environment_say_which_graph(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("JACAROS_WORLD", "two_robots")
-    assert "action /robot_2/dock irobot_create_msgs/action/Dock" in told(capsys, "list").splitlines()
+    assert "action /robot_1/dock irobot_create_msgs/action/Dock" in told(capsys, "list").splitlines()
     monkeypatch.setenv("JACAROS_ROS", "ros3")
     code, _, errors = outcome(capsys, "list")
     assert code == 2
