@@ -6,26 +6,21 @@ World files and mapping files are read with it.
 import difflib
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from io import StringIO
 from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.error import YAMLError
 from ruamel.yaml.nodes import MappingNode, SequenceNode
 
 from jacaros.errors import JacarosError
+from jacaros.yaml_syntax import Problem, syntax_problem
 
+__all__ = ["Node", "Problem", "YamlFileError", "read_document", "shown"]
 
-@dataclass(frozen=True, slots=True)
-class Problem:
-    """One mistake: where (line and column count from 1), what, and what to do about it."""
-
-    line: int
-    column: int
-    message: str
-    cure: str = ""
+LARGEST = 1_000_000
+"""Values that a document may have, those that aliases repeat included."""
 
 
 class YamlFileError(JacarosError):
@@ -73,15 +68,20 @@ class Node:
         """Note a mistake at this value."""
         self.problems.append(Problem(self.line, self.column, message, cure))
 
-    def mapping(self, *known: str, required: tuple[str, ...] = ()) -> dict[str, "Node"]:
-        """The entries of a mapping that may have the *known* keys only and must have the *required* ones."""
+    def mapping(
+        self, *known: str, required: tuple[str, ...] = (), anchors: bool = False
+    ) -> dict[str, "Node"]:
+        """The entries of a mapping that may have the *known* keys only and must have the *required* ones.
+
+        With *anchors* keys that begin with ``x-`` are the author's own, such as for what aliases repeat.
+        """
         if self.value is None and not required:
             return {}
         if not isinstance(self.value, CommentedMap):
             self.wrong(f"{self.what} must be a mapping of keys to values", f"keys: {', '.join(known)}")
             return {}
         for key in self.value:
-            if known and key not in known:
+            if known and key not in known and not (anchors and str(key).startswith("x-")):
                 self._unknown_key(key, known)
         for key in required:
             if key not in self.value:
@@ -92,6 +92,8 @@ class Node:
         # A key that a YAML merge (<<) brought in has no place of its own.
         known = key in (self.value.lc.data or {})
         line, column = self.value.lc.value(key) if known else (self.line - 1, self.column - 1)
+        if known and self.value[key] is None:  # the place of a missing value is that of the next thing
+            line, column = self.value.lc.key(key)
         return Node(self.value[key], line + 1, column + 1, self.problems, f"'{key}'")
 
     def _unknown_key(self, key: object, known: tuple[str, ...]) -> None:
@@ -127,7 +129,7 @@ class Node:
         """A finite number within the limits (both included)."""
         value = self.value
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            self.wrong(f"{self.what} must be a number, not {value!r}")
+            self.wrong(f"{self.what} must be a number, not {value!r}", "write a figure such as 0.5")
             return default
         if not minimum <= value <= maximum:
             self.wrong(f"{self.what} is {value}, but must {_limits(minimum, maximum)}")
@@ -190,25 +192,62 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
     reader.allow_duplicate_keys = True  # they are told below, all of them, and harm nobody till then
     document = None
     try:
-        document = reader.load(StringIO(text))
-        problems += _twice(reader.compose(StringIO(text)))
-    except MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-        # Such as ranges[0] in a list in brackets.
-        quotes = 'write a text with brackets in quotes: "ranges[0]"'
-        cure = quotes if "but got '['" in str(error.problem) else "mind indents, colons and quotes"
-        problems.append(Problem(line, column, f"not YAML: {error.problem}", cure))
+        composed = reader.compose(StringIO(text))
+        unusable = _unusable(composed)
+        if unusable is None:
+            document = reader.load(StringIO(text))
+            problems += _twice(composed, set())
+        else:
+            problems.append(unusable)
     except YAMLError as error:
-        problems.append(Problem(1, 1, f"not YAML: {error}"))
+        problems.append(syntax_problem(error, text))
+    except RecursionError:
+        problems.append(
+            Problem(1, 1, "its values are nested too deeply", "mind brackets that are not closed")
+        )
     return Node(document, 1, 1, problems, what)
 
 
-def _twice(node: Any) -> Iterator[Problem]:
+def _parts(node: Any) -> Iterator[Any]:
+    """The values within a value."""
+    if isinstance(node, MappingNode):
+        yield from (each for pair in node.value for each in pair)
+    elif isinstance(node, SequenceNode):
+        yield from node.value
+
+
+def _unusable(document: Any) -> Problem | None:
+    """An alias that means what it is within, or so many aliases of aliases that the document has no end."""
+    sizes: dict[int, int] = {}
+    within: set[int] = set()
+
+    def measure(node: Any) -> Problem | None:
+        if id(node) in sizes:
+            return None
+        line, column = node.start_mark.line + 1, node.start_mark.column + 1
+        if id(node) in within:
+            return Problem(line, column, f"&{node.anchor} contains itself", "leave the alias out")
+        within.add(id(node))
+        for part in _parts(node):
+            if (wrong := measure(part)) is not None:
+                return wrong
+        within.discard(id(node))
+        sizes[id(node)] = size = 1 + sum(sizes[id(part)] for part in _parts(node))
+        if size > LARGEST:
+            return Problem(line, column, f"it has more than {LARGEST} values", "use fewer aliases")
+        return None
+
+    return None if document is None else measure(document)
+
+
+def _twice(node: Any, seen_nodes: set[int]) -> Iterator[Problem]:
     """The keys that stand in one mapping twice."""
+    if id(node) in seen_nodes:
+        return
+    seen_nodes.add(id(node))
     if isinstance(node, MappingNode):
         seen: dict[str, int] = {}
-        for key, value in node.value:
+        for key, _ in node.value:
             line, column = key.start_mark.line + 1, key.start_mark.column + 1
             if isinstance(key.value, str) and key.value in seen and key.value != "<<":
                 first = seen[key.value]
@@ -216,7 +255,5 @@ def _twice(node: Any) -> Iterator[Problem]:
                 yield Problem(line, column, f"'{key.value}' stands here twice: first in line {first}", cure)
             else:
                 seen[str(key.value)] = line
-            yield from _twice(value)
-    elif isinstance(node, SequenceNode):
-        for item in node.value:
-            yield from _twice(item)
+    for part in _parts(node):
+        yield from _twice(part, seen_nodes)

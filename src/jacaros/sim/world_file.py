@@ -28,6 +28,7 @@ from jacaros.sim.description import Dock, Rectangle, Room, Segment, WorldDescrip
 from jacaros.sim.errors import Problem, WorldError
 from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.yaml_nodes import Node, read_document
+from jacaros.yaml_syntax import read_text
 
 _WORLDS = Path(__file__).parent / "worlds"
 _KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "robots")
@@ -58,11 +59,9 @@ def load_world(name: str) -> WorldDescription:
         WorldError: the file is missing, or wrong; with all mistakes at once.
     """
     path = find_world(name)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        problem = Problem(1, 1, f"not a text in UTF-8: {error.reason}", "save it as UTF-8")
-        raise WorldError(str(path), "", [problem]) from None
+    text, wrong = read_text(path)
+    if wrong is not None:
+        raise WorldError(str(path), text, [wrong])
     return read_world(text, str(path))
 
 

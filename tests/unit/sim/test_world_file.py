@@ -82,7 +82,7 @@ def test_all_mistakes_are_told_at_once_with_line_excerpt_and_cure() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("name: [unclosed", "not YAML"),
+        ("name: [unclosed", "this bracket is never closed"),
         ("a: 1\na: 2", "'a' stands here twice: first in line 1"),
         ("", "must be a mapping"),
         ("name: a", "lacks the key 'robots'"),
@@ -111,7 +111,7 @@ def test_a_wrong_world_says_what_is_wrong(text: str, message: str) -> None:
 def test_a_file_that_is_no_text_is_told_so(tmp_path: Path) -> None:
     path = tmp_path / "picture.yaml"
     path.write_bytes(b"\x89PNG\xff\xfe")
-    with pytest.raises(WorldError, match="not a text in UTF-8"):
+    with pytest.raises(WorldError, match="the byte 0x89 is not UTF-8"):
         World.load(path)
 
 

@@ -7,10 +7,11 @@ from pathlib import Path
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, OperationKind, Place, TopicPart
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.read_fields import place_of
-from jacaros.artifacts.mapping.read_names import namespace
+from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
 from jacaros.artifacts.mapping.read_topics import read_frame, read_parameter, read_property, read_signal
 from jacaros.yaml_nodes import Node, Problem, read_document
+from jacaros.yaml_syntax import read_text
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
 """Where the mappings are that come with the package."""
@@ -60,12 +61,14 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
     """What can be read of a file, and what is wrong with it."""
     name = _shown(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text, wrong = read_text(path)
     except FileNotFoundError:
         cure = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
         return MappingFile(name, ""), [Problem(1, 1, "there is no such mapping file", cure)]
-    except (OSError, UnicodeDecodeError) as error:
-        return MappingFile(name, ""), [Problem(1, 1, f"it cannot be read: {error}", "save it as UTF-8")]
+    except OSError as error:
+        return MappingFile(name, ""), [Problem(1, 1, f"it cannot be read: {error.strerror}")]
+    if wrong is not None:
+        return MappingFile(name, text), [wrong]
     problems: list[Problem] = []
     artifacts = _read(read_document(text, problems, "a mapping file"), path.stem, problems)
     return MappingFile(name, text, artifacts), sorted(problems, key=lambda each: (each.line, each.column))
@@ -97,7 +100,7 @@ def _read(document: Node, stem: str, problems: list[Problem]) -> dict[str, Artif
         return {}
     if not isinstance(document.value, dict) or "artifacts" not in document.value:
         return {stem: _artifact(stem, Place(1, 1), document)}
-    entries = document.mapping("artifacts")
+    entries = document.mapping("artifacts", anchors=True)
     found = {}
     for name, node in entries["artifacts"].entries():
         if not isinstance(name.value, str) or not name.value:
@@ -110,7 +113,7 @@ def _read(document: Node, stem: str, problems: list[Problem]) -> dict[str, Artif
 
 
 def _artifact(name: str, place: Place, node: Node) -> ArtifactPart:
-    entries = node.mapping(*_KEYS)
+    entries = node.mapping(*_KEYS, anchors=True)
     topics = [read_property(*pair) for pair in _pairs(entries, "properties")]
     topics += [read_signal(*pair) for pair in _pairs(entries, "signals")]
     prefix = entries.get("tf_prefix")
@@ -161,6 +164,8 @@ def _names(part: ArtifactPart) -> Iterator[Problem]:
     """Names that two things of an artifact have; signals may share one with a property, as beliefs and events do not."""
     seen: dict[str, tuple[str, Place]] = {}
     for kind, name, place in _observable(part):
+        if name == UNNAMED:
+            continue  # told already
         if name in seen and (kind != "feedback" or seen[name][0] != "feedback"):
             first, before = seen[name]
             yield place.problem(

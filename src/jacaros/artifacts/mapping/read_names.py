@@ -8,6 +8,12 @@ from jacaros.ros.errors import NameInvalid
 from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.yaml_nodes import Node
 
+UNNAMED = "unnamed"
+"""Stands for a name that is wrong."""
+
+RESERVED = ("true", "false", "not", "div", "mod", "if", "else", "elif", "for", "while")
+"""Words that agents write for something else."""
+
 _BELIEF = re.compile(r"[a-z][A-Za-z0-9_]*")
 _ROS = re.compile(r"[~/]?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 _NAMESPACE = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?")
@@ -22,10 +28,18 @@ _EXAMPLES = {
 def belief_name(node: Node) -> str:
     """The name of a property, signal or operation, as agents write it."""
     if not isinstance(node.value, str) or not _BELIEF.fullmatch(node.value):
+        if isinstance(node.value, bool):
+            node.wrong(f"{str(node.value).lower()} is no name that agents can write", "write another name")
+            return UNNAMED
         near = re.sub(r"\W", "_", str(node.value)).lstrip("_0123456789")
         cure = f"write {near[0].lower()}{near[1:]}" if near else "begin with a lower-case letter"
         node.wrong(f"{shown(node.value)} is no name that agents can write", cure)
-        return "unnamed"
+        return UNNAMED
+    if node.value in RESERVED:
+        node.wrong(
+            f"agents cannot write '{node.value}' as a name", f"write {node.value}_value or another name"
+        )
+        return UNNAMED
     return str(node.value)
 
 

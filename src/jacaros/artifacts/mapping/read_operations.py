@@ -1,6 +1,7 @@
 """Reads ``operations``."""
 
 import dataclasses
+import difflib
 import re
 from collections.abc import Callable
 from typing import Any
@@ -46,7 +47,11 @@ def read_operation(name: Node, node: Node) -> OperationPart:
     kinds = [kind for kind in KEYS if isinstance(node.value, dict) and kind in node.value]
     if len(kinds) != 1:
         found = f"has {' and '.join(kinds)}" if kinds else "does not say what it does"
-        name.wrong(f"the operation '{part.name}' {found}", f"write one of {', '.join(KEYS)}")
+        near = (
+            [] if kinds else [each for key in _keys(node) for each in difflib.get_close_matches(key, KEYS, 1)]
+        )
+        hint = f"did you mean '{near[0]}'?" if near else f"write one of {', '.join(KEYS)}"
+        name.wrong(f"the operation '{part.name}' {found}", hint)
         return part
     kind = OperationKind(kinds[0])
     entries = node.mapping(kind.value, *_COMMON, *KEYS[kind.value], required=_required(kind))
@@ -57,6 +62,10 @@ def read_operation(name: Node, node: Node) -> OperationPart:
         description=entries["description"].text() if "description" in entries else "",
     )
     return _READERS[kind](part, entries)
+
+
+def _keys(node: Node) -> list[str]:
+    return [str(key) for key in node.value] if isinstance(node.value, dict) else []
 
 
 def _required(kind: OperationKind) -> tuple[str, ...]:

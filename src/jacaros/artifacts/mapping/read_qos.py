@@ -20,7 +20,7 @@ def read_qos(node: Node) -> QoS:
         return PROFILES.get(node.value, DEFAULT_QOS)
     entries = node.mapping("reliability", "durability", "depth", "deadline")
     usual = DEFAULT_QOS
-    deadline = entries["deadline"].number(0.0) if "deadline" in entries else None
+    deadline = entries["deadline"].number(0.0, default=1.0) if "deadline" in entries else None
     if deadline == 0.0:
         entries["deadline"].wrong("'deadline' is 0, but must be above zero", "write seconds")
         deadline = None

@@ -1,0 +1,103 @@
+"""What is wrong with a file that is no YAML, or no text at all, in words of people who write YAML files."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One mistake: where (line and column count from 1), what, and what to do about it."""
+
+    line: int
+    column: int
+    message: str
+    cure: str = ""
+
+
+_QUOTES = 'put texts with such characters in quotes: "..."'
+_INDENT = "begin it in the same column as its neighbours, or further right than what it belongs to"
+_EXPLAINED = (
+    (
+        r"but got '\['",
+        "a bracket within a text of a list",
+        'write a text with brackets in quotes: "ranges[0]"',
+    ),
+    (r"character '\\t'", "a tab in the indent", "indent with spaces"),
+    (r"cannot start any token|unknown escape", "{problem}", _QUOTES),
+    (
+        r"expected <block end>, but found '([\]}])'",
+        "nothing is open that this bracket closes",
+        "leave it out",
+    ),
+    (r"expected <block end>|<document start>", "the indent fits none of the lines above", _INDENT),
+    (
+        r"mapping values are not allowed",
+        "a second ':', or an indent that fits none of the lines above",
+        'mind the indent; put texts that have ": " in them in quotes',
+    ),
+    (r"could not find expected ':'", "a key without ':'", "write it as key: value"),
+    (
+        r"undefined alias '(.*)'",
+        "there is no anchor &{0}",
+        "write &{0} before the value that is meant, further up",
+    ),
+    (r"another document", "a second document begins here", "leave --- out, or make two files"),
+    (r"for merging", "<< takes over the keys of a mapping, and this is none", "write <<: *name of an anchor"),
+    (r"unacceptable character", "a character that no text has", "save the file as text in UTF-8"),
+)
+"""Patterns of the parser's messages, what they mean, and what to do."""
+
+
+def syntax_problem(error: YAMLError, text: str) -> Problem:
+    """Explain why *text* cannot be parsed."""
+    if not isinstance(error, MarkedYAMLError):
+        position = getattr(error, "position", 0)
+        before = text[: position if isinstance(position, int) else 0]
+        return _explained(str(error), before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1)
+    mark, opened, told = error.problem_mark or error.context_mark, error.context_mark, str(error.problem)
+    line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+    if opened is not None and ("<stream end>" in told or "end of stream" in told):
+        what = "quote" if "scalar" in str(error.context) else "bracket"
+        return Problem(
+            opened.line + 1, opened.column + 1, f"this {what} is never closed", f"close the {what}"
+        )
+    problem = _explained(told, line, column)
+    if opened is not None and "flow" in str(error.context) and "but got '['" not in told:
+        where = f"the bracket of line {opened.line + 1}, column {opened.column + 1}"
+        return Problem(line, column, f"{problem.message}, within {where}", "mind commas, quotes and brackets")
+    return problem
+
+
+def _explained(told: str, line: int, column: int) -> Problem:
+    for pattern, message, cure in _EXPLAINED:
+        if (found := re.search(pattern, told)) is not None:
+            parts = found.groups()
+            return Problem(
+                line, column, f"not YAML: {message.format(*parts, problem=told)}", cure.format(*parts)
+            )
+    return Problem(line, column, f"not YAML: {told.splitlines()[0]}", "mind indents, colons and quotes")
+
+
+def read_text(path: Path) -> tuple[str, Problem | None]:
+    """The text of a file, and the place where it is not in UTF-8.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    data = path.read_bytes()
+    try:
+        return data.decode("utf-8-sig"), None
+    except UnicodeDecodeError as error:
+        text = data.decode("utf-8", "replace")
+        wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+        if wide or b"\0" in data:
+            what = "the file is in UTF-16" if wide else "this is no text file"
+            return "", Problem(1, 1, what, "save it as UTF-8" if wide else "give a YAML file")
+        before = data[: error.start].decode("utf-8", "replace")
+        line, column = before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1
+        return text, Problem(
+            line, column, f"the byte {data[error.start]:#04x} is not UTF-8", "save the file as UTF-8"
+        )
