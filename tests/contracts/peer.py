@@ -98,6 +98,9 @@ class Peer(ActionCommands, GraphCommands):
         for _ in range(times):
             publisher.publish(publisher.message(**fields))
 
+    def publish_fields(self, topic: str, fields: dict[str, Any]) -> None:
+        self._publishers[topic].publish(fields)
+
     def publish_counted(self, topic: str, count: int) -> None:
         publisher = self._publishers[topic]
         for number in range(count):

@@ -213,6 +213,16 @@ def test_a_node_hears_itself(graph: Any, pair: Pair, topic: str) -> None:
     graph.wait_until(lambda: left.received(topic), "the message arrives")
 
 
+def test_fields_do_for_a_message(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    connected(graph, pair, topic, "geometry_msgs/msg/Twist")
+    left.publish_fields(topic, {"linear": {"x": 1.5}})
+    graph.wait_until(lambda: right.received(topic), "the message arrives")
+    assert right.received(topic)[0]["linear"]["x"] == 1.5
+    with pytest.raises(MessageMismatch, match="linaer"):
+        left.publish_fields(topic, {"linaer": {"x": 1.5}})
+
+
 def test_a_message_of_another_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.advertise(topic, "std_msgs/msg/Int32")

@@ -90,10 +90,10 @@ class Publisher(Protocol):
         """Make a message of the topic's type; see `Backend.message`."""
 
     def publish(self, message: Any) -> None:
-        """Send *message*; it must not be changed afterwards.
+        """Send *message*, or one with the fields of a mapping; it must not be changed afterwards.
 
         Raises:
-            MessageMismatch: the message is not of the topic's type.
+            MessageMismatch: the message is not of the topic's type, or the fields do not fit it.
         """
 
     def close(self) -> None:

@@ -34,6 +34,17 @@ def checked_message(factory: MessageFactory, type_name: str, given: Any) -> Any:
     return given
 
 
+def published_message(factory: MessageFactory, topic: str, type_name: str, given: Any) -> Any:
+    """Make the message that a publisher sends of the mapping that it was given.
+
+    Raises:
+        MessageMismatch: *given* is no mapping, or does not fit the type's definition.
+    """
+    if not isinstance(given, Mapping):
+        raise MessageMismatch(f"topic {topic} carries {type_name}, not {given!r}", type_name)
+    return factory.make(type_name, given)
+
+
 class Responder:
     """Runs the handler of one service on the loop, any number of calls at a time.
 

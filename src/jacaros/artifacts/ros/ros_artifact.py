@@ -10,13 +10,24 @@ from jacaros.artifacts.ros.connection import Connection
 from jacaros.artifacts.ros.faults import Faults
 from jacaros.artifacts.ros.listener import Listener
 from jacaros.artifacts.ros.missing import MissingTopic
+from jacaros.artifacts.ros.offering import Offer
 from jacaros.artifacts.ros.options import Reader, WrongOption, read_arguments, text, watching
 from jacaros.artifacts.ros.reading import Outlet, Reading, ReadingPolicy, Values
 from jacaros.env.artifact import Artifact, internal_operation
 from jacaros.env.errors import InvalidArtifact
+from jacaros.env.operation import marks_of
 from jacaros.env.values import Structure
-from jacaros.ros.action import ActionClient
-from jacaros.ros.backend import Backend, Client, Publisher, Sample, Subscription, TopicEvent
+from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
+from jacaros.ros.backend import (
+    DEFAULT_POLICY,
+    Backend,
+    Client,
+    Publisher,
+    Sample,
+    Service,
+    Subscription,
+    TopicEvent,
+)
 from jacaros.ros.errors import MessageMismatch, RosError
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.trace import Cause
@@ -224,6 +235,49 @@ class RosArtifact(Artifact):
         client = self._kept(self.ros.action_client(self.robot_topic(name), type_name))
         self.at_dispose(self.ros.add_exit_hook(client.close))
         return client
+
+    def service(self, name: str, type_name: str, handler: Callable[..., Any]) -> Service:
+        """Offer the robot's service *name* until the artifact is disposed.
+
+        Args:
+            name: below the robot's name, such as ``take_order``.
+            type_name: such as ``std_srvs/srv/Trigger``.
+            handler: an `internal_operation` of this artifact with two parameters, the request and the
+                `jacaros.artifacts.ros.offering.Reply`; see `jacaros.artifacts.ros.offering` for what its failure
+                means.  Another function takes the request, gives the response, and stands outside of all operations.
+        """
+        offer = self._offer(handler)
+        handle = handler if offer is None else offer.handler(type_name)
+        return self._kept(self.ros.service(self.robot_topic(name), type_name, handle))
+
+    def action_server(
+        self, name: str, type_name: str, execute: Callable[..., Any], policy: ActionPolicy = DEFAULT_POLICY
+    ) -> ActionServer:
+        """Offer the robot's action *name* until the artifact is disposed.
+
+        When a goal is cancelled, or a newer one takes over, ``CancelledError`` is thrown into its operation: ``finally``
+        is the place for what has to be put right.
+
+        Args:
+            name: below the robot's name, such as ``deliver``.
+            type_name: such as ``nav2_msgs/action/NavigateToPose``.
+            execute: an `internal_operation` with two parameters, the `jacaros.ros.action.ServerGoal` and the
+                `jacaros.artifacts.ros.offering.Reply`; or another function as `jacaros.ros.action.Execute`.
+            policy: which goals are accepted, and whether a newer one takes over.
+        """
+        offer = self._offer(execute)
+        code = execute if offer is None else offer.execute(type_name)
+        return self._kept(self.ros.action_server(self.robot_topic(name), type_name, code, policy))
+
+    def _offer(self, operation: Callable[..., Any]) -> Offer | None:
+        declared = self._steps.interface.own(operation, 2)
+        if declared is not None:
+            return Offer(self.ros, self._steps, self.id, declared)
+        if marks_of(getattr(operation, "__func__", operation)):
+            raise InvalidArtifact(
+                f"{operation.__qualname__} cannot serve requests: write it with two parameters, request and reply"
+            )
+        return None
 
     def reading(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
         """Let the property *name* follow a sensor by *policy*; ends with the artifact.

@@ -101,8 +101,8 @@ class Steps(StepInProgress):
         self._tell(refused, outcome)
         return refused
 
-    def start(self, declared: DeclaredOperation, request: OperationRequest) -> None:
-        """Start an operation of the artifact's own.
+    def start(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution | None:
+        """Start an operation of the artifact's own; None when that is done elsewhere, or not at all.
 
         From within a step it begins after that step, and not at all when the step is rolled back; from
         outside, such as from a callback, as soon as the artifact is free.
@@ -110,14 +110,17 @@ class Steps(StepInProgress):
         inside = self.inside()
         if not inside and self.setting.elsewhere():
             self.setting.hand_over(partial(self.start, declared, request))
-            return
+            return None
         if request.cause is None and inside and self.turns.holder is not None:
             request.cause = self.turns.holder.cause
         execution = OperationExecution(self, request, declared, request.arguments, request.cause)
         if inside:
             self._started.append(execution)
-        elif not self.disposed:
+        elif self.disposed:
+            return None
+        else:
             self.turns.enter(execution, self._guard(execution))
+        return execution
 
     def initialise(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution:
         """Run the ``init`` of the artifact as its first operation; the number of arguments is right."""

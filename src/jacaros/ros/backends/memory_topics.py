@@ -13,8 +13,8 @@ from jacaros.clock import Timer
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.backends.memory_members import GraphPublisher, GraphSubscription
 from jacaros.ros.backends.memory_node import MemoryNode
-from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.qos import QoS, incompatibility
+from jacaros.ros.serving import published_message
 
 
 class MemoryPublisher:
@@ -50,9 +50,7 @@ class MemoryPublisher:
     def publish(self, message: Any) -> None:
         """Hand *message* to all subscriptions."""
         if not isinstance(message, self._class):
-            raise MessageMismatch(
-                f"topic {self.topic} carries {self.type_name}, not {message!r}", self.type_name
-            )
+            message = published_message(self._node.factory, self.topic, self.type_name, message)
         if not self._node.exit_hooks.admits():
             return
         self.kept.append(message)

@@ -12,6 +12,7 @@ from jacaros.ros.backends.ros1_node import Ros1Node, wait_until_sent
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.handoff import Handoff
 from jacaros.ros.qos import QoS
+from jacaros.ros.serving import published_message
 
 
 class Ros1Publisher:
@@ -44,9 +45,7 @@ class Ros1Publisher:
     def publish(self, message: Any) -> None:
         """Queue *message* for sending."""
         if not isinstance(message, self._class):
-            raise MessageMismatch(
-                f"topic {self.topic} carries {self._type_name}, not {message!r}", self._type_name
-            )
+            message = published_message(self._node.factory, self.topic, self._type_name, message)
         if self._closed or not self._node.exit_hooks.admits():
             return
         with self._lock:

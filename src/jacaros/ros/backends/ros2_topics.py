@@ -14,9 +14,10 @@ from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.backends.ros2_graph import RCLError, endpoint, foreign_types, own_types
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_quality import profile
-from jacaros.ros.errors import MessageMismatch, RosError
+from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS, incompatibility
+from jacaros.ros.serving import published_message
 
 COURTESY = 0.002
 """Seconds that rclpy's executor lets the agents go first: it computes for long (in Python) before it waits again."""
@@ -69,9 +70,7 @@ class Ros2Publisher:
     def publish(self, message: Any) -> None:
         """Send *message*."""
         if not isinstance(message, self._class):
-            raise MessageMismatch(
-                f"topic {self.topic} carries {self._type_name}, not {message!r}", self._type_name
-            )
+            message = published_message(self._node.factory, self.topic, self._type_name, message)
         if not self._closed and self._node.exit_hooks.admits():
             self._publisher.publish(message)
 
