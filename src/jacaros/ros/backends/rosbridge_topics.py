@@ -9,10 +9,10 @@ from typing import Any
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.backends.rosbridge_node import BridgeNode, Feed, Sink
 from jacaros.ros.backends.rosbridge_requests import Sight
-from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.handoff import Handoff
 from jacaros.ros.names import message_type
 from jacaros.ros.qos import QoS
+from jacaros.ros.serving import published_message
 
 RAW_DEPTH = 300
 """Messages of an action's topics that may wait for the loop."""
@@ -55,9 +55,7 @@ class BridgePublisher:
     def publish(self, message: Any) -> None:
         """Send *message*."""
         if not isinstance(message, self._class):
-            raise MessageMismatch(
-                f"topic {self.topic} carries {self._type_name}, not {message!r}", self._type_name
-            )
+            message = published_message(self._node.factory, self.topic, self._type_name, message)
         if self._closed or not self._node.exit_hooks.admits():
             return
         self._kept.append(message)
