@@ -57,8 +57,9 @@ Robot artifacts do not believe all that they are sent. They tell of a bad messag
 | `clock_jumped(S)` | all stamps are S seconds older than before: the sender's clock was set back | used |
 | `stamp_off(S)` | its stamp is S seconds (10 or more) off our clock, minus: in the past | used |
 
-A motion stops the robot at once when odometry is no number any more, and fails with `no_odometry(S)` if that lasts. A beam
-of a laser without an echo is no bad message, whatever the driver writes for it.
+A motion stops the robot at once when odometry is no number any more, and fails with `no_odometry(S)` if that lasts, or if
+odometry goes on in another frame: there, its goal is another place. A beam of a laser without an echo is no bad message,
+whatever the driver writes for it. See also [when things go wrong](../how-to/when_things_go_wrong.md).
 """
 LINKS = {
     "ReadingPolicy": "[reading sensors](#reading-sensors)",

@@ -48,6 +48,7 @@ class Peer(ActionCommands, GraphCommands):
         self._services: dict[str, Any] = {}
         self._clients: dict[str, Any] = {}
         self._calls: dict[str, asyncio.Task[Any]] = {}
+        self._numbered = 0
         self._running = 0
         self._most_running = 0
 
@@ -105,6 +106,25 @@ class Peer(ActionCommands, GraphCommands):
         publisher = self._publishers[topic]
         for number in range(count):
             publisher.publish(publisher.message(data=number))
+
+    def publish_numbered(self, topic: str, count: int, period: float) -> None:
+        """Publish odometry whose x is 1, 2, 3, ..., one in so many seconds; `numbered` tells how far it is."""
+        publisher, began = self._publishers[topic], self._clock.now()
+        self._numbered = 0
+
+        def again() -> None:
+            due = min(count, int((self._clock.now() - began) / period) + 1)
+            while self._numbered < due:
+                self._numbered += 1
+                pose = {"pose": {"position": {"x": float(self._numbered)}, "orientation": {"w": 1.0}}}
+                publisher.publish(publisher.message(pose=pose))
+            if self._numbered < count:
+                self._clock.call_later(period, again)
+
+        again()
+
+    def numbered(self) -> int:
+        return self._numbered
 
     def publish_wrong_message(self, topic: str) -> None:
         self._publishers[topic].publish(self._backend.message("geometry_msgs/msg/Twist"))

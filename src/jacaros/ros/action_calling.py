@@ -164,6 +164,11 @@ class GoalSender:
         """Whether a goal is under way or somebody waits for the server: a wire that has to ask, asks while this is so."""
         return bool(self._goals or self._arrivals)
 
+    def wants(self, goal_id: str) -> bool:
+        """Whether somebody still waits for a goal; one that was given up must not be sent again."""
+        pending = self._goals.get(goal_id)
+        return pending is not None and not pending.abandoned
+
     def goal(self, **fields: Any) -> Any:
         """Make a goal message."""
         return self._factory.make(self._goal_type, fields)

@@ -2,7 +2,8 @@
 !begin.
 
 +!begin
-  <- makeArtifact("wheels", "ArtCmdVelAndOdometry", [mode(verbose), rate(2), watch_connection(1)], Id);
+  <- makeArtifact("wheels", "ArtCmdVelAndOdometry", [mode(verbose), rate(2), watch_connection(1)],
+                  Id);
      focus(Id);
      !there(2, 0);
      !there(0, 0);

@@ -2,7 +2,7 @@
 !begin.
 
 +!begin
-  <- makeArtifact("wheels", "ArtCmdVel", [odometry_topic(fast_odom)], W);
+  <- makeArtifact("wheels", "ArtCmdVel", [odometry_topic(fast_odom)], _W);
      makeArtifact("odometry", "ArtOdometry", [topic(fast_odom)], O);
      focus(O);
      !!drive.
@@ -16,5 +16,5 @@
      abortMoving.
 
 +pose(X, _, _)
-  <- for (.range(I, 1, 2000)) { Y = I };
+  <- for (.range(I, 1, 2000)) { _Y = I };
      -+thought(X).

@@ -5,7 +5,9 @@
   <- makeArtifact("wheels", "ArtCmdVelAndOdometry", [watch_connection(1)], W);
      makeArtifact("battery", "ArtSimBattery", [drain(10)], B);
      makeArtifact("ros", "ArtRos", [], R);
-     focus(W); focus(B); focus(R);
+     focus(W);
+     focus(B);
+     focus(R);
      !!drive;
      !!wait;
      !!ask;
@@ -19,7 +21,7 @@
 +!ask <- open_gripper.
 -!ask[env_failure_reason(Why)] <- .print(Why).
 
-+!hurry <- .wait({+never}, 7000).
++!hurry <- .wait({ +never }, 7000).
 -!hurry[error(E)] <- .print(E).
 
 +battery(50) <- .print("half empty").

@@ -291,12 +291,12 @@ class Ros2GoalWire:
     def _greet_newcomers(self) -> None:
         """A server that came during a goal may have taken the place of one that died, unnoticed so far by the graph.
 
-        Then it does not know the goal, and says so; one that was not accepted yet is for it.
+        Then it does not know the goal, and says so; one that was not accepted yet is for it, unless it was given up.
         """
         for goal in list(self._goals.values()):
             if goal.accepted:
                 self._node.loop.call_later(SETTLING, self._ask_for_result, goal)
-            else:
+            elif self.sender.wants(goal.identity):
                 goal.repeated = True
                 self._send_when_settled(goal.identity)
 
@@ -305,7 +305,9 @@ class Ros2GoalWire:
 
         def send() -> None:
             goal = self._goals.get(identity)
-            if goal is not None and not self._closed and not self._node.ended:
+            if goal is None or not self.sender.wants(identity):
+                return
+            if not self._closed and not self._node.ended:
                 self._call(self._goal_client, goal.request, lambda answer: self._answered(identity, answer))
 
         rest = self._there_since + SETTLING - time.monotonic()
