@@ -95,6 +95,26 @@ def test_a_motion_does_not_outlive_a_change_of_frames() -> None:
     assert lab.safe
 
 
+def test_a_mapped_property_is_of_its_frame_alone() -> None:
+    lab = in_lab("blind.asl", odometry_is(elsewhere, 1, 3), mapping="framed.yaml")
+    bad = 'bad /odom wrong_frame("map")'
+    assert [line for line in lab.lines if not line.startswith("odom 1")] == [
+        "odom 0 odom",
+        "odom 0.1 odom",
+        bad,
+        "odom 0.2 odom",
+        bad,
+        "odom unknown",
+        "driven",
+        "odom 0.9 odom",
+        "driven",
+        "driven",
+    ]
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
+    [told] = lab.errors
+    assert "odom is not shown: the frame is map, not odom" in told
+
+
 def test_a_mapped_property_goes_and_comes_back_and_a_drive_by_time_ends() -> None:
     lab = in_lab("blind.asl", odometry_is(without_position(math.nan), 1, 3), mapping="robot.yaml")
     bad = 'bad /odom not_finite("pose.pose.position.x")'

@@ -118,6 +118,7 @@ class TopicPart:
         key: tells which element is which; None: the first field.
         initial: values before the first message; None: there is no property then.
         when_changed: a signal is sent only for other values than before.
+        frame: the only frame whose messages are shown; None: any.
     """
 
     name: str
@@ -134,6 +135,7 @@ class TopicPart:
     policy: ReadingPolicy = ALWAYS
     view: RangeOfView | None = None
     when_changed: bool = False
+    frame: Written | None = None
     signal: bool = False
     description: str = ""
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart
+from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart, Written
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WHOLE, Getter, Path, WrongPath, follow, getter, read_path
 from jacaros.artifacts.mapping.taking import Take, taker
@@ -31,6 +31,9 @@ class Row:
     annotations: tuple[object, ...] = ()
     place: tuple[float, float] = (0.0, 0.0)
 
+
+FRAME = read_path("header.frame_id")
+"""Where a message says in which frame it is given."""
 
 Extract = Callable[[Any], list[Row]]
 """Takes a message; raises `Unshowable`."""
@@ -82,6 +85,8 @@ class _Maker:
     def make(self) -> Extract:
         """The function; of no use if something is wrong."""
         before = len(self.problems)
+        if self.part.frame is not None:
+            self._require_frame(self.part.frame)
         fields = self._fields()
         takes = [take for field in fields if (take := self._taker(field)) is not None]
         notes = [
@@ -93,6 +98,13 @@ class _Maker:
         if self.part.each is None:
             return self._single(takes, notes, view)
         return self._several(getter(self.part.each), takes, notes, view, key)
+
+    def _require_frame(self, frame: Written) -> None:
+        try:
+            follow(FRAME, self.message, self.interfaces.fields)
+        except (WrongPath, UnknownInterface):
+            text = f"'frame' is for messages with a header, and {self.message} has none"
+            self.wrong(frame.place, WrongPath(text, "leave it out"))
 
     def _fields(self) -> Sequence[FieldPart]:
         if self.part.fields is not None:

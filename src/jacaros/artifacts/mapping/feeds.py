@@ -1,6 +1,7 @@
 """Topics of a mapped artifact: each message goes to the properties and signals that show something of it."""
 
 import dataclasses
+from typing import Any
 
 from jacaros.artifacts.mapping.declared import TopicPart, Written
 from jacaros.artifacts.mapping.elements import Elements
@@ -86,6 +87,7 @@ class Feed:
         elif not part.signal:
             self._reading = host.reading_of(part.name, part.policy, *(part.initial or ()))
         self._view = self._range_of_view()
+        self._frame = host.frame(part.frame.text) if part.frame is not None else None
 
     def _range_of_view(self) -> RangeOfView | None:
         view = self.part.view
@@ -113,7 +115,17 @@ class Feed:
 
     def take(self, sample: Sample) -> None:
         """Take a message."""
-        self.take_message(sample.message, sample.cause, sample.topic)
+        if self._frame is None or self._is_in_frame(sample, self._frame):
+            self.take_message(sample.message, sample.cause, sample.topic)
+
+    def _is_in_frame(self, sample: Sample, wanted: str) -> bool:
+        message: Any = sample.message
+        given = message.header.frame_id.strip("/")
+        if given == wanted:
+            return True
+        text = f"the frame is {given or 'not told'}, not {wanted}"
+        self._refuse(Unshowable(given, text, "is that its frame? Then write it", "wrong_frame"), sample.topic)
+        return False
 
     def take_message(self, message: object, cause: Cause | None, topic: str) -> None:
         """Take a message, or the feedback of an action."""

@@ -19,7 +19,7 @@ from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.env.values import Atom
 from jacaros.yaml_nodes import Node
 
-_MESSAGE = ("topic", "type", "fields", "each", "key", "annotations", "qos", "description")
+_MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
 PROPERTY = (*_MESSAGE, *_POLICY, "initial", "range_of_view")
 SIGNAL = (*_MESSAGE, "rate", "when_changed")
@@ -77,6 +77,10 @@ def read_feedback(name: Node, node: Node) -> TopicPart:
     return dataclasses.replace(part, policy=read_policy(entries, part.fields))
 
 
+def _written(node: Node) -> Written:
+    return Written(node.text(), place_of(node))
+
+
 def _topic_part(name: str, place: Place, entries: dict[str, Node]) -> TopicPart:
     each = entries.get("each")
     key = entries.get("key")
@@ -104,6 +108,7 @@ def _topic_part(name: str, place: Place, entries: dict[str, Node]) -> TopicPart:
         read_annotations(entries["annotations"]) if "annotations" in entries else (),
         None,
         read_qos(entries["qos"]) if "qos" in entries else None,
+        frame=_written(entries["frame"]) if "frame" in entries else None,
         description=entries["description"].text() if "description" in entries else "",
     )
 

@@ -32,6 +32,10 @@ WRONG = {
             "Its fields: position (geometry_msgs/msg/Point), orientation (geometry_msgs/msg/Quaternion)"
         ),
     ),
+    "frame without a header": (
+        "properties: {a: {topic: t, type: std_msgs/msg/String, frame: odom}}",
+        "1:62: 'frame' is for messages with a header, and std_msgs/msg/String has none | leave it out",
+    ),
     "field of a number": (
         ODOMETRY.format("fields: [pose.pose.position.x.y]"),
         "1:66: 'pose.pose.position.x.y': pose.pose.position.x is float64 and has no fields | write pose.pose.position.x",
