@@ -275,7 +275,7 @@ def test_a_mistake_is_shown_with_its_line() -> None:
         "m.yaml:2:23: 'pose' has no key 'unit'\n"
         "    2 |   pose: {topic: odom, unit: 3}\n"
         "                              ^\n"
-        "  cure: known keys: topic, type, fields, "
+        "  cure: known keys: topic, type, frame, fields, "
     )
 
 
