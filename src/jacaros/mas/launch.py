@@ -11,7 +11,7 @@ from jacaros.clock import Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.interruption import Interrupted, Interruption
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.mas.watchdog import Watchdog
@@ -45,11 +45,9 @@ def launch(
     if own_process:
         # Before the programs are read: their syntax trees are many objects that all stay.
         gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
-    deployment = project if isinstance(project, Deployment) else load_deployment(project)
-    if options.mappings:
-        from jacaros.mas.mappings import with_mappings  # here: most runs have none
-
-        deployment = with_mappings(deployment, options.mappings)
+    deployment = mapped(
+        project if isinstance(project, Deployment) else load_deployment(project), options.mappings
+    )
     clock = _clock(options, console)
 
     async def main() -> int:

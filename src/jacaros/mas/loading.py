@@ -1,5 +1,6 @@
 """From a file to what is to be run."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -26,6 +27,19 @@ def load_deployment(path: str | Path) -> Deployment:
     if any(diagnostic.severity == "error" for diagnostic in deployment.ignored):
         raise ProjectError(deployment.ignored)
     return deployment
+
+
+def mapped(deployment: Deployment, names: Sequence[str]) -> Deployment:
+    """The same with the artifacts of mapping files; a lone program focuses all of them.
+
+    Raises:
+        ProjectError: with all that is wrong in the files.
+    """
+    if not names:
+        return deployment
+    from jacaros.mas.mappings import with_mappings  # here: most runs have none
+
+    return with_mappings(deployment, names)
 
 
 def _lone_agent(path: Path) -> Deployment:

@@ -12,7 +12,7 @@ from jacaros.clock import Clock
 from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
-    from jacaros.ros.backend import Backend
+    from jacaros.ros.backend import Backend, Subscription
     from jacaros.ros.ros_clock import RosClock
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World
@@ -56,6 +56,7 @@ class RosGraph:
         self._world_backend: Backend | None = None
         self._node: SimNode | None = None
         self._followed: RosClock | None = None
+        self._looking: Subscription | None = None
         self.world: World | None = None
 
     async def start(self) -> None:
@@ -73,6 +74,8 @@ class RosGraph:
             await backend.start()
             if self._options.ros_clock:
                 self._follow_clock(backend)
+            else:
+                self._look_for_clock(backend)
             # Only on demand: a project that names a world for practice also runs on the real robot.
             if self._options.world is not None:
                 self._start_world(backend)
@@ -119,6 +122,21 @@ class RosGraph:
         assert isinstance(self._clock, RosClock), "the launch makes the clock that the options ask for"
         self._followed = self._clock
         self._clock.listen(backend)
+
+    def _look_for_clock(self, backend: "Backend") -> None:
+        """Tell once when the graph has a time of its own that this run does not follow."""
+        from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
+
+        def heard(_: object) -> None:
+            if self._looking is not None:
+                self._looking.close()
+                self._looking = None
+                self._log_ros(
+                    f"a simulator gives the time on {CLOCK_TOPIC}, and this run goes by the time of day; "
+                    "to follow the simulator run with --clock ros"
+                )
+
+        self._looking = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, heard, CLOCK_QOS)
 
     def _log_ros(self, text: str) -> None:
         self._log(f"[ros] {text}")

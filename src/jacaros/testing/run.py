@@ -1,6 +1,6 @@
 """Running a whole project inside a test, on virtual time."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -55,6 +55,9 @@ def run_project(
     until_idle: bool = False,
     fast: bool = True,
     ros: str = "memory",
+    mappings: Iterable[str | Path] = (),
+    remap: Mapping[str, str] | None = None,
+    namespace: str = "",
     when_started: Callable[[System], None] | None = None,
 ) -> RunResult:
     """Run a project as ``jacaros run`` does, on the virtual clock unless told otherwise.
@@ -69,13 +72,26 @@ def run_project(
         until_idle: end when no agent has anything to do.
         fast: on the virtual clock.
         ros: kind of the ROS graph.
+        mappings: mapping files whose artifacts are made at the start.
+        remap: ROS names to use in place of others.
+        namespace: put before relative ROS names.
         when_started: called with the run before its first agent has its turn.
 
     Raises:
         InternalError: a defect of JaCaROS showed itself.
     """
     result = RunResult()
-    options = RunOptions(fast=fast, seed=seed, ros=ros, world=world, until_idle=until_idle, seconds=seconds)
+    options = RunOptions(
+        fast=fast,
+        seed=seed,
+        ros=ros,
+        world=world,
+        until_idle=until_idle,
+        seconds=seconds,
+        mappings=tuple(map(str, mappings)),
+        remap=dict(remap or {}),
+        namespace=namespace,
+    )
     held: list[tuple[System, float]] = []
 
     def started(mas: System) -> None:

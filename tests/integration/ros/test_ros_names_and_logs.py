@@ -56,13 +56,15 @@ def test_names_are_remapped(run_agents: Callable[..., Agents], peer: Callable[[s
 
 @pytest.mark.only("ros1", "ros2")
 def test_time_is_that_of_the_simulator(
-    run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
+    kind: str, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
 ) -> None:
-    agents = run_agents("minute.asl", "--clock", "ros")
+    agents = run_agents("minute.asl", "--clock", "ros", "--node-name", "follower")
     agents.until_error("[ros] waiting for the time on /clock")
     agents.until_line("[minute] waits")
     agents.until_error("nobody publishes /clock")
     simulator = peer("simulator")
+    if kind == "ros2":
+        assert simulator.get_parameter("use_sim_time", "/follower", timeout=20) is True
     simulator.advertise("/clock", "rosgraph_msgs/msg/Clock")
     wait_until(lambda: simulator.subscription_count("/clock") > 0, "somebody who listens to the clock")
 
@@ -84,3 +86,20 @@ def test_time_is_that_of_the_simulator(
     wait_until(lambda: simulator.publish("/clock", {"clock": 7.5}) or agents.over, "the tenth second")
     assert agents.end() == 0
     assert agents.lines[-1] == "[minute] has waited"
+
+
+@pytest.mark.only("ros1", "ros2")
+def test_who_does_not_follow_a_simulator_is_told_once(
+    run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
+) -> None:
+    agents = run_agents("minute.asl")
+    simulator = peer("simulator")
+    simulator.advertise("/clock", "rosgraph_msgs/msg/Clock")
+
+    def hint() -> bool:
+        simulator.publish("/clock", {"clock": 5.0})
+        return any("to follow the simulator run with --clock ros" in line for line in agents.errors)
+
+    wait_until(hint, "the hint at the simulator's clock")
+    wait_until(lambda: simulator.subscription_count("/clock") == 0, "nobody listens any more")
+    assert sum("--clock ros" in line for line in agents.errors) == 1

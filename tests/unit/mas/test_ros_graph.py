@@ -1,11 +1,13 @@
 """The ROS graph of a run and the world on it."""
 
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
+from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.errors import BackendUnavailable
@@ -107,12 +109,39 @@ class Elsewhere:
     """A real graph, as far as it matters here."""
 
     started = closed = False
+    listening: Callable[[object], None] | None = None
 
     async def start(self) -> None:
         self.started = True
 
     async def close(self) -> None:
         self.closed = True
+
+    def subscription(
+        self, topic: str, type_name: str, callback: Callable[[object], None], qos: object
+    ) -> Any:
+        assert topic == "/clock"
+        self.listening = callback
+        return SimpleNamespace(close=lambda: setattr(self, "listening", None))
+
+
+def test_a_simulator_that_is_not_followed_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    backend, lines = Elsewhere(), list[str]()
+    monkeypatch.setattr("jacaros.ros.open.open_backend", lambda *_, **__: backend)
+
+    async def main() -> None:
+        ros = RosGraph(RunOptions(ros="ros2"), WallClock(), "my system", None, lines.append)
+        await ros.start()
+        hear = backend.listening
+        assert hear is not None
+        hear("a time")
+        hear("another that was on its way")
+        assert backend.listening is None
+        await ros.close()
+
+    run(main, VirtualClock())
+    assert len(lines) == 1
+    assert "run with --clock ros" in lines[0]
 
 
 def test_on_a_real_graph_the_projects_own_world_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

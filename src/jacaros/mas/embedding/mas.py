@@ -12,7 +12,7 @@ from jacaros.mas.embedding.printed import OnLog, OnPrint, PrintedLine
 from jacaros.mas.embedding.run import EmbeddedRun
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.stream import Stream
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.population import begin
 
@@ -59,11 +59,18 @@ class Mas(EmbeddedRun):
         ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
         world: world file, or name of a world of JaCaROS, in place of the project's own.
         namespace: put before relative ROS names.
+        node_name: of our node in a real graph; that of the system unless given.
+        remap: ROS names to use in place of others, ``{"/cmd_vel": "/robot_1/cmd_vel"}``.
+        domain_id: of a ROS 2 graph; ``ROS_DOMAIN_ID`` unless given.
+        master: address of the ROS 1 master; ``ROS_MASTER_URI`` unless given.
+        bridge: address of the rosbridge server.
+        ros_clock: the run's time is that of the graph's ``/clock``, as a simulator publishes it.
+        mappings: mapping files whose artifacts are made at the start.
         on_print: called with agent and text whenever an agent prints; the standard output gets ``[agent] text`` without.
         on_log: called with a line for people and its level; the standard error output gets it without.
 
     Raises:
-        ProjectError: the project file is wrong.
+        ProjectError: the project file or a mapping file is wrong.
         UsageError: options that cannot go together.
     """
 
@@ -77,12 +84,31 @@ class Mas(EmbeddedRun):
         ros: str = "memory",
         world: str | Path | None = None,
         namespace: str = "",
+        node_name: str | None = None,
+        remap: Mapping[str, str] | None = None,
+        domain_id: int | None = None,
+        master: str | None = None,
+        bridge: str | None = None,
+        ros_clock: bool = False,
+        mappings: Iterable[str | Path] = (),
         on_print: OnPrint | None = None,
         on_log: OnLog | None = None,
     ) -> None:
         base = Path(folder) if folder is not None else Path.cwd()
-        options = RunOptions(seed=seed, ros=ros, world=world, namespace=namespace)
-        super().__init__(_deployment(project, name, base), options, on_print, on_log)
+        options = RunOptions(
+            seed=seed,
+            ros=ros,
+            world=world,
+            namespace=namespace,
+            ros_clock=ros_clock,
+            domain_id=domain_id,
+            master=master,
+            bridge=bridge,
+            node_name=node_name,
+            remap=dict(remap or {}),
+            mappings=tuple(map(str, mappings)),
+        )
+        super().__init__(_deployment(project, name, base, options.mappings), options, on_print, on_log)
         self._agents: dict[str, RunningAgent] = {}
         self._mailboxes: PythonMailboxes | None = None
 
@@ -336,12 +362,16 @@ class Mas(EmbeddedRun):
         return session
 
 
-def _deployment(project: str | Path | Deployment | None, name: str, folder: Path) -> Deployment:
+def _deployment(
+    project: str | Path | Deployment | None, name: str, folder: Path, mappings: Sequence[str]
+) -> Deployment:
     if isinstance(project, Deployment):
-        return project
-    if project is not None:
-        return load_deployment(project)
-    return Deployment(name, folder, artifact_environment=True, source_paths=(folder,))
+        declared = project
+    elif project is not None:
+        declared = load_deployment(project)
+    else:
+        declared = Deployment(name, folder, artifact_environment=True, source_paths=(folder,))
+    return mapped(declared, mappings)
 
 
 def _focus(wanted: "str | FocusSpec | ArtifactId") -> FocusSpec:

@@ -21,7 +21,7 @@ class EmbeddedRun:
 
     Args:
         deployment: what to run.
-        options: how; the clock is that of the event loop.
+        options: how; the clock is that of the event loop, or of the ROS graph.
         on_print: called with agent and text whenever an agent prints.
         on_log: called with a line for people and its level.
 
@@ -49,9 +49,13 @@ class EmbeddedRun:
         if self._begun is not None:
             raise UsageError("this system has run already; make another Mas")
         loop = asyncio.get_running_loop()
-        clock = clock_of(loop)
+        clock: Clock = clock_of(loop)
         options = replace(self._options, fast=clock.virtual)
         options.check()
+        if options.ros_clock:
+            from jacaros.ros.ros_clock import RosClock  # here: only for simulators on a real graph
+
+            clock = RosClock(lambda text: self._console.log(f"[ros] {text}"))
         system = System(self._deployment, clock, self._console, options)
         waits = Waits(clock)
         self._begun = system, waits
@@ -154,7 +158,7 @@ class EmbeddedRun:
 
     @property
     def clock(self) -> Clock:
-        """The run's clock: that of the event loop."""
+        """The run's clock: that of the event loop, or of the ROS graph (``ros_clock``)."""
         return self._running[0].clock
 
     async def sleep(self, seconds: float) -> None:

@@ -25,6 +25,7 @@ from jacaros.ros.backends.ros2_types import RosidlSchema
 from jacaros.ros.backends.ros2_values import parameter
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.ros_clock import RosClock
 
 SENDING = 0.5
 """Seconds that closing waits for the last messages to be acknowledged; a dead receiver never does it."""
@@ -58,7 +59,10 @@ class Ros2Node(Node):
         self.schema = RosidlSchema()
         super().__init__(settings, self.schema, finish=self._leave, threaded_hooks=True)
         self._domain_id = domain_id
-        self._given = settings.parameters
+        self._given = dict(settings.parameters)
+        if isinstance(settings.clock, RosClock):
+            # As on every node that goes by a simulator: tools ask for it.
+            self._given.setdefault("use_sim_time", True)
         self._context: Any = rclpy.Context()
         self._executor: Any = None
         self._thread: threading.Thread | None = None
