@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from jacaros.ros.errors import MessageMismatch, NameInvalid
 from jacaros.ros.fields import DURATION, TIME, FieldType
-from jacaros.ros.values import array_of_numbers, single_value
+from jacaros.ros.values import array_of_numbers, single_value, written
 
 _NO_FIELDS = ("__msgtype__", "structure_needs_at_least_one_member")
 TIMES = (TIME, DURATION)
@@ -129,12 +129,12 @@ class MessageFactory:
         if isinstance(value, Mapping):
             return self._make(field.base, value, where)
         if not isinstance(value, self.message_class(field.base)):
-            raise TypeError(f"{value!r} is given")
+            raise TypeError(f"{written(value)} is given")
         return value
 
     def _list(self, field: FieldType, value: Any, where: str) -> list[Any]:
         if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
-            raise TypeError(f"{value!r} is given")
+            raise TypeError(f"{written(value)} is given")
         elements = [self._single(field, item, f"{where}[{index}]") for index, item in enumerate(value)]
         if field.length and (len(elements) != field.length if field.fixed else len(elements) > field.length):
             raise ValueError(f"{len(elements)} elements are given")
@@ -154,7 +154,7 @@ class MessageFactory:
         elif isinstance(value, type(made)):
             return value
         else:
-            raise TypeError(f"{value!r} is given; give seconds or a time")
+            raise TypeError(f"{written(value)} is given; give seconds or a time")
         return made
 
     def _default_setters(self, type_name: str) -> tuple[Callable[[Any], None], ...]:

@@ -5,6 +5,11 @@ from typing import Any
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 
 
+def written(value: object) -> str:
+    """A value as messages to people have it: those of a user's own classes, such as terms, as ``str`` gives them."""
+    return repr(value) if type(value).__module__ == "builtins" else str(value)
+
+
 def single_value(field: FieldType, value: Any) -> bool | int | float | str:
     """Give *value* as the plain Python value that fits *field* (its base, not an array).
 
@@ -26,13 +31,13 @@ def single_value(field: FieldType, value: Any) -> bool | int | float | str:
             return float(value)
         if field.base in INTEGER_RANGES:
             return _integer(field.base, value)
-    raise TypeError(f"{value!r} is given")
+    raise TypeError(f"{written(value)} is given")
 
 
 def _text(value: Any) -> str:
     if isinstance(value, str):
         return str.__str__(value)  # subclasses, such as atoms of the agents' language, become plain texts
-    raise TypeError(f"{value!r} is given")
+    raise TypeError(f"{written(value)} is given")
 
 
 def _integer(base: str, value: Any) -> int:
@@ -41,7 +46,7 @@ def _integer(base: str, value: Any) -> int:
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if not isinstance(value, int):
-        raise TypeError(f"{value!r} is given")
+        raise TypeError(f"{written(value)} is given")
     low, high = INTEGER_RANGES[base]
     if not low <= value <= high:
         raise ValueError(f"{value} is given; it must be from {low} to {high}")

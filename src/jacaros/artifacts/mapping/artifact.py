@@ -18,7 +18,7 @@ from jacaros.artifacts.ros.options import text
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.env.artifact import internal_operation
-from jacaros.ros.backend import TopicEvent
+from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.yaml_nodes import Problem, shown
 
 GLOBAL_FRAMES = ("map", "earth", "world")
@@ -167,7 +167,9 @@ class MappedArtifact(RosArtifact):
         """What is done about trouble at a topic: it is told once for each kind."""
 
         def tell(event: TopicEvent) -> None:
-            self.tell_once((topic, event.trouble), place, event.text)
+            weak = event.trouble is TopicTrouble.INCOMPATIBLE_QOS
+            cure = "write qos: sensor_data, which hears any publisher" if weak else ""
+            self.tell_once((topic, event.trouble), place, event.text, cure)
 
         return tell
 

@@ -55,17 +55,20 @@ def taker(field: FieldPart, message: FieldType, element: FieldType | None, inter
     leaf = follow(field.path, root, interfaces.fields)
     get = getter(field.path)
     values = _values(field, leaf, root, message, interfaces)
+    path = field.path.text
+    is_number = leaf.base in FLOATS and not leaf.array and not field.path.lists
+    has_spare = is_number and field.otherwise is not None
 
     def take(whole: Any, part: Any, place: int) -> tuple[object, ...]:
         try:
             raw = get(whole if from_message else part, place)
         except IndexError:
-            raise Unshowable(
-                field.path.text,
-                f"{field.path.text} is not there: the list is shorter",
-                "ask for an element that is always there, such as [0] or [-1]",
-                "no_element",
-            ) from None
+            if has_spare:
+                return values(math.nan, whole)
+            cure = "ask for the list, or for an element that is always there"
+            if is_number:
+                cure = f'say what to show instead: {{path: "{path}", otherwise: 0}}'
+            raise Unshowable(path, f"{path} is not there: the list is shorter", cure, "no_element") from None
         return values(raw, whole)
 
     return take

@@ -7,7 +7,7 @@ import pytest
 from mapped_lab import settle, with_mapped
 from robot_lab import STANDSTILL, Lab
 
-from jacaros.env import ArtifactId, Out
+from jacaros.env import ArtifactId, Atom, Out, Structure
 from jacaros.ros.action import Abort, ActionPolicy, ServerGoal
 from jacaros.ros.parameter import Declaration
 
@@ -441,3 +441,14 @@ def test_operations_have_their_arities_and_names_of_parameters() -> None:
         assert (await lab.call(artifact, "add", 1)).reason != "None"
 
     with_mapped(ADD, body)
+
+
+def test_a_term_that_does_not_fit_is_told_as_agents_write_it() -> None:
+    text = "operations: {say: {parameters: [a], publish: s, type: std_msgs/msg/String, fields: {data: $a}}}"
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        run = await lab.call(artifact, "say", Structure("f", (Atom("x"), "y")))
+        assert run.outcome is not None
+        assert run.outcome.message == 'std_msgs/msg/String: field data is string, but f(x,"y") is given'
+
+    with_mapped(text, body)

@@ -477,3 +477,44 @@ def test_parameters_of_nodes_are_properties_that_follow() -> None:
         assert t.held == [(75.0,)]
 
     talk(text, body)
+
+
+def test_otherwise_stands_for_an_element_that_is_not_there() -> None:
+    field = '{path: "ranges[2]", otherwise: range_max}'
+    text = f"properties: {{a: {{topic: s, type: sensor_msgs/msg/LaserScan, fields: [{field}]}}}}"
+
+    async def body(t: Talk) -> None:
+        for ranges in ([1.0, 2.0], [1.0, 2.0, 3.0], []):
+            await t.say("s", "sensor_msgs/msg/LaserScan", ranges=ranges, range_max=8.0)
+        assert t.values() == [(8.0,), (3.0,), (8.0,)]
+
+    talk(text, body)
+
+
+def test_an_element_that_is_not_there_is_told_with_a_cure() -> None:
+    text = (
+        "properties:\n"
+        '  a: {topic: s, type: sensor_msgs/msg/LaserScan, fields: ["ranges[0]"]}\n'
+        '  b: {topic: h, type: nav_msgs/msg/Path, fields: ["poses[0].header.frame_id"]}\n'
+    )
+
+    async def body(t: Talk) -> None:
+        await t.say("s", "sensor_msgs/msg/LaserScan")
+        await t.say("h", "nav_msgs/msg/Path")
+        told = "\n".join(t.lab.logged)
+        assert 'cure: say what to show instead: {path: "ranges[0]", otherwise: 0}' in told
+        assert "cure: ask for the list, or for an element that is always there" in told
+
+    talk(text, body)
+
+
+def test_a_weak_publisher_is_told_with_what_to_write() -> None:
+    text = "properties: {a: {topic: s, type: std_msgs/msg/String, qos: latched}}"
+
+    async def body(t: Talk) -> None:
+        await t.say("s", "std_msgs/msg/String", data="x")
+        told = "\n".join(t.lab.logged)
+        assert "asks for transient_local, the publisher offers volatile" in told
+        assert "cure: write qos: sensor_data, which hears any publisher" in told
+
+    talk(text, body)
