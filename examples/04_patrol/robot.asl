@@ -5,12 +5,13 @@
 
 /* What the agent knows */
 
-corner(1, 2, 0).  // number, and place in metres
-corner(2, 2, 2).
-corner(3, 0, 2).
-corner(4, 0, 0).  // where the robot stands at the beginning
-dock(1, 1).
-shift(10).  // it ends after so many recharges
+place(1, 2, 0, 0).  // number of a corner, and where it is: metres, and degrees
+place(2, 2, 2, 90).
+place(3, 0, 2, 180).
+place(4, 0, 0, 270).  // where the robot stands at the beginning
+place(dock, 1, 1, 0).
+attempts(1).  // when a way is blocked it does not try again
+shift(10).    // it ends after so many recharges
 
 next(1).    // the corner that the robot is heading for
 visits(0).  // corners reached
@@ -22,45 +23,56 @@ lowest(100).  // percent, the least that it ever had in the dock
 +!start
   <- !use_artifact("wheels", "ArtCmdVelMuxAndOdometry");
      !use_artifact("battery", "ArtSimBattery", [source(robot)]);
-     !!patrol.  // !! : a goal of its own, apart from this one
+     !!patrol([1, 2, 3, 4]).  // !! : a goal of its own, apart from this one
 
-/* The patrol */
+/* The patrol: its plans stand in a library, included at the end; here is what this robot does in its own way */
+
+// Going to a place: by odometry, and without caring where it looks then.
++!drive_there(X, Y, _)
+  <- driveTo(X, Y).  // this plan waits here until the robot has arrived
 
 // Of several plans for a goal the first one is taken whose condition, behind the colon, holds.
-+!patrol : recharges(N) & shift(N)
++!arrived(Corner) : visits(V)
+  <- .print("round ", V div 4 + 1, ", corner ", Corner);
+     -+visits(V + 1);  // -+ : forget the old belief, have this one
+     -+next(Corner mod 4 + 1);
+     !end_of_shift.
+
+// A corner that it cannot reach.
+-!visit(_)[error_msg(Text)]
+  <- !give_up(Text).
+
++!end_of_shift : recharges(N) & shift(N)
   <- !report;
      .stopMAS.
 
-+!patrol : next(Corner) & corner(Corner, X, Y) & visits(V)
-  <- driveTo(X, Y);  // this plan waits here until the robot has arrived
-     .print("round ", V div 4 + 1, ", corner ", Corner);
-     -+visits(V + 1);  // -+ : forget the old belief, have this one
-     -+next(Corner mod 4 + 1);
-     !!patrol.
++!end_of_shift.
 
 /* The battery */
 
 // This plan runs beside the patrol: an agent can have several things in mind.
 +diagnostics("Low Battery") : next(Corner)
-  <- .suspend(patrol);  // the robot stops at once, wherever it is
+  <- .suspend(patrol(_));  // the robot stops at once, wherever it is
      .print("battery low on the way to corner ", Corner);
-     !recharge;
+     !dock_and_charge;
      .print("battery full, on to corner ", Corner);
-     .resume(patrol).  // driveTo goes on: from where the robot is now, to the same corner
+     .resume(patrol(_)).  // driveTo goes on: from where the robot is now, to the same corner
 
-+!recharge : dock(X, Y) & recharges(N)
-  <- driveTo(X, Y);
-     ?battery(Percent);  // ? : what is it now?
+// The steps of the library's dock_and_charge: into the dock, wait there, and out of it, which needs nothing here.
++!drive_into_dock
+  <- !go_to(dock).
+
++!wait_until_charged : recharges(N)
+  <- ?battery(Percent);  // ? : what is it now?
      !remember(Percent);
      .print("recharge ", N + 1, ", with ", Percent, " % left");
      operationRecharge;  // waits until the battery is full
      -+recharges(N + 1).
 
-// Something went wrong: the robot missed the dock, or something stood in its way.
--!recharge[error_msg(Text)]
-  <- !give_up(Text).
++!drive_out_of_dock.
 
--!patrol[error_msg(Text)]
+// Something went wrong: the robot missed the dock, or something stood in its way.
+-!dock_and_charge[error_msg(Text)]
   <- !give_up(Text).
 
 +!give_up(Text)
@@ -81,3 +93,6 @@ lowest(100).  // percent, the least that it ever had in the dock
             " of the next");
      .print(N, " recharges, and never less than ", Least, " % in the battery");
      .print("----------------------------------------------------------------").
+
+// Plans that stand before this line go before those of the library.
+{ include("$jacaros/navigation.asl") }

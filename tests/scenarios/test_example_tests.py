@@ -41,7 +41,7 @@ def test_the_tests_of_an_example_pass(folder: Path) -> None:
         ("02_square", ".range(Side, 1, 4)", ".range(Side, 1, 3)", "has_four_sides"),
         ("03_fake_battery", "+battery(0)", "+battery(1)", "stops_when_the_battery_is_empty"),
         ("04_patrol", '+diagnostics("Low Battery")', "+diagnostics(_)", "does_not_charge_for_other_news_of_the_battery"),
-        ("04_patrol", ".resume(patrol)", ".print(patrol)", "stops_on_its_way_and_goes_on_to_the_same_corner"),
+        ("04_patrol", ".resume(patrol(_))", ".print(patrol)", "stops_on_its_way_and_goes_on_to_the_same_corner"),
         ("04_patrol", "operationRecharge; ", "", "goes_to_the_dock_when_the_battery_is_low"),
         ("04_patrol", "Percent < Least", "Percent > Least", "remembers_the_lowest_percentage_only"),
         ("05_house_cleaning", "!return;", "", "comes_back_into_its_room_after_a_recharge"),

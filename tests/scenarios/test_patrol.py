@@ -90,11 +90,11 @@ def test_the_agent_gives_up_when_something_stands_in_its_way(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("old", "new", "complaint"),
     [
-        ("     .resume(patrol).", "     .print(lost).", "no corner was visited after the last recharge"),
+        ("     .resume(patrol(_)).", "     .print(lost).", "no corner was visited after the last recharge"),
         ("     operationRecharge; ", "     .wait(1000); ", "before the battery was full"),
-        ("-+next(Corner mod 4 + 1)", "-+next((Corner + 1) mod 4 + 1)", "after corner 1 came corner 3"),
+        ("!!patrol([1, 2, 3, 4])", "!!patrol([1, 3, 2, 4])", "after corner 1 came corner 3"),
         ('diagnostics("Low Battery")', 'diagnostics("Medium Battery")', "which is not low"),
-        ("dock(1, 1).", "dock(1, 0.3).", "0 recharges, not 1"),
+        ("place(dock, 1, 1, 0).", "place(dock, 1, 0.3, 0).", "0 recharges, not 1"),
     ],
 )
 def test_the_checker_sees_a_program_that_is_wrong(old: str, new: str, complaint: str, tmp_path: Path) -> None:

@@ -34,7 +34,7 @@
 @stops_on_its_way_and_goes_on_to_the_same_corner[test]
 +!test_way
   <- !fakes;
-     !!patrol;
+     !!patrol([1, 2, 3, 4]);
      .wait(500);  // on its way to the first corner
      ++battery(19);
      ++diagnostics("Low Battery");

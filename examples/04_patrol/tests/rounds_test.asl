@@ -9,7 +9,7 @@
 @goes_round_the_corners[test]
 +!test_corners
   <- !fake_action(driveTo(_, _), after(1000));
-     !!patrol;
+     !!patrol([1, 2, 3, 4]);
      .wait(visits(5), 10000);
      !assert_did(driveTo(2, 0), 2);
      !assert_did(driveTo(2, 2));
@@ -22,8 +22,8 @@
 +!test_shift
   <- !fake_action(.stopMAS);
      -+recharges(10);
-     -+visits(43);
-     !patrol;
+     -+visits(42);
+     !arrived(3);
      !assert_not_did(driveTo(_, _));
      !assert_printed("43 corners, that is 10 rounds and 3 of the next");
      !assert_printed("10 recharges, and never less than 100 %");

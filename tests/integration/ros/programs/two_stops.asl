@@ -5,7 +5,7 @@
 
 +!start
   <- .wait(pose(X, Y, _));
-     .print("begins");
+     clear_costmaps;
      !go_to(X + 1, Y, 0);
      !go_to(X + 1, Y + 0.4, 90);
      .print("is there");
