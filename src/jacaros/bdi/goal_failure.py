@@ -52,7 +52,7 @@ def fail_goal(
     """A goal that has no frame failed: post its handler, or look further down."""
     trigger = goal[0]
     if agent.meta:
-        meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
+        _tell(agent, goal, annotations, reason)
     if trigger.on_fail is not None and subplans.handles(
         agent, intention, len(intention.frames), trigger.on_fail
     ):
@@ -73,7 +73,7 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
     if posted is not None:
         if agent.meta:
             failed = intention.frames[intention.handlers[-1]]
-            meta_events.goal_state(agent, failed[GOAL], failed[2], "failed", atom(reason.error()))
+            _tell(agent, failed[GOAL], failed[2], reason)
             meta_events.goal_state(agent, failed[GOAL], failed[2], "executing", _HAS_FAILURE_PLAN)
         return posted
     if intention.on_failed is not None:
@@ -90,8 +90,12 @@ def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReaso
     """All goals of an intention that nobody saved have failed, and are over."""
     for frame in reversed(intention.frames):
         if not frame[GOAL][0].failing:
-            meta_events.goal_state(agent, frame[GOAL], frame[2], "failed", atom(reason.error()))
+            _tell(agent, frame[GOAL], frame[2], reason)
             meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
+
+
+def _tell(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, reason: FailureReason) -> None:
+    meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()), reason.message())
 
 
 def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:

@@ -16,14 +16,20 @@ _NO_REASON = String("")
 
 
 def goal_state(
-    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str, reason: Term = _NO_REASON
+    agent: Circumstance,
+    goal: tuple[Any, ...],
+    annotations: Any,
+    state: str,
+    reason: Term = _NO_REASON,
+    why: str = "",
 ) -> None:
-    """Tell that a goal has got into another state; an event comes one cycle later, before ordinary ones."""
+    """Tell that a goal has got into another state, and an observer *why*; an event comes one cycle later, before
+    ordinary ones."""
     kind = goal[0]
     if not kind.kind or kind.operator == "^":
         return
     if agent.goal_observer is not None:
-        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), id(goal))
+        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), id(goal), why)
     meta = trigger("^", kind.kind, kind.functor)
     if agent.selects[meta] is None:
         return
@@ -57,8 +63,10 @@ def _insert(agent: Circumstance, event: Event) -> None:
     agent.events.insert(place, event)
 
 
-def observe_goals(agent: Circumstance, observer: Callable[[str, str, int], None]) -> None:
-    """Have an observer told of every change of a goal: its state (``executing``, ``achieved``, ``failed``,
-    ``suspended``, ``resumed``, ``dropped`` …), the goal as text, and a number that is the same for all news of one goal."""
+def observe_goals(agent: Circumstance, observer: Callable[[str, str, int, str], None]) -> None:
+    """Have an observer told of every change of a goal.
+
+    It gets the state (``executing``, ``achieved``, ``failed``, ``suspended``, ``resumed``, ``dropped`` …), the goal as
+    text, a number that is the same for all news of one goal, and for a failure its reason as people read it."""
     agent.goal_observer = observer
     agent.meta = agent.special = agent.called = True

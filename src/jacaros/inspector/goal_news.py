@@ -31,7 +31,7 @@ class GoalNews:
 
     Args:
         tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
-            ``dropped``) and ``id``, counted from 1.
+            ``dropped``), ``id``, counted from 1, and of a failure ``why``.
     """
 
     def __init__(self, tell: Tell) -> None:
@@ -44,7 +44,7 @@ class GoalNews:
         if isinstance(host.mind, Agent):
             observe_goals(host.mind, partial(self, host.name))
 
-    def __call__(self, agent: str, state: str, goal: str, number: int) -> None:
+    def __call__(self, agent: str, state: str, goal: str, number: int, why: str = "") -> None:
         """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""
         if not goal.startswith("!") or (state not in _OPEN and state not in _OVER):
             return
@@ -55,6 +55,7 @@ class GoalNews:
         is_news = not (known.state in _AT_WORK and shown in _AT_WORK)
         known.state = shown
         if is_news:
-            self._tell({"agent": agent, "goal": goal, "state": shown, "id": known.number})
+            told = {"agent": agent, "goal": goal, "state": shown, "id": known.number}
+            self._tell({**told, "why": why} if why else told)
         if state in _OVER:
             del self._goals[key]

@@ -166,10 +166,19 @@ def test_a_context_that_cannot_be_evaluated_is_reported_and_the_next_plan_is_tri
     assert "cannot be evaluated" in host.logged[0][1]
 
 
+def test_an_observer_hears_why_a_goal_failed() -> None:
+    host = mind('!a. +!a <- !b. +!b <- .fail(error_msg("no way")). -!b.')
+    heard: list[tuple[str, str, str]] = []
+    observe_goals(host.agent, lambda state, goal, number, why: heard.append((state, goal, why)))
+    host.run()
+    assert [(goal, why) for state, goal, why in heard if state == "failed"] == [("!b", "no way")]
+    assert not any(why for state, goal, why in heard if state != "failed")
+
+
 def test_an_observer_hears_of_every_change_of_a_goal() -> None:
     host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
     heard: list[tuple[str, str]] = []
-    observe_goals(host.agent, lambda state, goal, number: heard.append((state, goal)))
+    observe_goals(host.agent, lambda state, goal, number, why: heard.append((state, goal)))
     host.run()
     states = [state for state, goal in heard if goal == "!a"]
     assert states == ["executing", "waiting", "executing", "suspended"]

@@ -43,3 +43,12 @@ def test_goals_are_counted_whatever_their_place_in_memory(told):
 def test_what_is_no_goal_of_interest_is_passed_over(told):
     assert told("executing", goal="+bump") == []
     assert told("waiting") == []
+
+
+def test_why_a_goal_failed_is_told():
+    told = []
+    news = GoalNews(told.append)
+    news("bob", "executing", "!patrol", 1)
+    news("bob", "failed", "!patrol", 1, "no way")
+    assert ["why" in each for each in told] == [False, True]
+    assert told[1]["why"] == "no way"
