@@ -69,10 +69,13 @@ def _diagnostic(source: SourceFile, problem: Problem) -> Diagnostic:
 def check_mapping_file(path: Path) -> list[Diagnostic]:
     """What is wrong with a mapping file, also when it is compared with the message types that are known without a robot."""
     mapping, problems = read_with_problems(path)
-    interfaces = stored_interfaces()
     # What a wrong line says is made up, so its types are not looked at.
     wrong = {problem.line for problem in problems}
-    told = [each for part in mapping.artifacts.values() for each in type_problems(part, interfaces)]
+    told = [
+        each
+        for part in mapping.artifacts.values()
+        for each in type_problems(part, stored_interfaces(part.interfaces))
+    ]
     problems += [each for each in told if each.line not in wrong]
     return diagnostics_of(mapping, problems)
 

@@ -6,6 +6,7 @@ Everything here happens on the loop of the backend's clock: calls come from ther
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import Any, Protocol
 
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
@@ -203,6 +204,12 @@ class Backend(Protocol):
 
     def resolve(self, name: str) -> str:
         """Give the absolute, remapped form of a topic or service name; raises `NameInvalid`."""
+
+    def add_interfaces(self, folder: Path) -> None:
+        """Look for definitions of types in *folder* too: ``PACKAGE/msg/NAME.msg``, ``PACKAGE/srv/NAME.srv`` and so on.
+
+        On ``ros2`` that changes nothing: there packages are installed.
+        """
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a message type in the order of its definition; raises `UnknownInterface`."""

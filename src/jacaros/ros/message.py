@@ -8,6 +8,7 @@ client library likes it).  What differs is done here: stamps, defaults and the c
 import dataclasses
 import difflib
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any, Protocol
 
 from jacaros.ros.errors import MessageMismatch, NameInvalid
@@ -38,6 +39,9 @@ class Schema(Protocol):
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a message type in full form, in order; raises `UnknownInterface`."""
+
+    def look_in(self, folder: Path) -> None:
+        """Look for definitions in *folder* too, where definitions are looked for in folders."""
 
     def new(self, type_name: str) -> Any:
         """Make a message with the library's own defaults; raises `UnknownInterface`."""

@@ -95,6 +95,10 @@ class Node:
             )
         return self._loop
 
+    def add_interfaces(self, folder: Path) -> None:
+        """Look for definitions of types in *folder* too; see `jacaros.ros.backend.Backend`."""
+        self.factory.schema.look_in(folder)
+
     def on_connection(self, callback: Callable[[bool], None]) -> None:
         """Have *callback* called on the loop whenever `connected` changes."""
         self._on_connection.append(callback)

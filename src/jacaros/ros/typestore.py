@@ -47,6 +47,11 @@ class RosbagsSchema:
         self._fields: dict[str, Mapping[str, FieldType]] = {}
         self._makers: dict[str, Callable[[], Any]] = {}
 
+    def look_in(self, folder: Path) -> None:
+        """Look for definitions in *folder* too, from now on."""
+        if folder not in self._roots:
+            self._roots = (*self._roots, folder)
+
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type in full form; raises `UnknownInterface`."""
         fields = self._fields.get(type_name)
@@ -125,7 +130,7 @@ class RosbagsSchema:
         if text is None:
             raise UnknownInterface(
                 f"{what} type {type_name} is not known here; put its definition into a folder and name that "
-                f"folder in interface_paths: {type_name}.{ending}"
+                f"folder in interface_paths (in a mapping file: interfaces): {type_name}.{ending}"
             )
         return text
 

@@ -42,6 +42,8 @@ class MappedArtifact(RosArtifact):
 
     def open(self) -> None:
         """Check the mapping against the types of this middleware, and connect everything."""
+        for folder in self.part.interfaces:
+            self.ros.add_interfaces(folder)
         problems = type_problems(self.part, self.ros)
         if problems:
             error = MappingError(self.mapping.file, self.mapping.text, problems)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from pathlib import Path as FilePath
 from typing import NamedTuple
 
 from jacaros.artifacts.mapping.paths import Path
@@ -278,6 +279,7 @@ class ArtifactPart:
         tf_prefix: None: the namespace.
         connected: whether it is shown that topics are connected; seconds: they are not when no message came for so long.
         topics: properties and signals from topics.
+        interfaces: folders with definitions of types.
     """
 
     name: str
@@ -290,6 +292,7 @@ class ArtifactPart:
     frames: tuple[FramePart, ...] = ()
     parameters: tuple[ParameterPart, ...] = ()
     operations: tuple[OperationPart, ...] = ()
+    interfaces: tuple[FilePath, ...] = ()
 
     @property
     def properties(self) -> tuple[TopicPart, ...]:

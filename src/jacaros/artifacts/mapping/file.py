@@ -23,6 +23,7 @@ _KEYS = (
     "namespace",
     "tf_prefix",
     "connected",
+    "interfaces",
     "properties",
     "signals",
     "frames",
@@ -70,7 +71,7 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
     if wrong is not None:
         return MappingFile(name, text), [wrong]
     problems: list[Problem] = []
-    artifacts = _read(read_document(text, problems, "a mapping file"), path.stem, problems)
+    artifacts = _read(read_document(text, problems, "a mapping file"), path, problems)
     return MappingFile(name, text, artifacts), sorted(problems, key=lambda each: (each.line, each.column))
 
 
@@ -87,32 +88,50 @@ def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
         MappingError: with all its mistakes.
     """
     problems: list[Problem] = []
-    artifacts = _read(read_document(text, problems, "a mapping file"), Path(name).stem, problems)
+    artifacts = _read(read_document(text, problems, "a mapping file"), Path(name), problems)
     if problems:
         raise MappingError(name, text, problems)
     return MappingFile(name, text, artifacts)
 
 
-def _read(document: Node, stem: str, problems: list[Problem]) -> dict[str, ArtifactPart]:
+def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
     if document.value is None:
         if not problems:
             document.wrong("the file says nothing", "begin with properties: or operations:")
         return {}
     if not isinstance(document.value, dict) or "artifacts" not in document.value:
-        return {stem: _artifact(stem, Place(1, 1), document)}
-    entries = document.mapping("artifacts", anchors=True)
+        return {path.stem: _artifact(path.stem, Place(1, 1), document, path.parent)}
+    entries = document.mapping("artifacts", "interfaces", anchors=True)
+    shared = _interfaces(entries["interfaces"], path.parent) if "interfaces" in entries else ()
     found = {}
     for name, node in entries["artifacts"].entries():
         if not isinstance(name.value, str) or not name.value:
             name.wrong(f"{name.value!r} is no name of an artifact", "write a word")
             continue
-        found[str(name.value)] = _artifact(str(name.value), place_of(name), node)
+        found[str(name.value)] = _artifact(str(name.value), place_of(name), node, path.parent, shared)
     if not found and not problems:
         entries["artifacts"].wrong("there are no artifacts", "write the name of one below 'artifacts'")
     return found
 
 
-def _artifact(name: str, place: Place, node: Node) -> ArtifactPart:
+def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
+    """Folders with definitions of types; relative ones are counted from that of the file."""
+    found = []
+    for item in node.sequence() if isinstance(node.value, list) else [node]:
+        path = (folder / item.text()).resolve()
+        if path.is_dir():
+            found.append(path)
+        elif isinstance(item.value, str):
+            item.wrong(
+                f"there is no folder {item.value}",
+                "name a folder, counted from this file, that has PACKAGE/msg/NAME.msg",
+            )
+    return tuple(found)
+
+
+def _artifact(
+    name: str, place: Place, node: Node, folder: Path, shared: tuple[Path, ...] = ()
+) -> ArtifactPart:
     entries = node.mapping(*_KEYS, anchors=True)
     topics = [read_property(*pair) for pair in _pairs(entries, "properties")]
     topics += [read_signal(*pair) for pair in _pairs(entries, "signals")]
@@ -128,6 +147,7 @@ def _artifact(name: str, place: Place, node: Node) -> ArtifactPart:
         tuple(read_frame(*pair) for pair in _pairs(entries, "frames")),
         tuple(read_parameter(*pair) for pair in _pairs(entries, "parameters")),
         tuple(read_operation(*pair) for pair in _pairs(entries, "operations")),
+        (*shared, *(_interfaces(entries["interfaces"], folder) if "interfaces" in entries else ())),
     )
     node.problems += _names(part)
     node.problems += _references(part)

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, Protocol
 
 from jacaros.ros.fields import FieldType
@@ -25,8 +26,8 @@ class Interfaces(Protocol):
 class StoredInterfaces:
     """The definitions that come with the package: what is checked where there is no middleware."""
 
-    def __init__(self) -> None:
-        self._factory = MessageFactory(RosbagsSchema())
+    def __init__(self, folders: tuple[Path, ...] = ()) -> None:
+        self._factory = MessageFactory(RosbagsSchema(folders))
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type."""
@@ -37,10 +38,10 @@ class StoredInterfaces:
         return self._factory.make(type_name, fields)
 
 
-@lru_cache(maxsize=1)
-def stored_interfaces() -> StoredInterfaces:
-    """One for all: it remembers what it has read."""
-    return StoredInterfaces()
+@lru_cache(maxsize=8)
+def stored_interfaces(folders: tuple[Path, ...] = ()) -> StoredInterfaces:
+    """One for all who have the same *folders* of further definitions: it remembers what it has read."""
+    return StoredInterfaces(folders)
 
 
 def constants(interfaces: Interfaces, type_name: str) -> dict[str, object]:

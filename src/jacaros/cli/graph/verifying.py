@@ -57,6 +57,8 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
     """
     prefix = part.namespace if part.tf_prefix is None else part.tf_prefix
     names = Names(joined, part.namespace, prefix)
+    for folder in part.interfaces:
+        joined.backend.add_interfaces(folder)
     found = type_problems(part, joined.backend)
     for topic in part.topics:
         found += _of_topic(names, topic)

@@ -38,6 +38,11 @@ class GenpySchema:
         self._classes: dict[str, Any] = {}
         self._fields: dict[str, Mapping[str, FieldType]] = {}
 
+    def look_in(self, folder: Path) -> None:
+        """Look for definitions in *folder* too, from now on."""
+        if folder not in self._roots:
+            self._roots = (*self._roots, folder)
+
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type in full form; raises `UnknownInterface`."""
         fields = self._fields.get(type_name)
@@ -107,7 +112,7 @@ class GenpySchema:
             raise UnknownInterface(
                 f"message type {type_name} is not installed for ROS 1; on Debian: "
                 f"apt-get install python3-{package.replace('_', '-')}; or put its definition into a folder and "
-                f"name that folder in interface_paths: {type_name}.msg"
+                f"name that folder in interface_paths (in a mapping file: interfaces): {type_name}.msg"
             )
         return found
 
@@ -132,7 +137,7 @@ class GenpySchema:
         if text is None:
             raise UnknownInterface(
                 f"service type {type_name} is not installed for ROS 1; install its package, or put its "
-                f"definition into a folder and name that folder in interface_paths: {type_name}.srv"
+                f"definition into a folder and name that folder in interface_paths (in a mapping file: interfaces): {type_name}.srv"
             )
         return self._generate(generated_service, f"{ros1_package}/{name}", text)
 
@@ -147,7 +152,7 @@ class GenpySchema:
             raise UnknownInterface(
                 f"action type {type_name} is not installed for ROS 1 ({package}.msg has no {name}Action){hint}; "
                 "install its package, or put its definition into a folder and name that folder in "
-                f"interface_paths: {type_name}.action"
+                f"interface_paths (in a mapping file: interfaces): {type_name}.action"
             )
         return self.message_class(f"{package}/msg/{name}{part}")
 

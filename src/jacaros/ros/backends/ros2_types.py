@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from jacaros.ros.errors import UnknownInterface
@@ -36,6 +37,9 @@ class RosidlSchema:
     def __init__(self) -> None:
         self._classes: dict[str, Any] = {}
         self._fields: dict[str, Mapping[str, FieldType]] = {}
+
+    def look_in(self, folder: Path) -> None:
+        """Nothing: ROS 2 wants packages that are installed."""
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type in full form; raises `UnknownInterface`."""
