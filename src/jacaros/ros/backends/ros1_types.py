@@ -137,7 +137,8 @@ class GenpySchema:
         if text is None:
             raise UnknownInterface(
                 f"service type {type_name} is not installed for ROS 1; install its package, or put its "
-                f"definition into a folder and name that folder in interface_paths (in a mapping file: interfaces): {type_name}.srv"
+                "definition into a folder and name that folder in interface_paths (in a mapping file: interfaces): "
+                f"{type_name}.srv"
             )
         return self._generate(generated_service, f"{ros1_package}/{name}", text)
 
