@@ -251,7 +251,7 @@ def in_lab(
     Args:
         program: its name.
         faults: arranges what goes wrong.
-        mapping: mapping file of that folder whose artifacts the agent focuses.
+        mapping: mapping file of that folder, or one of those that come with the package, whose artifacts the agent focuses.
         world: where the robot is.
         seconds: longest time; a run that should have ended before tells so by its exit code, which is None.
         simulated: time of the robot's own clock at the beginning; without it there is one clock for all.
@@ -265,7 +265,7 @@ def in_lab(
     )
     deployment = load_deployment(PROGRAMS / program)
     if mapping is not None:
-        deployment = with_mappings(deployment, (str(PROGRAMS / mapping),))
+        deployment = with_mappings(deployment, (mapping,))
     timers: list[Timer] = []
 
     def every(period: float, what: Callable[[], None]) -> None:

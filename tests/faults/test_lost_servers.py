@@ -102,3 +102,10 @@ def test_a_graph_that_is_cut_often_is_found_again_each_time() -> None:
     assert lab.lines.count("connected /odom") == 7
     assert [line for line in lab.lines if "/odom" not in line] == ["at 2 0", "at 0 0"]
     assert_arrived(lab)
+
+
+def test_the_plan_library_gets_over_a_robot_that_is_started_anew() -> None:
+    lab = in_lab("going.asl", robot_dies, mapping="nav2.yaml")
+    assert lab.lines == ["far", "home"]
+    assert lab.stands(3.5, 10.0)
+    assert_arrived(lab)

@@ -1,0 +1,14 @@
+// Goes to two places by the plan library, which knows what to do when the way fails.
+{ include("$jacaros/navigation.asl") }
+
+place(far, 2, 0, 0).
+place(home, 0, 0, 0).
+
+!begin.
+
++!begin
+  <- !go_to(far);
+     .print("far");
+     !go_to(home);
+     .print("home");
+     .stopMAS.
