@@ -41,7 +41,8 @@ def test_a_robot_that_is_killed_and_started_anew_is_navigated_again(
         failures = {line for line in told if line.startswith("action_failed")}
         # A server whose end the graph has not noticed yet may be asked once more, in vain.
         assert failures <= {"action_failed server_lost", "action_failed timeout(5)"}
-        assert len(agents.complaints) == len(set(agents.complaints)) <= 8, agents.complaints
+        # While the server is missing each try has three lines: waiting, missing, found.
+        assert len(agents.complaints) <= 3 * told.count("on my way") + 4, agents.complaints
         truth = second.close()
         assert distance(truth.latest(), (3.0, 0.0)) <= 0.3
         assert truth.events_of("bump") == []
