@@ -4,6 +4,7 @@ Judged from the ground truth.
 """
 
 import sys
+from itertools import pairwise
 
 from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict, judge
@@ -64,14 +65,15 @@ def judge_charging(
 
 
 def looks(truth: GroundTruth, robot: str, place: tuple[float, float]) -> list[float]:
-    """When a robot came to a place."""
+    """When a robot came to a place and stood there, or turned; who only drives by does not look."""
     found: list[float] = []
-    there = False
-    for sample in truth.path(robot):
-        near = distance(sample, *place) <= SEEN
-        if near and not there:
+    looked = False
+    for before, sample in pairwise(truth.path(robot)):
+        if distance(sample, *place) > SEEN:
+            looked = False
+        elif not looked and sample.time > before.time and sample.odometer - before.odometer < 1e-4:
+            looked = True
             found.append(sample.time)
-        there = near
     return found
 
 

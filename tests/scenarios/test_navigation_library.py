@@ -1,5 +1,7 @@
 """The plans of ``$jacaros/navigation.asl``: with faked robots, and with the ready mappings in the embedded world."""
 
+import subprocess
+import sys
 from itertools import pairwise
 from pathlib import Path
 
@@ -98,3 +100,24 @@ def test_a_patrol_that_is_dropped_stops_the_robot(tmp_path: Path) -> None:
     still = [(s.x, s.y) for s in path if s.time >= 4]
     assert still[0][0] > 0.3
     assert still[0] == pytest.approx(still[-1], abs=1e-3)
+
+
+def test_the_namespace_of_the_command_line_is_that_of_names_and_frames() -> None:
+    program = Path(__file__).parents[1] / "integration/ros/programs/two_stops.asl"
+    words = [
+        "run",
+        str(program),
+        "--mapping",
+        "nav2.yaml",
+        "--world",
+        "three_robots",
+        "--namespace",
+        "robot_2",
+    ]
+    told = subprocess.run(
+        [sys.executable, "-m", "jacaros", *words, "--clock", "fast", "--for", "60"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert (told.stdout, told.stderr) == ("[two_stops] is there\n", "")
