@@ -203,8 +203,8 @@ def artifacts() -> Iterator[str]:
         'An agent makes one by its name: `makeArtifact("wheels", "ArtCmdVel", [rate(5)], Id)`. The names of the thesis, '
         "such as `jason.architecture.ArtCmdVel`, mean the same. Outputs are marked with a minus sign. In another project's "
         "folder, `jacaros describe NAME` tells the same of its own artifacts. A robot "
-        "with other topics, services and actions needs no class: a [mapping file](mapping.md) will do, and those of some robots "
-        "come [with the package](navigation.md), too.\n"
+        "with other topics, services and actions needs no class: a [mapping file](mapping.md) will do, and those of some "
+        "robots come [with the package](navigation.md), too.\n"
     )
     yield READING
     yield BAD_MESSAGES
