@@ -6,6 +6,7 @@ from pathlib import Path
 
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, OperationKind, Place, TopicPart
 from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.operation_methods import arity
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
@@ -146,16 +147,27 @@ def _artifact(
         tuple(topics),
         tuple(read_frame(*pair) for pair in _pairs(entries, "frames")),
         tuple(read_parameter(*pair) for pair in _pairs(entries, "parameters")),
-        tuple(read_operation(*pair) for pair in _pairs(entries, "operations")),
+        tuple(read_operation(*pair) for pair in _variants(entries)),
         (*shared, *(_interfaces(entries["interfaces"], folder) if "interfaces" in entries else ())),
     )
     node.problems += _names(part)
+    node.problems += _arities(part)
     node.problems += _references(part)
     return part
 
 
 def _pairs(entries: dict[str, Node], key: str) -> Iterator[tuple[Node, Node]]:
     return entries[key].entries() if key in entries else iter(())
+
+
+def _variants(entries: dict[str, Node]) -> Iterator[tuple[Node, Node]]:
+    """Names and values of operations; a list has several of one name."""
+    for name, node in _pairs(entries, "operations"):
+        if not isinstance(node.value, list):
+            yield name, node
+            continue
+        for item in node.sequence():
+            yield Node(name.value, item.line, item.column, item.problems, name.what), item
 
 
 def _connected(node: Node) -> bool | float:
@@ -193,6 +205,19 @@ def _names(part: ArtifactPart) -> Iterator[Problem]:
                 "give it another name",
             )
         seen.setdefault(name, (kind, place))
+
+
+def _arities(part: ArtifactPart) -> Iterator[Problem]:
+    """Operations that agents cannot tell apart: of one name, with as many arguments."""
+    seen: dict[tuple[str, int], Place] = {}
+    for operation in part.operations:
+        key = (operation.name, arity(part, operation))
+        before = seen.setdefault(key, operation.place)
+        if before is not operation.place and operation.name != UNNAMED:
+            yield operation.place.problem(
+                f"'{operation.name}' with {key[1]} arguments is in line {before.line} already",
+                "give it another name, or other parameters",
+            )
 
 
 def _references(part: ArtifactPart) -> Iterator[Problem]:

@@ -47,13 +47,11 @@ class Operations:
     """
 
     def __init__(self, host: Host) -> None:
-        self._runners: dict[str, Runner] = {
-            part.name: _RUNNERS[part.kind](host, part) for part in host.part.operations
-        }
+        self._runners: list[Runner] = [_RUNNERS[part.kind](host, part) for part in host.part.operations]
 
-    async def run(self, name: str, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Carry out the operation *name*."""
-        await self._runners[name].run(inputs, outs)
+    async def run(self, number: int, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Carry out the operation with this place in the file."""
+        await self._runners[number].run(inputs, outs)
 
 
 class _Answered:

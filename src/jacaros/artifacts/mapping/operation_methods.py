@@ -10,15 +10,16 @@ from jacaros.env.artifact import Out, operation
 
 def methods(part: ArtifactPart) -> dict[str, Callable[..., Any]]:
     """The operations of an artifact, by names that no method of a class has."""
-    return {f"mapped {each.name}": _method(part, each) for each in part.operations}
+    return {f"mapped {number}": _method(part, number) for number in range(len(part.operations))}
 
 
-def _method(artifact: ArtifactPart, part: OperationPart) -> Callable[..., Any]:
+def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
+    part = artifact.operations[number]
     inputs = len(part.parameters)
 
     async def run(self: Any, *arguments: object) -> None:
         outs = [out for out in arguments[inputs:] if isinstance(out, Out)]
-        await self.operating.run(part.name, arguments[:inputs], outs)
+        await self.operating.run(number, arguments[:inputs], outs)
 
     names = [*part.parameters, *unlike(part.parameters, output_names(artifact, part))]
     kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
@@ -34,6 +35,11 @@ def _method(artifact: ArtifactPart, part: OperationPart) -> Callable[..., Any]:
 def is_pausable(part: OperationPart) -> bool:
     """Whether it does something at a pause of its intention."""
     return part.rate is not None or (part.kind is OperationKind.ACTION and part.suspend != "go_on")
+
+
+def arity(artifact: ArtifactPart, part: OperationPart) -> int:
+    """How many arguments an operation takes, outputs included."""
+    return len(part.parameters) + len(output_names(artifact, part))
 
 
 def output_names(artifact: ArtifactPart, part: OperationPart) -> list[str]:

@@ -7,6 +7,8 @@ import pytest
 from mapped_lab import settle, with_mapped
 from robot_lab import STANDSTILL, Lab
 
+from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.env import ArtifactId, Atom, Out, Structure
 from jacaros.ros.action import Abort, ActionPolicy, ServerGoal
 from jacaros.ros.parameter import Declaration
@@ -452,3 +454,34 @@ def test_a_term_that_does_not_fit_is_told_as_agents_write_it() -> None:
         assert run.outcome.message == 'std_msgs/msg/String: field data is string, but f(x,"y") is given'
 
     with_mapped(text, body)
+
+
+def test_operations_of_one_name_with_other_numbers_of_arguments() -> None:
+    text = """
+operations:
+  say:
+    - {publish: s, type: std_msgs/msg/String, fields: {data: nothing}}
+    - {parameters: [a], publish: s, type: std_msgs/msg/String, fields: {data: $a}}
+    - {parameters: [a], service: ask, type: std_srvs/srv/SetBool, request: {data: $a}, outputs: [message]}
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        heard: list[str] = []
+        lab.backend.subscription("s", "std_msgs/msg/String", lambda sample: heard.append(sample.message.data))
+        lab.backend.service("ask", "std_srvs/srv/SetBool", lambda request: {"success": True, "message": "ok"})
+        await lab.do(artifact, "say")
+        await lab.do(artifact, "say", "word")
+        answer = Out()
+        await lab.do(artifact, "say", True, answer)
+        await settle()
+        assert (heard, answer.value) == (["nothing", "word"], "ok")
+
+    with_mapped(text, body)
+
+
+def test_operations_of_one_name_with_as_many_arguments_are_refused() -> None:
+    text = (
+        "operations:\n  say:\n    - {parameters: [a], publish: s}\n    - {service: t, outputs: [message]}\n"
+    )
+    with pytest.raises(MappingError, match=r"4:7: 'say' with 1 arguments is in line 3 already"):
+        read_mapping(text, "m.yaml")
