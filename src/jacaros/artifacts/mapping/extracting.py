@@ -152,7 +152,14 @@ class _Maker:
             self.wrong(view.place, error)
         get: Getter = getter(path)
         from_message = self.element is None or path.of_message
-        return lambda whole, part, i: float(get(whole if from_message else part, i))
+
+        def number(whole: Any, part: Any, i: int) -> float:
+            try:
+                return float(get(whole if from_message else part, i))
+            except IndexError:  # nothing is there, so nothing is near
+                return math.nan
+
+        return number
 
     def _single(self, takes: list[Take], notes: list[tuple[str, Take]], view: Any) -> Extract:
         def rows(message: Any) -> list[Row]:

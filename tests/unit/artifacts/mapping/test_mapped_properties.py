@@ -518,3 +518,17 @@ def test_a_weak_publisher_is_told_with_what_to_write() -> None:
         assert "cure: write qos: sensor_data, which hears any publisher" in told
 
     talk(text, body)
+
+
+def test_what_has_no_place_is_out_of_view() -> None:
+    view = 'range_of_view: {metres: 3, distance: "ranges[1]"}'
+    text = f"properties: {{a: {{topic: s, type: sensor_msgs/msg/LaserScan, fields: [range_max], {view}}}}}"
+
+    async def body(t: Talk) -> None:
+        await t.say("s", "sensor_msgs/msg/LaserScan", ranges=[1.0], range_max=1.0)
+        assert t.held == []
+        await t.say("s", "sensor_msgs/msg/LaserScan", ranges=[1.0, 2.0], range_max=2.0)
+        assert t.held == [(2.0,)]
+        assert t.lab.logged == []
+
+    talk(text, body)
