@@ -21,6 +21,7 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 from pages import Block, blocks, is_file
 
@@ -144,6 +145,7 @@ class Reader:
         self._environment = {**os.environ, **ours, **(environment or {})}
         self._exports = ""
         self._terminals: list[Command] = []
+        self._deaf: Any = None
 
     def follow(self, page: Path) -> None:
         """Do all that a page says, and compare what comes with what it shows."""
@@ -211,6 +213,8 @@ class Reader:
         file.write_text(text.replace(old, new), encoding="utf-8")
 
     def __enter__(self) -> "Reader":
+        # What a script starts in the background is deaf to Ctrl-C, and so would be all that it starts.
+        self._deaf = signal.signal(signal.SIGINT, signal.default_int_handler)
         return self
 
     def __exit__(
@@ -219,3 +223,4 @@ class Reader:
         for terminal in reversed(self._terminals):
             terminal.press_ctrl_c()
             terminal.end()
+        signal.signal(signal.SIGINT, self._deaf)
