@@ -62,7 +62,7 @@ def parts() -> list[Part]:
         Part("format", (f"{BIN}/ruff", "format", "--check", ".")),
         Part("types", (PYTHON, "-m", "mypy")),
         Part("layers", (f"{BIN}/lint-imports", "--no-logo")),
-        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser")),
+        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), minutes=20),
         Part("wheel", ("tools/test_wheel.sh",)),
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language")),
         Part("formatted", (PYTHON, "tools/check_conformance.py", "formatted")),
@@ -102,7 +102,7 @@ def parts() -> list[Part]:
         if kind == "ros2":
             suites.insert(0, "tests/packaging/test_ament.py")
         name = venv.removeprefix(".venv-")
-        found.append(Part(name, (python, *PYTEST[1:], *suites), "real-time", needs, minutes=15))
+        found.append(Part(name, (python, *PYTEST[1:], *suites), "real-time", needs, minutes=20))
     return found
 
 
