@@ -69,9 +69,9 @@ class MappedArtifact(RosArtifact):
         for topic in topics.values():
             topic.begin(search)
         for frame in self.part.frames:
-            self._kept(FrameFeed(self, frame))
+            self.kept(FrameFeed(self, frame))
         for parameter in self.part.parameters:
-            self._kept(NodeParameter(self, parameter))
+            self.kept(NodeParameter(self, parameter))
         search.begin()
 
     @property

@@ -71,7 +71,7 @@ class ArtSimBattery(RosArtifact):
         expire = self.options.get("expire")
         assert expire is None or isinstance(expire, float)
         policy = ReadingPolicy(on_demand=True, expire=expire)
-        self._told = self._kept(
+        self._told = self.kept(
             Reading(policy, self.clock, None, Outlet(withdraw=partial(self.start, self.forget_battery)))
         )
         self.follows_robot = self._follows_robot()

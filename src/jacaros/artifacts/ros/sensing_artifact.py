@@ -1,0 +1,127 @@
+"""The part of an artifact that lets properties follow sensors."""
+
+from collections.abc import Callable
+from functools import partial
+
+from jacaros.artifacts.ros.connected_artifact import ConnectedArtifact
+from jacaros.artifacts.ros.faults import Faults
+from jacaros.artifacts.ros.reading import Outlet, Reading, ReadingPolicy, Values
+from jacaros.env.artifact import internal_operation
+from jacaros.trace import Cause
+
+FIRST_MESSAGE = 5.0
+"""Seconds that an operation waits for the first message of a sensor."""
+
+
+class SensingArtifact(ConnectedArtifact):
+    """An artifact with readings of sensors; see `jacaros.artifacts.ros.ros_artifact.RosArtifact`."""
+
+    _together: "list[tuple[str, Values, Callable[[], None]]] | None" = None
+
+    def reading(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
+        """Let the property *name* follow a sensor by *policy*; ends with the artifact.
+
+        The callback of the sensor gives its values to `Reading.take`; an operation that refreshes the
+        property on request calls `refresh`.  A property that is not there yet, or no more, is defined by the next
+        values.
+
+        Args:
+            name: of the property.
+            policy: when it is updated.
+            initial: values before the first message, which are shown unless they would have to expire.
+        """
+        if initial and policy.expire is None:
+            self.define_property(name, *initial)
+        coming = 0
+        faults: dict[str, Faults] = {}
+
+        def deliver(values: Values, cause: Cause | None) -> None:
+            nonlocal coming
+            coming += 1
+            if self._together is None:
+                self.start(self.show_readings, [(name, values, arrived)], cause=cause)
+            else:
+                self._together.append((name, values, arrived))
+
+        def arrived() -> None:
+            nonlocal coming
+            coming = 0
+
+        def refuse(number: float, cause: Cause | None) -> None:
+            topic = cause.what if cause is not None else name
+            faults.setdefault(topic, self.faults_at(topic)).not_finite(name, number)
+
+        def behind() -> bool:
+            return coming > 0 or self.has_untaken(name)
+
+        outlet = Outlet(partial(self.start, self.withdraw_reading, name), refuse, behind)
+        return self.kept(Reading(policy, self.clock, deliver, outlet))
+
+    def take_together(self, cause: Cause | None, *taken: tuple[Reading, Values]) -> None:
+        """Give several readings the values of one message; what they pass on becomes known in one step."""
+        shown = self._together = []
+        try:
+            for reading, values in taken:
+                reading.take(values, cause)
+        finally:
+            self._together = None
+        if shown:
+            self.start(self.show_readings, shown, cause=cause)
+
+    @internal_operation
+    def show_readings(self, shown: object) -> None:
+        """Give properties new values, on behalf of a sensor: name, values, and what is called when they are known."""
+        assert isinstance(shown, list)
+        for name, values, arrived in shown:
+            arrived()
+            self._show_values(name, values)
+
+    @internal_operation
+    def withdraw_reading(self, name: str) -> None:
+        """Take the property *name* away: what it says has expired."""
+        if self.has_property(name):
+            self.remove_property(name)
+
+    def _show_values(self, name: str, values: Values) -> None:
+        if self.has_property(name):
+            self.update_property(name, *values)
+        else:
+            self.define_property(name, *values)
+
+    @internal_operation
+    def show_elements(self, name: str, elements: object) -> None:
+        """Have one property *name* for each of some tuples of values, and none of those before; see `view`.
+
+        An element that was shown before gives no event.
+        """
+        assert isinstance(elements, list)
+        wanted = dict.fromkeys(elements)
+        shown = [each.values for each in self.find_properties(name)]
+        for old in shown:
+            if old not in wanted:
+                self.remove_property(name, *old)
+        for new in wanted:
+            if new not in shown:
+                self.define_property(name, *new)
+
+    async def newest(self, reading: Reading, missing: str) -> Values:
+        """Give the newest values of a sensor to an operation; waits for its first message.
+
+        A step boundary if it has to wait.
+
+        Raises:
+            OperationFailed: no message came in `FIRST_MESSAGE` seconds; *missing* names the reason, such as
+                ``no_odometry(5)``.
+        """
+        if reading.newest is None:
+            try:
+                await self.step(reading.first(FIRST_MESSAGE))
+            except TimeoutError:
+                self.fail(f"no message came in {FIRST_MESSAGE:g} s", missing, FIRST_MESSAGE)
+        assert reading.newest is not None
+        return reading.newest
+
+    async def refresh(self, name: str, reading: Reading, missing: str) -> None:
+        """Give the property *name* the `newest` values, equal to the old ones or not."""
+        await self.newest(reading, missing)
+        self._show_values(name, reading.passed())
