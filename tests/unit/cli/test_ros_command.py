@@ -163,6 +163,12 @@ def test_names_do_not_clash(capsys: pytest.CaptureFixture[str]) -> None:
     assert "parameters: [x, y, yaw]" in text
 
 
+def test_docking_of_a_kobuki_is_called_as_plans_call_it(capsys: pytest.CaptureFixture[str]) -> None:
+    text = told(capsys, "map", "/dock_drive_action", "--world", "house")
+    assert "  dock:   " in text
+    assert "outputs" not in text
+
+
 def test_a_file_is_written_but_not_over_another(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     file = tmp_path / "robot.yaml"
     assert "is written" in told(capsys, "map", "/odom", "-o", str(file))

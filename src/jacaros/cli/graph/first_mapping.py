@@ -25,6 +25,7 @@ _NAMES = {
     "move_base": "navigate_to",
     "dock_robot": "dock",
     "undock_robot": "undock",
+    "dock_drive_action": "dock",
     "cmd_vel": "drive",
     "battery_state": "battery",
 }

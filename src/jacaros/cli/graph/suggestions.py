@@ -291,10 +291,12 @@ _TOLD_ANYWAY = (
     "error_string",
 )
 """Fields of results that make the operation fail, with a reason."""
+_REMARKS = ("kobuki_msgs/action/AutoDocking_Result",)
+"""Results that hold nothing but a remark; plans of docking expect none."""
 
 
 def _results(fields: Fields, type_name: str) -> list[Value]:
-    values = values_of(fields, type_name)
+    values = values_of(fields, type_name) if type_name not in _REMARKS else []
     return [value for value in values if value.path not in _TOLD_ANYWAY and "pose." not in value.path][:3]
 
 
