@@ -118,3 +118,22 @@ place(b, 2, 0, 0).
 
 -!mind[env_failure_reason(Reason)]
   <- +trouble(Reason).
+
+@a_dock_without_current_is_given_up[test, timeout(2000000)]
++!test_no_current
+  <- !fakes;
+     +battery(30);
+     !assert_fail(wait_until_charged);
+     !!hope;
+     .wait(200000);
+     -+battery(31);
+     .wait(200000);
+     !assert_false(hopeless(_));
+     .wait(100001);
+     !assert_true(hopeless(no_current)).
+
++!hope
+  <- !wait_until_charged.
+
+-!hope[env_failure_reason(Reason)]
+  <- +hopeless(Reason).
