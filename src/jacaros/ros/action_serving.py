@@ -30,6 +30,31 @@ class GoalListener(Protocol):
         """The goal is over; called once."""
 
 
+class GoalTelling(Protocol):
+    """Who brings the news of all goals of an action to their clients."""
+
+    def feedback(self, goal_id: str, message: Any) -> None:
+        """A goal has got so far."""
+
+    def ended(self, goal_id: str, outcome: Outcome) -> None:
+        """A goal is over; called once for each."""
+
+
+class OneGoalOf:
+    """The `GoalListener` of one goal of somebody who brings the news of all."""
+
+    def __init__(self, telling: GoalTelling, goal_id: str) -> None:
+        self._telling, self._goal_id = telling, goal_id
+
+    def feedback(self, message: Any) -> None:
+        """Pass feedback on."""
+        self._telling.feedback(self._goal_id, message)
+
+    def ended(self, outcome: Outcome) -> None:
+        """Pass the end on."""
+        self._telling.ended(self._goal_id, outcome)
+
+
 class GoalUnderWay:
     """A goal that is carried out: what its code sees of it, a `ServerGoal`."""
 

@@ -11,7 +11,7 @@ from typing import Any
 from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.action_serving import ServedGoals, text_of
+from jacaros.ros.action_serving import OneGoalOf, ServedGoals, text_of
 from jacaros.ros.backends.rosbridge_actions import CANCELED_AFTER, LOST_LINK, PresenceWatch
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_topics import RawTopics
@@ -257,7 +257,7 @@ class Ros1GoalService:
             request, reason = None, str(problem)
         if reason is None:
             state.number = ACTIVE
-            self._goals.begin(goal_id, request, _Listener(self, goal_id))
+            self._goals.begin(goal_id, request, OneGoalOf(self, goal_id))
             self._tell_status()
         else:
             self._end(goal_id, REJECTED, self._node.factory.make(result_type(self._type_name)), reason)
@@ -323,20 +323,6 @@ class _State:
 
     def written(self, goal_id: str) -> dict[str, Any]:
         return {"goal_id": {"stamp": self.stamp, "id": goal_id}, "status": self.number, "text": self.text}
-
-
-class _Listener:
-    """Brings the news of one goal to the topics."""
-
-    def __init__(self, service: Ros1GoalService, goal_id: str) -> None:
-        self._service = service
-        self._goal_id = goal_id
-
-    def feedback(self, message: Any) -> None:
-        self._service.feedback(self._goal_id, message)
-
-    def ended(self, outcome: Outcome) -> None:
-        self._service.ended(self._goal_id, outcome)
 
 
 def _goal_and_text(values: Any) -> tuple[str, str]:

@@ -13,7 +13,7 @@ from typing import Any
 from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, text_of
+from jacaros.ros.action_serving import TEXT_FIELDS, OneGoalOf, ServedGoals, text_of
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_requests import LOOK_AGAIN, Sight
 from jacaros.ros.backends.rosbridge_topics import RawTopics
@@ -274,7 +274,7 @@ class Ros2GoalService:
         if reason is not None:
             self._end(goal_id, self._aborted(reason))
         else:
-            self._goals.begin(goal_id, request, _Listener(self, goal_id))
+            self._goals.begin(goal_id, request, OneGoalOf(self, goal_id))
 
     def cancel(self, goal_id: str) -> None:
         """Take a request for cancelling; the bridge has agreed to it already."""
@@ -306,17 +306,3 @@ class Ros2GoalService:
         fields = self._node.factory.fields(kind)
         told = {name: text for name in TEXT_FIELDS if name in fields and fields[name].base == "string"}
         return Outcome(GoalStatus.ABORTED, self._node.factory.make(kind, told), text)
-
-
-class _Listener:
-    """Brings the news of one goal to the bridge."""
-
-    def __init__(self, service: Ros2GoalService, goal_id: str) -> None:
-        self._service = service
-        self._goal_id = goal_id
-
-    def feedback(self, message: Any) -> None:
-        self._service.feedback(self._goal_id, message)
-
-    def ended(self, outcome: Outcome) -> None:
-        self._service.ended(self._goal_id, outcome)
