@@ -77,7 +77,7 @@ class ConnectedArtifact(Artifact):
     options: Mapping[str, object] = {}
 
     def init(self, *arguments: object) -> None:
-        """Read robot name and options, then `open`.
+        """Take the robot's name and options, such as ``"robot_1", rate(5)``; both may be left out.
 
         Raises:
             OperationFailed: an unknown or impossible option (the message names the known ones), or a name
