@@ -42,27 +42,6 @@ C = TypeVar("C", bound=Closable)
 class ConnectedArtifact(Artifact):
     """An artifact whose topics and services close with it; see `jacaros.artifacts.ros.ros_artifact.RosArtifact`.
 
-    Made as ``makeArtifact("Odom", "ArtOdometry", ["robot_0", rate(5)], Id)``: the robot's name first, both
-    it and the options may be left out.  The name stands before topics (``/robot_0/odom``) and, where
-    `robot_in_properties` says so, before properties (``robot_0_chatter``), as in the thesis; the option
-    ``namespace("robot_0")`` stands before topics alone, so that an agent's program need not know its robot.
-
-    A subclass overrides `open` (not ``init``) and declares its options.
-
-    Options:
-        namespace(N): what stands before topics, as a robot's name does.
-        watch_connection(true): show `connected`; with a number of seconds instead of true, a topic also counts as
-            lost when no message came for so long.
-
-    Properties:
-        connected(Topic): somebody publishes the topic, as far as is known, and the graph can be reached; one for each
-            topic that the artifact listens to, with its absolute name as text.  Only with `watch_connection`.
-
-    Signals:
-        bad_message(Topic, Why): a message was wrong; told for the first, the tenth, the hundredth ... of a kind.  Why
-            is ``not_finite(What)``, ``wrong_frame(Frame)``, ``out_of_order(Seconds)``, ``clock_jumped(Seconds)`` or
-            ``stamp_off(Seconds)``.
-
     Attributes:
         known_options: options of the class with their readers; those of the parent classes count too.
         robot_in_properties: whether a robot's name is put before property names.
