@@ -13,6 +13,7 @@ ENVIRONMENTS = {"ros1": "1", "ros2-jazzy": "2", "ros2-kilted": "2"}
 _LINE = re.compile(
     r"(\w+) +(agent|bare) +median +([\d.]+) ms +90 % +([\d.]+) ms +99 % +([\d.]+) ms +\((\d+) messages\)"
 )
+_RATE = re.compile(r"(\w+) +(agent|bare) +flat out +([\d.]+) a second")
 
 
 def latencies(kinds: list[str], tell: Callable[[str], None]) -> dict[str, Any]:
@@ -38,7 +39,8 @@ def latencies(kinds: list[str], tell: Callable[[str], None]) -> dict[str, Any]:
 
 
 def figures_in(text: str, graph: str) -> list[dict[str, Any]]:
-    """The figures in what ``latency.py`` prints, in seconds."""
+    """The figures in what ``latency.py`` prints, in seconds and messages a second."""
+    rates = {match[2]: float(match[3]) for match in _RATE.finditer(text)}
     return [
         {
             "graph": graph,
@@ -47,6 +49,7 @@ def figures_in(text: str, graph: str) -> list[dict[str, Any]]:
             "most": float(match[4]) / 1000,
             "nearly_all": float(match[5]) / 1000,
             "messages": int(match[6]),
+            "rate": rates.get(match[2]),
         }
         for match in _LINE.finditer(text)
     ]

@@ -4,7 +4,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from pings import PERIOD, Pings
+from pings import PERIOD, Measurement
 
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.launch import launch
@@ -20,7 +20,7 @@ class InProcess:
     """Joins the run's graph with a node for the bare echo and one for the pings."""
 
     def __init__(self) -> None:
-        self.pings: Pings | None = None
+        self.pings: Measurement | None = None
 
     def join(self, mas: System) -> None:
         """Start when the run has started."""
@@ -41,7 +41,7 @@ class InProcess:
             message.pose.pose.position.x = number
             publishers[way].publish(message)
 
-        pings = self.pings = Pings(time.perf_counter, send)
+        pings = self.pings = Measurement(time.perf_counter, send)
         pinger.subscription("/cmd_vel", TWIST, lambda s: pings.returned("agent", s.message.linear.x))
         pinger.subscription("/bare/cmd_vel", TWIST, lambda s: pings.returned("bare", s.message.linear.x))
 

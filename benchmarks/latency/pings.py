@@ -11,6 +11,9 @@ PERIOD = 0.01
 PATIENCE = 1.0
 """Seconds after which a message counts as lost."""
 
+SECONDS = 3.0
+"""How long each way is tried flat out."""
+
 WAYS = ("agent", "bare")
 """Through the agent's plan, and through an echo written with the client library alone."""
 
@@ -75,3 +78,85 @@ class Pings:
         if self.lost:
             lines.append(f"{kind:8} {self.lost} messages lost")
         return "\n".join(lines)
+
+
+class FlatOut:
+    """The next message as soon as the last one has come back: how many go there and back in a second, by each way in turn.
+
+    Args:
+        now: seconds of a steady clock.
+        send: publishes an odometry message with a number on the way's topic.
+    """
+
+    def __init__(self, now: Callable[[], float], send: Callable[[str, float], None]) -> None:
+        self._now, self._send = now, send
+        self._ways = list(WAYS)
+        self._number = 1e6
+        self._began: float | None = None
+        self._sent = 0.0
+        self._back = 0
+        self.rates: dict[str, float] = {}
+
+    @property
+    def over(self) -> bool:
+        """Whether all ways have had their time."""
+        return not self._ways
+
+    def next(self) -> None:
+        """Look after the way that is being tried; called now and then."""
+        if self.over:
+            return
+        now = self._now()
+        if self._began is None:
+            self._began, self._back = now, 0
+            self._go(now)
+        elif now - self._began >= SECONDS:
+            self.rates[self._ways.pop(0)] = self._back / (now - self._began)
+            self._began = None
+        elif now - self._sent > PATIENCE:
+            self._go(now)
+
+    def returned(self, way: str, number: float) -> None:
+        """Take a command, and send the next message at once."""
+        if self._began is not None and self._ways and way == self._ways[0] and number == self._number:
+            self._back += 1
+            now = self._now()
+            if now - self._began < SECONDS:
+                self._go(now)
+
+    def _go(self, now: float) -> None:
+        self._number += 1
+        self._sent = now
+        self._send(self._ways[0], self._number)
+
+    def report(self, kind: str) -> str:
+        """Two lines for people."""
+        return "\n".join(f"{kind:8} {way:6} flat out {self.rates[way]:8.0f} a second" for way in WAYS)
+
+
+class Measurement:
+    """Latency at the rate of a sensor, then the rate flat out; used like each of them."""
+
+    def __init__(self, now: Callable[[], float], send: Callable[[str, float], None]) -> None:
+        self.pings, self.flat_out = Pings(now, send), FlatOut(now, send)
+
+    @property
+    def _phase(self) -> Pings | FlatOut:
+        return self.flat_out if self.pings.over else self.pings
+
+    @property
+    def over(self) -> bool:
+        """Whether all is measured."""
+        return self.pings.over and self.flat_out.over
+
+    def next(self) -> None:
+        """Called every `PERIOD`."""
+        self._phase.next()
+
+    def returned(self, way: str, number: float) -> None:
+        """Take a command."""
+        self._phase.returned(way, number)
+
+    def report(self, kind: str) -> str:
+        """Four lines for people."""
+        return f"{self.pings.report(kind)}\n{self.flat_out.report(kind)}"

@@ -7,7 +7,7 @@ import time
 import rospy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from pings import PERIOD, Pings
+from pings import PERIOD, Measurement
 
 
 def echo() -> None:
@@ -37,7 +37,7 @@ def ping() -> None:
         message.pose.pose.position.x = number
         publishers[way].publish(message)
 
-    pings = Pings(time.perf_counter, send)
+    pings = Measurement(time.perf_counter, send)
     lock = threading.Lock()
 
     def returned(message: Twist, way: str) -> None:

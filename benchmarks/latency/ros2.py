@@ -6,7 +6,7 @@ import time
 import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from pings import PERIOD, Pings
+from pings import PERIOD, Measurement
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import qos_profile_sensor_data
 
@@ -45,7 +45,7 @@ def ping() -> None:
         message.pose.pose.position.x = number
         publishers[way].publish(message)
 
-    pings = Pings(time.perf_counter, send)
+    pings = Measurement(time.perf_counter, send)
     node.create_subscription(Twist, "/cmd_vel", lambda m: pings.returned("agent", m.linear.x), 10)
     node.create_subscription(Twist, "/bare/cmd_vel", lambda m: pings.returned("bare", m.linear.x), 10)
     executor = SingleThreadedExecutor()

@@ -10,6 +10,10 @@ START_GOAL = 0.35 / 0.02
 """A start may take 0.35 s on a machine where an empty Python takes 0.02 s."""
 
 
+LATENCY_GOAL = 1.25
+"""A message may take so many times as long through an agent as through an echo of the client library."""
+
+
 @dataclass(frozen=True)
 class Goal:
     """A goal.
@@ -35,6 +39,7 @@ def goals_of(report: dict[str, Any]) -> Iterator[Goal]:
     yield _start(report["start"])
     yield from _peer(programs, "jason", "Jason, warm")
     yield from _robot(report.get("robot", {}))
+    yield from latency_goals(report.get("latency", {}).get("figures", []))
 
 
 def _calls(programs: list[dict[str, Any]]) -> Iterator[Goal]:
@@ -75,6 +80,18 @@ def _peer(programs: list[dict[str, Any]], engine: str, name: str) -> Iterator[Go
         if len(under) > 1:
             measured += f"; under it: {', '.join(under)}"
         yield Goal(text, measured, not under)
+
+
+def latency_goals(figures: list[dict[str, Any]]) -> Iterator[Goal]:
+    """The goals of latency, for each graph that was measured."""
+    medians = {(each["graph"], each["way"]): each["median"] for each in figures}
+    for graph in dict.fromkeys(each["graph"] for each in figures):
+        agent, bare = medians.get((graph, "agent")), medians.get((graph, "bare"))
+        text = f"from a message to the command ≤ {LATENCY_GOAL} × a bare echo on {graph}"
+        if agent is None or bare is None:
+            yield Goal(text, "not measured", None)
+        else:
+            yield Goal(text, f"{agent / bare:.2f} ×", agent <= LATENCY_GOAL * bare)
 
 
 def _memory(memory: dict[str, Any]) -> Goal:

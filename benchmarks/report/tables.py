@@ -182,15 +182,19 @@ def robot(found: dict[str, Any]) -> str:
 
 def latency(found: dict[str, Any]) -> str:
     """From a message to the command that it leads to, on real graphs."""
+    bare = {each["graph"]: each["median"] for each in found["figures"] if each["way"] == "bare"}
     rows = [
         [
             each["graph"],
             {"agent": "through an agent", "bare": "a bare echo"}[each["way"]],
             *(milliseconds(each[key]) for key in ("median", "most", "nearly_all")),
+            f"{each['median'] / bare[each['graph']]:.2f} ×" if each["graph"] in bare else "",
+            figure(each["rate"]) if each.get("rate") else "",
         ]
         for each in found["figures"]
     ]
-    table = [_table(("graph", "way", "median", "90 %", "99 %"), rows, numbers_from=2)] if rows else []
+    heads = ("graph", "way", "median", "90 %", "99 %", "of a bare echo", "flat out, a second")
+    table = [_table(heads, rows, numbers_from=2)] if rows else []
     return "\n\n".join([*table, *found["notes"]])
 
 

@@ -1,6 +1,7 @@
 """The report of the benchmarks: what stands in its tables, which goals are met."""
 
 import json
+import runpy
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +10,9 @@ from graphs import figures_in
 from mind.engines import AGENTSPEAK, OURS
 from mind.rounds import measure, row_of
 from mind.workloads import Workload, single
-from report.goals import goals_of
+from report.goals import goals_of, latency_goals
 from report.page import filled
-from report.tables import parts_of
+from report.tables import latency, parts_of
 from report.wording import figure
 
 ROOT = Path(__file__).parents[3]
@@ -130,13 +131,47 @@ def test_the_page_shows_its_figures() -> None:
 
 
 def test_latencies_are_read_from_what_is_printed() -> None:
-    text = "ros2     agent  median   1.25 ms  90 %   2.00 ms  99 %  12.50 ms   (600 messages)\nros2     3 messages lost\n"
+    text = (
+        "ros2     agent  median   1.25 ms  90 %   2.00 ms  99 %  12.50 ms   (600 messages)\n"
+        "ros2     3 messages lost\n"
+        "ros2     agent  flat out     1234 a second\n"
+    )
     assert figures_in(text, "ros2-jazzy") == [
         {
             "graph": "ros2-jazzy", "way": "agent", "median": 0.00125, "most": 0.002, "nearly_all": 0.0125,
-            "messages": 600,
+            "messages": 600, "rate": 1234.0,
         }
     ]  # fmt: skip
+
+
+def test_an_agent_is_compared_with_a_bare_echo_on_each_graph() -> None:
+    figures = [
+        {"graph": graph, "way": way, "median": median, "most": 1.0, "nearly_all": 1.0, "messages": 600, "rate": None}
+        for graph, way, median in [("ros1", "agent", 0.002), ("ros1", "bare", 0.001), ("ros2", "agent", 0.00125),
+                                   ("ros2", "bare", 0.001)]
+    ]  # fmt: skip
+    assert [(goal.measured, goal.met) for goal in latency_goals(figures)] == [
+        ("2.00 ×", False),
+        ("1.25 ×", True),
+    ]
+    assert "| ros1 | through an agent | 2.00 ms | 1000 ms | 1000 ms | 2.00 × |" in latency(
+        {"figures": figures, "notes": []}
+    )
+
+
+def test_flat_out_counts_what_comes_back_by_each_way() -> None:
+    pings = runpy.run_path(str(ROOT / "benchmarks" / "latency" / "pings.py"))
+    now = 0.0
+    sent: list[tuple[str, float]] = []
+    flat = pings["FlatOut"](lambda: now, lambda way, number: sent.append((way, number)))
+    while not flat.over:
+        flat.next()
+        for _ in range(5 if len(flat.rates) == 0 else 10):
+            if sent:
+                flat.returned(*sent.pop())
+        sent = sent[-1:]
+        now += 0.01
+    assert flat.rates == {"agent": pytest.approx(500, rel=0.02), "bare": pytest.approx(1000, rel=0.02)}
 
 
 @pytest.mark.parametrize(
