@@ -6,7 +6,8 @@ All parts run even when one fails; the exit code is 1 if any did.  A part that t
 3 of its script: no root for a ROS installation, no such interpreter, ...) is reported in capitals at the end; with
 CI=true it is a failure.  Logs go to runs/test/.
 
-Parts that measure time against a real graph run last, when nothing else loads the processors.
+Parts that measure time or need a real graph run last, when nothing else loads the processors; those of ROS 1 beside those
+of ROS 2, which wait most of the time.
 """
 
 import argparse
@@ -37,7 +38,7 @@ class Part:
     Attributes:
         name: what people call it.
         command: run in the project's folder, without standard input.
-        stage: ``install`` (one after the other), ``work`` or ``real-time`` (after everything else).
+        stage: ``install`` (one after the other), ``work``, ``real-time`` (after those), at last ``ros1`` beside ``ros2``.
         needs: a part that must have passed before.
         minutes: longer than this and it has hung.
         skips_fail: a test that was skipped fails the part.
@@ -102,7 +103,7 @@ def parts() -> list[Part]:
         if kind == "ros2":
             suites.insert(0, "tests/packaging/test_ament.py")
         name = venv.removeprefix(".venv-")
-        found.append(Part(name, (python, *PYTEST[1:], *suites), "real-time", needs, minutes=20))
+        found.append(Part(name, (python, *PYTEST[1:], *suites), kind, needs, minutes=20))
     return found
 
 
@@ -147,19 +148,18 @@ class Run:
 
     def everything(self) -> None:
         """Run all stages."""
-        stages = {
-            stage: [p for p in self._chosen if p.stage == stage] for stage in ("install", "work", "real-time")
-        }
-        work = deque(stages["work"])
-        self._side_by_side(deque(stages["install"]), work)
-        # One after the other: graphs of one machine share memory and processors, and these parts measure time.
-        self._work(deque(stages["real-time"]), deque())
 
-    def _side_by_side(self, first: deque[Part], common: deque[Part]) -> None:
-        workers = [
-            threading.Thread(target=self._work, args=(first, common)),
-            threading.Thread(target=self._work, args=(deque(), common)),
-        ]
+        def stage(name: str) -> deque[Part]:
+            return deque(part for part in self._chosen if part.stage == name)
+
+        work = stage("work")
+        self._side_by_side((stage("install"), work), (deque(), work))
+        self._work(stage("real-time"), deque())
+        # Graphs of ROS 2 share memory, and those of one number hear each other: one after the other.
+        self._side_by_side((stage("ros1"), deque()), (stage("ros2"), deque()))
+
+    def _side_by_side(self, *queues: tuple[deque[Part], deque[Part]]) -> None:
+        workers = [threading.Thread(target=self._work, args=each) for each in queues]
         for worker in workers:
             worker.start()
         for worker in workers:

@@ -67,6 +67,13 @@ def test_all_parts_run_when_one_fails(run: Any) -> None:
     assert printed.rstrip().endswith("FAILED: a")
 
 
+def test_parts_of_all_stages_run(run: Any) -> None:
+    stages = ("install", "work", "real-time", "ros1", "ros2")
+    code, verdicts, _ = run(*((stage, "true", {"stage": stage}) for stage in stages))
+    assert code == 0
+    assert verdicts == dict.fromkeys(stages, "ok")
+
+
 def test_what_cannot_run_here_is_told_loudly(run: Any) -> None:
     code, verdicts, printed = run(("a", "exit 3", {"stage": "install"}), ("b", "true", {"needs": "a"}))
     assert code == 0
