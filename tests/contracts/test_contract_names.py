@@ -2,10 +2,6 @@
 
 from typing import Any
 
-import pytest
-
-from jacaros.ros.errors import CapabilityMissing
-
 Pair = tuple[Any, Any]
 
 
@@ -82,10 +78,6 @@ def test_messages_are_made_without_a_topic(pair: Pair) -> None:
 
 def test_transforms_are_broadcast(graph: Any, pair: Pair) -> None:
     left, right = pair
-    if "transforms" not in left.capabilities():
-        with pytest.raises(CapabilityMissing, match="tf2_msgs"):
-            left.broadcast("base_link")
-        return
     right.subscribe("/tf", "tf2_msgs/msg/TFMessage")
 
     def arrives() -> bool:
@@ -100,8 +92,6 @@ def test_transforms_are_broadcast(graph: Any, pair: Pair) -> None:
 
 def test_static_transforms_wait_for_late_receivers(graph: Any, pair: Pair) -> None:
     left, right = pair
-    if "transforms" not in left.capabilities():
-        pytest.skip("tf2_msgs is not among the wheels")
     left.broadcast("laser", static=True)
     left.broadcast("camera", static=True)
     right.subscribe("/tf_static", "tf2_msgs/msg/TFMessage", durability="transient_local", depth=1)
