@@ -168,6 +168,7 @@ def test_a_long_chain_is_no_deep_tree_for_the_parser():
     parse_term("[" + ",".join(["1"] * 5000) + "]")
 
 
+@pytest.mark.whole_stack
 def test_what_is_nested_too_deeply_is_refused():
     for text in (
         "(" * 5000,

@@ -496,6 +496,7 @@ def test_a_plan_goes_when_its_last_source_takes_it_back() -> None:
     ) == ["1", "no_relevant"]
 
 
+@pytest.mark.whole_stack
 def test_plans_of_any_width_are_compiled() -> None:
     context = " & ".join(f"X > {i}" for i in range(150))
     nots = " & ".join(f"not q({i})" for i in range(150))

@@ -212,6 +212,7 @@ def test_a_goal_without_plan_whose_argument_has_no_value_fails_with_a_reason() -
     assert sorted(printed(program)) in (["alive", "arithmetic_error"], ["alive", "no_relevant"])
 
 
+@pytest.mark.whole_stack
 def test_an_element_that_python_could_not_hash_is_refused() -> None:
     program = """
     !g.
@@ -223,6 +224,7 @@ def test_an_element_that_python_could_not_hash_is_refused() -> None:
     assert printed(program) == ["{[1,2]}", "too_deep"]
 
 
+@pytest.mark.whole_stack
 def test_a_sum_that_waits_for_its_operand_may_be_deeper_than_the_stack_of_python() -> None:
     program = """
     !s.

@@ -12,6 +12,8 @@ from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, equal, free_variables, is_ground, is_key, rename, resolve, unify
 from jacaros.terms.values import Annotated, Term, Var, atom, list_items, make_list, structure
 
+pytestmark = pytest.mark.whole_stack
+
 DEPTH = 10_000
 
 
