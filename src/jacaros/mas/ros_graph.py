@@ -5,6 +5,7 @@ a program that talks to no robot pays for none.  A real graph is joined at the s
 """
 
 from collections.abc import Callable, Coroutine
+from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -99,14 +100,15 @@ class RosGraph:
 
     async def close(self) -> None:
         """Stop the robots, then the world, and leave the graph."""
-        if self._followed is not None:
-            self._followed.close()
-        if self._backend is not None:
-            await self._backend.close()
-        if self._node is not None:
-            self._node.close()
-        if self._world_backend is not None:
-            await self._world_backend.close()
+        async with AsyncExitStack() as steps:  # the last one that is written goes first
+            if self._world_backend is not None:
+                steps.push_async_callback(self._world_backend.close)
+            if self._node is not None:
+                steps.callback(self._node.close)
+            if self._backend is not None:
+                steps.push_async_callback(self._backend.close)
+            if self._followed is not None:
+                steps.callback(self._followed.close)
 
     def _open(self) -> "Backend":
         return self._options.address.open(self._clock, self._name, self._log_ros)

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AsyncExitStack
 from functools import partial
 from random import Random
 from typing import TYPE_CHECKING
@@ -279,17 +280,22 @@ class System:
         self.end(1)
 
     async def close(self) -> None:
-        """Give everything back: operations are cancelled, robots stand still."""
+        """Give everything back: operations are cancelled, robots stand still.
+
+        A step that goes wrong does not keep the later ones, least of all the last: it is the graph that stops the robots.
+        """
         self.end(1)
-        for host in self.directory:
-            host.end()
-        for host in self.directory:
-            await host.close()
-        if self._surroundings is not None:
-            await self._surroundings.environment.close()
-        if self._diagnostics is not None:
-            self._diagnostics.close()
-        await self.ros.close()
+        hosts = list(self.directory)
+        async with AsyncExitStack() as steps:  # the last one that is written goes first
+            steps.push_async_callback(self.ros.close)
+            if self._diagnostics is not None:
+                steps.callback(self._diagnostics.close)
+            if self._surroundings is not None:
+                steps.push_async_callback(self._surroundings.environment.close)
+            for host in reversed(hosts):
+                steps.push_async_callback(host.close)
+            for host in reversed(hosts):
+                steps.callback(host.end)
 
     # ---- what agents ask for
 

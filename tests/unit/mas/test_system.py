@@ -7,6 +7,7 @@ import pytest
 
 from jacaros.clock import VirtualClock
 from jacaros.errors import InternalError
+from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.system import System
 from jacaros.testing import RunResult, run_project
 
@@ -152,6 +153,25 @@ def test_a_defect_ends_the_run(project: Project) -> None:
 
     with pytest.raises(InternalError, match="broken"):
         run_project(file, when_started=break_it)
+
+
+def test_the_graph_is_left_in_order_even_when_the_end_of_an_agent_goes_wrong(
+    project: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Robots are stopped when the graph is left."""
+    file = project(a_asl="!go. +!go <- .wait(1000); .print(late).")
+    stopped: list[str] = []
+
+    def broken(host: AgentHost) -> None:
+        raise InternalError(f"{host.name} cannot end")
+
+    def watch(mas: System) -> None:
+        mas.ros.backend().add_exit_hook(lambda: stopped.append("robot"))
+        monkeypatch.setattr(AgentHost, "end", broken)
+
+    with pytest.raises(InternalError, match="a cannot end"):
+        run_project(file, seconds=0.5, when_started=watch)
+    assert stopped == ["robot"]
 
 
 def test_the_clock_of_the_run_is_seen_by_agents(project: Project) -> None:
