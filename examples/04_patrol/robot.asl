@@ -39,7 +39,7 @@ lowest(100).  // percent, the least that it ever had in the dock
      !end_of_shift.
 
 // A corner that it cannot reach.
--!visit(_)[error_msg(Text)]
+-!reach(_, _)[error_msg(Text)]
   <- !give_up(Text).
 
 +!end_of_shift : recharges(N) & shift(N)

@@ -59,12 +59,12 @@ can_help(Percent) :- percent_left(Percent) & Percent > 40 & not charging & not o
 +!dock_and_charge
   <- +charging;
      !hand_over;
-     !into_dock(1);
+     !into_dock;
      !wait_until_charged;
      -charging;
      !count;
      !end_of_shift;
-     !out_of_dock(1);
+     !out_of_dock;
      !take_back.
 
 +!count : recharges(N)

@@ -26,8 +26,12 @@
     : Reason = makeArtifactFailure("artifact_already_present", _).
 
 // Any other reason concerns who wanted the artifact.
--!create_artifact(_, _, _)[error_msg(Text), env_failure_reason(Reason)]
-  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
+-!create_artifact(_, _, _)[error(Error), error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
+
+// A program that makes artifacts in its own way may fail without a reason of the environment.
+-!create_artifact(_, _, _)[error(Error), error_msg(Text)]
+  <- .fail(error(Error), error_msg(Text)).
 
 // Find an artifact; one that is not there yet has five seconds to come.
 +?artifact(Name, Id)
@@ -40,8 +44,11 @@
   <- .wait(100);
      ?artifact(Name, Id, Tries - 1).
 
--?artifact(_, _, _)[error_msg(Text), env_failure_reason(Reason)]
-  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
+-?artifact(_, _, _)[error(Error), error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
+
+-?artifact(_, _, _)[error(Error), error_msg(Text)]
+  <- .fail(error(Error), error_msg(Text)).
 
 /* The artifacts of the thesis, by the names of its plans: make with create_..., find with tool... */
 

@@ -36,26 +36,39 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
      .fail(error(unknown_place), error_msg(Text), env_failure_reason(unknown_place(Place))).
 
 +!go_to(X, Y, Yaw)
-  <- !go_to(X, Y, Yaw, 1).
-
-+!go_to(X, Y, Yaw, _)
-  <- !drive_there(X, Y, Yaw).
-
-// It did not work: see what can be done about the reason, and try again.
--!go_to(X, Y, Yaw, Attempt)[env_failure_reason(Reason)]
-    : attempts_allowed(Most) & Attempt < Most & not Reason = canceled
-  <- !recover(Reason);
-     !go_to(X, Y, Yaw, Attempt + 1).
-
-// Tried often enough; or somebody took the goal back, and trying again would be wrong.
--!go_to(_, _, _, _)[error_msg(Text), env_failure_reason(Reason)]
-  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
+  <- !attempt(drive_there(X, Y, Yaw), 1).
 
 // The one place that knows how this robot drives.
 +!drive_there(X, Y, Yaw)
   <- navigate_to(X, Y, Yaw).
 
-/* When the way failed, before the next attempt */
+/* Attempts: one step, again and again until it succeeds */
+
++!attempt(Step, _)
+  <- !Step.
+
+// Somebody took the goal back, and trying again would be wrong.
+-!attempt(_, _)[error(Error), error_msg(Text), env_failure_reason(canceled)]
+  <- .fail(error(Error), error_msg(Text), env_failure_reason(canceled)).
+
+// It did not work: see what can be done about the reason, and try again.
+-!attempt(Step, Number)[env_failure_reason(Reason)] : attempts_allowed(Most) & Number < Most
+  <- !recover(Reason);
+     !attempt(Step, Number + 1).
+
+// What a program does in its own way may fail without such a reason: then the kind of error is it.
+-!attempt(Step, Number)[error(Error)] : attempts_allowed(Most) & Number < Most
+  <- !recover(Error);
+     !attempt(Step, Number + 1).
+
+// Tried often enough: the reason concerns who wanted the step.
+-!attempt(_, _)[error(Error), error_msg(Text), env_failure_reason(Reason)]
+  <- .fail(error(Error), error_msg(Text), env_failure_reason(Reason)).
+
+-!attempt(_, _)[error(Error), error_msg(Text)]
+  <- .fail(error(Error), error_msg(Text)).
+
+/* Before the next attempt */
 
 // The server is starting, or is gone and may come back.
 +!recover(rejected) <- .wait(3000).
@@ -95,19 +108,31 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 // Be there, and do there what the program has a plan `arrived` for.
 +!visit(Place)
-  <- !go_to(Place);
-     .abolish(unreachable(Place, _));
-     !arrived(Place).
+  <- !reach(Place, Reached);
+     if (Reached == true) {
+        !arrived(Place);
+     }.
 
-// A place that cannot be reached is left out and known, after a moment: there may be no other place.
--!visit(Place)[env_failure_reason(Reason)] : not Reason = unknown_place(_)
++!reach(Place, true)
+  <- !go_to(Place);
+     .abolish(unreachable(Place, _)).
+
+// Nobody knows the place: a mistake of who patrols.
+-!reach(_, _)[error(Error), error_msg(Text), env_failure_reason(unknown_place(Place))]
+  <- .fail(error(Error), error_msg(Text), env_failure_reason(unknown_place(Place))).
+
+// A place that cannot be reached is left out and known.
+-!reach(Place, false)[env_failure_reason(Reason)]
+  <- !leave_out(Place, Reason).
+
+-!reach(Place, false)[error(Error)]
+  <- !leave_out(Place, Error).
+
+// After a moment: there may be no other place.
++!leave_out(Place, Reason)
   <- .abolish(unreachable(Place, _));
      +unreachable(Place, Reason);
      .wait(1000).
-
-// Nobody knows the place: a mistake of who patrols.
--!visit(_)[error_msg(Text), env_failure_reason(Reason)]
-  <- .fail(error(unknown_place), error_msg(Text), env_failure_reason(Reason)).
 
 +!arrived(_).
 
@@ -123,31 +148,15 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 // To the dock, wait there until the battery is full, and out again.
 +!dock_and_charge
-  <- !into_dock(1);
+  <- !into_dock;
      !wait_until_charged;
-     !out_of_dock(1).
+     !out_of_dock.
 
-+!into_dock(_)
-  <- !drive_into_dock.
++!into_dock
+  <- !attempt(drive_into_dock, 1).
 
--!into_dock(Attempt)[env_failure_reason(Reason)]
-    : attempts_allowed(Most) & Attempt < Most & not Reason = canceled
-  <- !recover(Reason);
-     !into_dock(Attempt + 1).
-
--!into_dock(_)[error_msg(Text), env_failure_reason(Reason)]
-  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
-
-+!out_of_dock(_)
-  <- !drive_out_of_dock.
-
--!out_of_dock(Attempt)[env_failure_reason(Reason)]
-    : attempts_allowed(Most) & Attempt < Most & not Reason = canceled
-  <- !recover(Reason);
-     !out_of_dock(Attempt + 1).
-
--!out_of_dock(_)[error_msg(Text), env_failure_reason(Reason)]
-  <- .fail(error(action_failed), error_msg(Text), env_failure_reason(Reason)).
++!out_of_dock
+  <- !attempt(drive_out_of_dock, 1).
 
 // Where Nav2 knows the dock by a name, it finds the way.
 +!drive_into_dock : dock_id(Name)
