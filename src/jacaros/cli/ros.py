@@ -141,7 +141,7 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
     """  # fmt: skip
     from jacaros.cli.graph import first_mapping, listening
     from jacaros.cli.graph.joining import Joined, NothingThere
-    from jacaros.cli.graph.kinds import find
+    from jacaros.cli.graph.kinds import find_mappable
     from jacaros.cli.graph.usual import usual_things
 
     if output is not None and output.exists() and not force:
@@ -149,7 +149,7 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
 
     async def look(joined: Joined) -> str:
         if names:
-            things = [thing for name in names for thing in find(joined, name)]
+            things = [thing for name in names for thing in find_mappable(joined, name)]
             frames: dict[str, str] = {}
         else:
             things = usual_things(joined.contents)

@@ -75,7 +75,7 @@ def test_a_topic_is_shown_with_fields_units_endpoints_and_a_message(
     assert "pose.pose.position.x float64 m 0" in lines
     assert "twist.twist.angular.z float64 rad/s 0" in lines
     assert 'child_frame_id string "base_footprint"' in lines
-    assert "- {path: pose.pose.orientation, as: yaw, unit: degrees}" in lines
+    assert "- {path: pose.pose.orientation, as: yaw, unit: degrees, round: 1}" in lines
 
 
 def test_long_lists_are_shortened(capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,7 +17,6 @@ from jacaros.cli.graph.suggestions import (
     publishing,
 )
 from jacaros.cli.graph.usual import robot_of, robots
-from jacaros.errors import UsageError
 
 _SECTIONS = ("properties", "signals", "frames", "operations")
 _NAMES = {
@@ -30,6 +29,8 @@ _NAMES = {
     "battery_state": "battery",
 }
 """Words that read better in a plan."""
+_VAGUE = ("compressed", "compressed_depth", "data", "feedback", "info", "raw", "state", "status", "value")
+"""Last parts of names that say nothing without the part in front."""
 _COMMENT_AT = 41
 """Column of comments."""
 _BODIES = ("base_link", "base_footprint")
@@ -49,6 +50,8 @@ class _Artifact:
         taken = {entry.name for entry in self.entries}
         parts = [part for part in ros_name.split("/") if part]
         plain = [plain_name("_".join(parts[-count:])) for count in range(1, len(parts) + 1)]
+        if plain[0] in _VAGUE:
+            plain = plain[1:] or plain
         names = [_NAMES.get(plain[0], plain[0]), *plain]
         names += [f"{plain[-1]}{number}" for number in range(2, len(taken) + 3)]
         return next(name for name in names if name not in taken)
@@ -73,13 +76,12 @@ def mapping_for(
 
     Args:
         joined: the graph.
-        things: topics, services and actions.
+        things: topics, services and actions, see `find_mappable`.
         frames: what `listening.frames` found; empty to leave frames out.
         file: name of the file, for the comments.
         options: options for the commands in the comments, such as ``--ros ros2``.
 
     Raises:
-        UsageError: a node or a type is among them.
         UnknownInterface: a type has no definition here.
     """
     artifacts = _artifacts(joined, things)
@@ -107,28 +109,22 @@ def _home(joined: Joined, artifacts: list[_Artifact], thing: Thing) -> _Artifact
 
 
 def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
-    if thing.kind in (Kind.NODE, Kind.TYPE):
-        raise UsageError(f"{thing.name} is a {thing.kind}; a mapping has topics, services and actions")
     if not thing.type_name:
         raise NothingThere(
             f"the type of {thing.kind} {thing.name} is not told here; write the mapping by hand"
         )
-    fields, name, written = (
-        joined.backend.fields,
-        artifact.free_name(thing.name),
-        artifact.relative(thing.name),
-    )
+    types, name, written = joined.backend, artifact.free_name(thing.name), artifact.relative(thing.name)
     if thing.kind is Kind.SERVICE:
-        artifact.add([calling(fields, name, written, thing.type_name)])
+        artifact.add([calling(types, name, written, thing.type_name)])
         return
     if thing.kind is Kind.ACTION:
-        artifact.add([acting(fields, name, written, thing.type_name)])
+        artifact.add([acting(types, name, written, thing.type_name)])
         return
     info = joined.contents.topics[thing.name]
     if info.subscriptions and (not info.publishers or thing.type_name in TWISTS):
-        artifact.add(publishing(fields, name, written, info))
+        artifact.add(publishing(types, name, written, info))
         return
-    entry = property_of(fields, name, written, info)
+    entry = property_of(types, name, written, info)
     look = looking(entry)
     artifact.add([entry, look] if look is not None else [entry])
 
@@ -147,7 +143,7 @@ def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
             line = (
                 f"target: {target.removeprefix(inside)}",
                 f"source: {body}",
-                "fields: [x, y, {path: yaw, unit: degrees}]",
+                "fields: [{path: x, round: 2}, {path: y, round: 2}, {path: yaw, unit: degrees, round: 1}]",
                 "rate: 5",
                 "dead_band: [0.02, 0.02, 1]",
             )

@@ -62,6 +62,20 @@ def find(joined: Joined, written: str) -> list[Thing]:
     return found
 
 
+def find_mappable(joined: Joined, written: str) -> list[Thing]:
+    """What of the things called *written* a mapping can have: a node may be called like a topic.
+
+    Raises:
+        UsageError: there is nothing of that name, or only a node or a type.
+    """
+    things = find(joined, written)
+    mappable = [thing for thing in things if thing.kind not in (Kind.NODE, Kind.TYPE)]
+    if not mappable:
+        found = things[0]
+        raise UsageError(f"{found.name} is a {found.kind}; a mapping has topics, services and actions")
+    return mappable
+
+
 def hint(name: str, names: list[str]) -> str:
     """What may have been meant, as the end of a sentence."""
     near = near_names(name, names)

@@ -98,8 +98,8 @@ def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
 
 def _row(joined: Joined, leaf: Leaf, message: Any) -> dict[str, Any]:
     row: dict[str, Any] = {"path": leaf.path, "type": str(leaf.type)}
-    if is_time(leaf.type) and not leaf.type.array:
-        row["type"] = leaf.type.base.rpartition("/")[2].lower()
+    if is_time(leaf.type):
+        row["type"] = row["type"].rpartition("/")[2].lower()
     if leaf.unit:
         row["unit"] = leaf.unit
     if message is not None:
@@ -111,12 +111,11 @@ def _plain(value: Any, leaf: Leaf) -> Any:
     """A value as JSON has it; of long lists the beginning and the length."""
     if value is None:
         return None
-    if is_time(leaf.type) and not leaf.type.array:
-        return to_seconds(value)
+    single = to_seconds if is_time(leaf.type) else _single
     if leaf.type.array:
-        elements = [_single(each) for each in value[:FEW]]
+        elements = [single(each) for each in value[:FEW]]
         return elements if len(value) <= FEW else {"length": len(value), "first": elements}
-    return _single(value)
+    return single(value)
 
 
 def _single(value: Any) -> Any:
@@ -203,14 +202,17 @@ def _text(row: dict[str, Any]) -> str:
         return ""
     value = row["value"]
     if isinstance(value, dict):
-        return f"[{', '.join(map(_number, value['first']))}, ... {value['length']} in all]"
+        return f"[{', '.join(map(_plain_text, value['first']))}, ... {value['length']} in all]"
     if isinstance(value, list):
-        return f"[{', '.join(map(_number, value))}]"
+        return f"[{', '.join(map(_plain_text, value))}]"
+    return "(none)" if value is None else _plain_text(value)
+
+
+def _plain_text(value: Any) -> str:
+    """A value without parts as agents write it."""
     if isinstance(value, str):
         text = json.dumps(value, ensure_ascii=False)
         return text if len(text) <= LONG else f"{text[:LONG]}..."
-    return "(none)" if value is None else _number(value)
-
-
-def _number(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
     return f"{value:.6g}" if isinstance(value, float) and abs(value) < 1e6 else str(value)

@@ -1,12 +1,15 @@
 """Which parts of a message are worth a place in a belief or among the parameters of an operation."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
-from jacaros.cli.graph.definitions import Fields, is_time, unit_of
-from jacaros.ros.fields import FieldType
+from jacaros.artifacts.mapping.interfaces import Interfaces, constants
+from jacaros.cli.graph.definitions import is_time, unit_of
+from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 
 HEADER = "std_msgs/msg/Header"
+_LAYOUT = "std_msgs/msg/MultiArrayLayout"
 _QUATERNION = "geometry_msgs/msg/Quaternion"
 MANY = 6
 """More values than this make no good belief."""
@@ -17,6 +20,8 @@ _CHOSEN: Mapping[str, tuple[str, ...]] = {
     "geometry_msgs/msg/AccelWithCovariance": ("accel",),
     "nav_msgs/msg/Odometry": ("pose",),
     "sensor_msgs/msg/Imu": ("orientation", "angular_velocity"),
+    "sensor_msgs/msg/Range": ("range",),
+    "sensor_msgs/msg/NavSatFix": ("latitude", "longitude", "altitude"),
 }
 """Of some types a few fields say nearly all."""
 _IN_THE_PLANE: Mapping[str, tuple[str, ...]] = {
@@ -33,10 +38,50 @@ _LEFT = (
     "progress_checker_id",
     "number_of_loops",
     "goal_index",
+    "variance",
 )
-"""Fields of Nav2's goals that are better left as they are: it then takes what its configuration says."""
+"""Fields of Nav2's goals that are better left as they are, since it then takes what its configuration says; and how sure
+a sensor is."""
 _TURNS = ("angular", "angular_velocity")
 """Vectors of a robot on wheels of which only z is not zero."""
+_SMALL = ("byte", "char", "int8", "uint8")
+"""Types of fields that hold one of a few constants."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """How values of a unit are shown.
+
+    Attributes:
+        word: for people; empty when the unit is not known.
+        digits: decimals that mean something; None: the value is no number with decimals.
+        band: smaller changes are nothing new.
+    """
+
+    word: str = ""
+    digits: int | None = None
+    band: float = 0.0
+
+
+_NO_NUMBER = Unit()
+_DEGREES = Unit("degrees", 1, 1.0)
+_DEGREES_PER_SECOND = Unit("degrees per second", 1, 1.0)
+_SPEED = Unit("metres per second", 2, 0.02)
+_UNITS = {
+    "": Unit("", 3),
+    "m": Unit("metres", 2, 0.02),
+    "s": Unit("seconds", 2),
+    "m/s": _SPEED,
+    "rad": _DEGREES,
+    "rad/s": _DEGREES_PER_SECOND,
+    "V": Unit("volts", 2, 0.02),
+    "A": Unit("amperes", 2, 0.02),
+    "°C": Unit("degrees Celsius", 1, 0.1),
+    "degrees": Unit("degrees", 7, 0.00001),  # of latitude and longitude: a metre
+    "Pa": Unit("pascals", 0, 1.0),
+    "lx": Unit("lux", 0, 1.0),
+    "0 to 1": Unit("0 to 1", 2),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,18 +92,20 @@ class Value:
         path: in the message.
         name: for agents, in lower case.
         conversion: further keys of the mapping file, such as ``as: yaw, unit: degrees``; empty for the plain value.
-        unit: as a word for people; empty when it is not known.
+        unit: of the number.
     """
 
     path: str
     name: str
     conversion: str = ""
-    unit: str = ""
+    unit: Unit = _NO_NUMBER
 
     @property
     def as_field(self) -> str:
         """An entry of ``fields`` of a property."""
-        return f"{{path: {self.path}, {self.conversion}}}" if self.conversion else self.path
+        digits = f"round: {self.unit.digits}" if self.unit.digits is not None else ""
+        keys = ", ".join(filter(None, (self.conversion, digits)))
+        return f"{{path: {quoted(self.path)}, {keys}}}" if keys else quoted(self.path)
 
     @property
     def as_value(self) -> str:
@@ -66,68 +113,85 @@ class Value:
         return f"{{value: ${self.name}, {self.conversion}}}" if self.conversion else f"${self.name}"
 
 
-def values_of(fields: Fields, type_name: str, path: str = "") -> list[Value]:
+def quoted(path: str) -> str:
+    """A path as it stands within brackets of YAML."""
+    return f'"{path}"' if "[" in path else path
+
+
+def values_of(types: Interfaces, type_name: str) -> list[Value]:
     """The values of a message that agents want; lists and headers are left out.  Raises `UnknownInterface`."""
-    return _with_own_names(list(_walk(fields, type_name, path)))
+    if is_time(FieldType(type_name)):
+        return [Value(".", "seconds", "", _UNITS["s"])]
+    return _with_own_names(list(_walk(types, type_name, "")))
 
 
-def lists_of(fields: Fields, type_name: str) -> list[tuple[str, FieldType]]:
+def lists_of(types: Interfaces, type_name: str) -> list[tuple[str, FieldType]]:
     """The fields of a message that are lists."""
-    return [(name, kind) for name, kind in fields(type_name).items() if kind.array]
+    return [(name, kind) for name, kind in types.fields(type_name).items() if kind.array]
 
 
-def _walk(fields: Fields, type_name: str, path: str) -> Iterator[Value]:
+def list_of(path: str, kind: FieldType) -> Value:
+    """A list of plain values as one value."""
+    return Value(path, path.lower(), "", Unit("a list", 3 if kind.base in FLOATS else None))
+
+
+def _walk(types: Interfaces, type_name: str, path: str) -> Iterator[Value]:
     chosen = _CHOSEN.get(type_name) or _IN_THE_PLANE.get(type_name)
-    for name, kind in fields(type_name).items():
+    for name, kind in types.fields(type_name).items():
         here = f"{path}.{name}" if path else name
-        if kind.array or kind.base == HEADER or (chosen and name not in chosen):
+        if kind.array or kind.base in (HEADER, _LAYOUT) or (chosen and name not in chosen):
             continue
         if kind.base == _QUATERNION:
-            yield Value(here, "yaw", "as: yaw, unit: degrees", "degrees")
+            yield Value(here, "yaw", "as: yaw, unit: degrees", _DEGREES)
         elif kind.is_message and not is_time(kind):
             if type_name == "geometry_msgs/msg/Twist" and name == "linear":
-                yield Value(f"{here}.x", "speed", "", "metres per second")
+                yield Value(f"{here}.x", "speed", "", _SPEED)
             elif name in _TURNS:
-                yield Value(f"{here}.z", "turn", "unit: degrees", "degrees per second")
+                yield Value(f"{here}.z", "turn", "unit: degrees", _DEGREES_PER_SECOND)
             else:
-                yield from _walk(fields, kind.base, here)
+                yield from _walk(types, kind.base, here)
         elif name not in _LEFT:
-            unit = "s" if is_time(kind) else unit_of(type_name, name)
-            angle = unit in ("rad", "rad/s")
-            words = _WORDS.get(unit, "")
-            yield Value(
-                here,
-                "yaw" if name == "theta" else name.lower(),
-                "unit: degrees" if angle else "",
-                words.replace("radians", "degrees") if angle else words,
-            )
+            yield _single(types, type_name, name, kind, here)
 
 
-_WORDS = {
-    "m": "metres",
-    "s": "seconds",
-    "m/s": "metres per second",
-    "rad": "radians",
-    "rad/s": "radians per second",
-    "V": "volts",
-    "A": "amperes",
-    "°C": "degrees Celsius",
-    "degrees": "degrees",
-    "Pa": "pascals",
-    "lx": "lux",
-    "0 to 1": "0 to 1",
-}
+def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path: str) -> Value:
+    """A field that is no message."""
+    word = "yaw" if name == "theta" else name.lower()
+    if is_time(kind):
+        return Value(path, word, "", _UNITS["s"])
+    if kind.base in FLOATS:
+        told = unit_of(type_name, name)
+        conversion = "unit: degrees" if told in ("rad", "rad/s") else ""
+        return Value(path, word, conversion, _UNITS.get(told, Unit(told, 3)))
+    if kind.base in INTEGER_RANGES and _is_named(types, type_name, name, kind):
+        return Value(path, word, "as: name")
+    return Value(path, word)
+
+
+def _is_named(types: Interfaces, type_name: str, name: str, kind: FieldType) -> bool:
+    """Whether the constants of a message are names for the values of a field, each value having one."""
+    known = constants(types, type_name)
+    own = [value for constant, value in known.items() if constant.startswith(f"{name.upper()}_")]
+    if own:
+        return len(set(own)) == len(own)
+    numbers = [each for each in types.fields(type_name).values() if each.base in INTEGER_RANGES]
+    alone = len(numbers) == 1 and kind.base in _SMALL
+    return alone and len(known) > 1 and len(set(known.values())) == len(known)
 
 
 def _with_own_names(values: list[Value]) -> list[Value]:
-    """Values of one name get that of the uppermost field in front: ``start_x``, ``end_x``; or all of the path."""
-    for count in (1, None):
-        names = [value.name for value in values]
-        values = [_longer(value, count) if names.count(value.name) > 1 else value for value in values]
-    return values
+    """Values of one name get what differs in their paths in front of it: ``start_x``, ``end_x``."""
+    longer = [_longer(value, [each for each in values if each.name == value.name]) for value in values]
+    names = [value.name for value in longer]
+    return [
+        replace(value, name=value.path.replace(".", "_").lower()) if names.count(value.name) > 1 else value
+        for value in longer
+    ]
 
 
-def _longer(value: Value, count: int | None) -> Value:
-    """The same value, with the first *count* steps of its path in front of its name."""
-    above = value.path.split(".")[:-1][:count]
-    return replace(value, name="_".join([*above, value.name]).lower())
+def _longer(value: Value, alike: Sequence[Value]) -> Value:
+    """The same value, with those steps of its path that others of its name do not have in front of the name."""
+    paths = [each.path.split(".")[:-1] for each in alike]
+    differ = [len(set(steps)) > 1 for steps in zip_longest(*paths)]
+    own = [step for step, is_own in zip(value.path.split(".")[:-1], differ, strict=False) if is_own]
+    return replace(value, name="_".join([*own, value.name]).lower())

@@ -1,0 +1,83 @@
+"""What a first mapping says of the topics that most robots have."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+Body = tuple[str, str, Sequence[str]]
+"""Section, comment and further lines of an entry."""
+
+
+def _odometry(name: str) -> Body:
+    return (
+        "properties",
+        f"{name}(X, Y, Yaw): metres, metres, degrees",
+        [
+            "fields:",
+            "  - {path: pose.pose.position.x, round: 2}",
+            "  - {path: pose.pose.position.y, round: 2}",
+            "  - {path: pose.pose.orientation, as: yaw, unit: degrees, round: 1}",
+            "rate: 5   # at most so many times a second",
+            "dead_band: [0.02, 0.02, 1]   # smaller changes are not told",
+        ],
+    )
+
+
+def _laser(name: str) -> Body:
+    return (
+        "properties",
+        f"{name}(R0, R25, R50, R75, R100): metres, five of the ranges from the first to the last",
+        ["fields: [{path: ranges, sample: 5, otherwise: range_max, round: 2}]", "rate: 2", "dead_band: 0.02"],
+    )
+
+
+def _battery(name: str) -> Body:
+    return (
+        "properties",
+        f"{name}(Percent, Status): such as {name}(80, discharging)",
+        [
+            "fields:",
+            "  - {path: percentage, unit: percent, round: 0}",
+            "  - {path: power_supply_status, as: name}",
+        ],
+    )
+
+
+def _joints(name: str) -> Body:
+    return (
+        "properties",
+        f"{name}(Joint, Position): one for each joint; radians, or metres of a joint that slides",
+        ["each: name", 'fields: [., {path: "/position[i]", round: 3}]', "rate: 5", "dead_band: 0.01"],
+    )
+
+
+def _diagnostics(name: str) -> Body:
+    return (
+        "properties",
+        f"{name}(Part, Level, Text): one for each part of the robot",
+        [
+            "each: status",
+            "key: name",
+            "fields: [name, {path: level, names: {0: ok, 1: warning, 2: error, 3: stale}}, message]",
+        ],
+    )
+
+
+def _hazards(name: str) -> Body:
+    return (
+        "signals",
+        f"{name}(Kind, Where): such as {name}(bump, bump_front_left)",
+        [
+            "each: detections",
+            "fields: [{path: type, as: name}, {path: header.frame_id, as: atom}]",
+            "when_changed: true   # not again and again while it lasts",
+        ],
+    )
+
+
+KNOWN: Mapping[str, Callable[[str], Body]] = {
+    "nav_msgs/msg/Odometry": _odometry,
+    "sensor_msgs/msg/LaserScan": _laser,
+    "sensor_msgs/msg/BatteryState": _battery,
+    "sensor_msgs/msg/JointState": _joints,
+    "diagnostic_msgs/msg/DiagnosticArray": _diagnostics,
+    "irobot_create_msgs/msg/HazardDetectionVector": _hazards,
+}

@@ -1,0 +1,147 @@
+"""What `jacaros ros map` writes of topics, services and actions of many types; none of it needs editing to be right."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.artifacts.mapping.checking import check_mapping
+from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.mapping.interfaces import StoredInterfaces
+from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
+from jacaros.ros.graph import Endpoint, TopicInfo
+
+DEFINITIONS = {
+    "msg/Part": "uint8 IDLE=0\nuint8 BUSY=1\nstring name\nuint8 state\nfloat64[] weights\ngeometry_msgs/Point position\n",
+    "msg/Modes": "int32 MODE_AUTO=1\nint32 MODE_MANUAL=2\nint32 LIMIT=9\nint32 mode\nint32 other\nbool on\n",
+    "msg/Alike": "uint8 A=1\nuint8 B=1\nuint8 kind\n",
+    "msg/Parts": "std_msgs/Header header\nPart[] parts\n",
+    "msg/Moves": "geometry_msgs/Pose start\ngeometry_msgs/Pose end\ngeometry_msgs/Twist twist\n",
+    "msg/Deep": "Moves one\nMoves two\n",
+    "srv/Weigh": "string[] names\nfloat64[3] offsets\nuint8[] picture\n---\nfloat64 weight\nbool success\n",
+    "action/Sort": "uint8 BY_NAME=0\nuint8 BY_WEIGHT=1\nuint8 order\n---\nfloat32 weight\n---\nfloat32 progress\n",
+}
+
+
+@pytest.fixture
+def types(tmp_path: Path) -> StoredInterfaces:
+    for name, text in DEFINITIONS.items():
+        kind, word = name.split("/")
+        file = tmp_path / "odd_msgs" / kind / f"{word}.{kind}"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    return StoredInterfaces((tmp_path,))
+
+
+def info(type_name: str) -> TopicInfo:
+    return TopicInfo("/t", (type_name,), (Endpoint("/n"),), (Endpoint("/m"),))
+
+
+def checked(types: StoredInterfaces, *entries: Entry) -> str:
+    """The text of the entries, which must be right at once."""
+    lines = []
+    for section in dict.fromkeys(entry.section for entry in entries):
+        lines.append(f"{section}:")
+        for entry in (each for each in entries if each.section == section):
+            lines += [f"  {entry.name}:  # {entry.comment}", *(f"    {line}" for line in entry.lines)]
+    text = "\n".join(lines) + "\n"
+    check_mapping(read_mapping(text), types)
+    return text
+
+
+def shown(types: StoredInterfaces, type_name: str) -> str:
+    entry = property_of(types, "t", "t", info(type_name))
+    look = looking(entry)
+    return checked(types, entry, *([look] if look is not None else []))
+
+
+@pytest.mark.parametrize(
+    ("type_name", "parts"),
+    [
+        (
+            "nav_msgs/msg/Odometry",
+            ["{path: pose.pose.position.x, round: 2}", "as: yaw, unit: degrees, round: 1}", "rate: 5"],
+        ),
+        ("sensor_msgs/msg/BatteryState", ["unit: percent, round: 0}", "power_supply_status, as: name}"]),
+        (
+            "sensor_msgs/msg/Range",
+            ["# t(Range): metres", "fields:\n      - {path: range, round: 2}\n    rate: 5"],
+        ),
+        (
+            "sensor_msgs/msg/NavSatFix",
+            [
+                "t(Latitude, Longitude, Altitude)",
+                "{path: latitude, round: 7}",
+                "dead_band: [0.00001, 0.00001, 0.02]",
+            ],
+        ),
+        ("sensor_msgs/msg/Imu", ["t(Yaw, Turn): degrees, degrees per second"]),
+        ("sensor_msgs/msg/Temperature", ["# t(Temperature): degrees Celsius", "round: 1"]),
+        ("sensor_msgs/msg/Joy", ["fields: [{path: axes, round: 3}]"]),
+        ("std_msgs/msg/Float32MultiArray", ["fields: [{path: data, round: 3}]"]),
+        ("std_msgs/msg/Float32", ["{path: data, round: 3}"]),
+        ("std_msgs/msg/UInt64", ["- data\n"]),
+        ("std_msgs/msg/Empty", ["signals:\n", "# t, for each message"]),
+        ("builtin_interfaces/msg/Time", ["# t(Seconds): seconds", "{path: ., round: 2}"]),
+        ("geometry_msgs/msg/WrenchStamped", ["t(ForceX, ForceY, ForceZ, TorqueX, TorqueY, TorqueZ)"]),
+        ("geometry_msgs/msg/PoseArray", ["# t(N): how many poses there are"]),
+        ("tf2_msgs/msg/TFMessage", ["each: transforms", "t(ChildFrameId, X, Y, Z, Yaw)"]),
+        ("sensor_msgs/msg/JointState", ['{path: "/position[i]", round: 3}']),
+        ("sensor_msgs/msg/CompressedImage", ["as: object", "mode: on_demand", "refresh: t"]),
+        ("irobot_create_msgs/msg/HazardDetectionVector", ["signals:\n", "when_changed: true"]),
+        (
+            "odd_msgs/msg/Part",
+            [
+                "- name\n      - {path: state, as: name}\n",
+                "# there are also weights",
+                "dead_band: [0, 0, 0.02, 0.02]",
+            ],
+        ),
+        ("odd_msgs/msg/Modes", ["- {path: mode, as: name}\n      - other\n      - on\n"]),
+        ("odd_msgs/msg/Alike", ["- kind\n"]),
+        ("odd_msgs/msg/Parts", ["t(Name, State, X, Y): name, state, metres, metres, one for each of parts"]),
+        (
+            "odd_msgs/msg/Moves",
+            ["t(StartX, StartY, StartYaw, EndX, EndY, EndYaw)", "twist.linear.x, twist.angular.z"],
+        ),
+        ("odd_msgs/msg/Deep", ["OneStartX", "OneStartYaw", "OneEndX"]),
+    ],
+)
+def test_properties_show_what_says_most_in_few_digits(
+    types: StoredInterfaces, type_name: str, parts: list[str]
+) -> None:
+    text = shown(types, type_name)
+    for part in parts:
+        assert part in text
+
+
+def test_lists_are_parameters_and_frames_are_of_what_has_a_place(types: StoredInterfaces) -> None:
+    text = checked(types, *publishing(types, "t", "t", info("sensor_msgs/msg/JointState")))
+    assert "parameters: [name, position, velocity, effort]" in text
+    assert "header.stamp: now" in text
+    assert "frame_id" not in text
+    text = checked(types, *publishing(types, "t", "t", info("geometry_msgs/msg/PoseStamped")))
+    assert "header.frame_id: map" in text
+
+
+def test_names_of_constants_are_given_and_results_are_rounded(types: StoredInterfaces) -> None:
+    text = checked(types, acting(types, "t", "t", "odd_msgs/action/Sort"))
+    assert "order: {value: $order, as: name}" in text
+    assert "outputs: [{path: weight, round: 3}]" in text
+    assert "t_feedback: {fields: [{path: progress, round: 3}], rate: 2}" in text
+    text = checked(types, calling(types, "t", "t", "odd_msgs/srv/Weigh"))
+    assert "parameters: [names]" in text
+    assert "# left as they are: offsets, picture" in text
+
+
+@pytest.mark.parametrize(
+    ("ros_name", "name"),
+    [
+        ("CamelCase", "camel_case"),
+        ("/a/b", "a_b"),
+        ("2nd", "the_2nd"),
+        ("if", "the_if"),
+        ("true", "the_true"),
+    ],
+)
+def test_names_are_such_as_agents_can_write(ros_name: str, name: str) -> None:
+    assert plain_name(ros_name) == name
