@@ -8,16 +8,19 @@ topic (below the robot's namespace)         type                          direct
 ``/scan``                                   ``sensor_msgs/msg/LaserScan`` out, 5 Hz when subscribed
 ``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
 ``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose
+``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
 =========================================== ============================= ==========================
 
 Bumpers and the dock are in `jacaros.sim.robot_contacts`, transforms in `jacaros.sim.robot_transforms`, and what the robot
 can be asked to do by itself in `jacaros.sim.navigation`.
 """
 
+import math
 from typing import Any
 
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.message import constant, stamp
+from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot import Robot
 from jacaros.sim.robot_contacts import RobotContacts
@@ -65,6 +68,9 @@ class RobotNode:
             self.backend.subscription(self.prefix + "/cmd_vel", twist, self._command),
             self.backend.subscription(self.prefix + "/cmd_vel_mux/input/navi", twist, self._command),
             self.backend.subscription(self.prefix + "/cleaning/task", text, self._task),
+            self.backend.subscription(
+                self.prefix + "/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped", self._told_pose
+            ),
         ]
 
     def _command(self, sample: Sample) -> None:
@@ -75,6 +81,23 @@ class RobotNode:
     def _task(self, sample: Sample) -> None:
         self.time.catch_up()
         self.time.world.log_task(self.robot.name, str(sample.message.data))
+
+    def _told_pose(self, sample: Sample) -> None:
+        """Somebody says where the robot is, as rviz does; AMCL, too, hears of poses on the map only."""
+        header, told = sample.message.header, sample.message.pose
+        covariance = [float(value) for value in told.covariance]
+        fault = pose_fault(told.pose)
+        if header.frame_id.strip("/") not in ("", MAP, self._frame_prefix + MAP):
+            fault = f"it must be in the frame '{MAP}', not '{header.frame_id}'"
+        if not all(math.isfinite(value) and value >= 0.0 for value in covariance[::7]):
+            fault = "its covariance makes no sense"
+        if fault is not None:
+            self.backend.rosout("warn", f"the pose on {sample.topic} is ignored: {fault}")
+            return
+        self.time.catch_up()
+        radius = 2.0 * math.sqrt(max(covariance[0], covariance[7]))
+        turn = 2.0 * math.sqrt(covariance[35])
+        self.localisation.believe(pose_of(told.pose), radius, turn, self.time.world.time)
 
     def publish(self) -> None:
         """Publish what is due at this tick of 20 Hz; the world has caught up."""

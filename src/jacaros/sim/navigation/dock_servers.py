@@ -1,13 +1,13 @@
 """Docking actions: Nav2's, those of the TurtleBot 4 (Create 3) with its short motions, and that of the Kobuki."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.sim.navigation.docking import FAILED_TO_STAGE, Docking
 from jacaros.sim.navigation.failure import NavigationFailure
 from jacaros.sim.navigation.frames import ODOMETRY, Frames, FrameUnknown, fault_of, fill_in
-from jacaros.sim.navigation.offers import Goal, Offers
+from jacaros.sim.navigation.offers import Execute, Goal, Offers
 from jacaros.sim.navigation.placement import Placement
 
 _DOCK_AT = 0.5
@@ -40,10 +40,29 @@ class DockServers:
 
     def offer_create3(self) -> None:
         """``/dock``, ``/undock``, ``/drive_distance`` and ``/rotate_angle``."""
-        self.offers.action("/dock", "irobot_create_msgs/action/Dock", self._dock)
-        self.offers.action("/undock", "irobot_create_msgs/action/Undock", self._undock)
-        self.offers.action("/drive_distance", "irobot_create_msgs/action/DriveDistance", self._drive_distance)
-        self.offers.action("/rotate_angle", "irobot_create_msgs/action/RotateAngle", self._rotate_angle)
+        self._create3("/dock", "Dock", self._dock, self._cannot_dock)
+        self._create3("/undock", "Undock", self._undock, self._cannot_undock)
+        self._create3("/drive_distance", "DriveDistance", self._drive_distance)
+        self._create3("/rotate_angle", "RotateAngle", self._rotate_angle)
+
+    def _create3(
+        self, name: str, action: str, execute: Execute, cannot: Callable[[], str | None] = lambda: None
+    ) -> None:
+        """A Create 3 refuses what it cannot do, and a second goal of what it is doing."""
+        running = 0
+
+        async def carry_out(goal: Goal) -> Mapping[str, Any]:
+            nonlocal running
+            running += 1
+            try:
+                return await execute(goal)
+            finally:
+                running -= 1
+
+        def accept(request: Any) -> str | None:
+            return f"{name} is at work; cancel that goal first" if running else cannot()
+
+        self.offers.action(name, f"irobot_create_msgs/action/{action}", carry_out, accept)
 
     def offer_kobuki(self) -> None:
         """``/dock_drive_action``."""
@@ -76,16 +95,27 @@ class DockServers:
             raise NavigationFailure(FAILED_TO_STAGE, str(problem)) from None
 
     async def _undock_robot(self, goal: Goal) -> Mapping[str, Any]:
+        if not self.docking.docked:
+            # Nav2 sees no need, and aborts without a code.
+            goal.abort("the robot is in no dock", success=False)
         try:
             await self.docking.undock(goal.request.max_undocking_time or math.inf)
         except NavigationFailure as failure:
             goal.abort(failure.text, success=False, error_code=failure.code)
         return {"success": True}
 
+    def _cannot_dock(self) -> str | None:
+        if self.docking.docked:
+            return "the robot is docked already"
+        return "no dock in sight" if self.docking.visible_dock() is None else None
+
+    def _cannot_undock(self) -> str | None:
+        return None if self.docking.docked else "the robot is in no dock"
+
     async def _dock(self, goal: Goal) -> Mapping[str, Any]:
         dock = self.docking.visible_dock()
         goal.feedback(sees_dock=dock is not None)
-        if dock is None:
+        if dock is None:  # it was pushed, since the goal was accepted
             goal.abort("no dock in sight", is_docked=False)
         try:
             await self.docking.dock(dock, True, lambda state: goal.feedback(sees_dock=True))
@@ -94,13 +124,11 @@ class DockServers:
         return {"is_docked": self.docking.docked}
 
     async def _undock(self, goal: Goal) -> Mapping[str, Any]:
-        was_docked = self.docking.docked
         try:
             await self.docking.undock()
         except NavigationFailure as failure:
             goal.abort(failure.text, is_docked=self.docking.docked)
-        if was_docked:
-            await self.docking.turn_away()
+        await self.docking.turn_away()
         return {"is_docked": self.docking.docked}
 
     async def _auto_docking(self, goal: Goal) -> Mapping[str, Any]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from jacaros.sim.description import RobotLimits
 from jacaros.sim.motion import clamp
-from jacaros.sim.navigation.placement import Placement, Point, distance
+from jacaros.sim.navigation.placement import Placement, Point
 from jacaros.sim.navigation.planner import Circle, Planner
 from jacaros.sim.navigation.route import Route
 
@@ -151,6 +151,10 @@ def in_the_way(route: Route, others: Sequence[Circle], radius: float, ahead: flo
     if not others:
         return False
     points = route.samples(ahead)
-    return any(
-        distance(point, (x, y)) < radius + other + PASSING for point in points for x, y, other in others
-    )
+    for x, y, other in others:
+        reach = radius + other + PASSING
+        for px, py in points:
+            dx, dy = px - x, py - y
+            if dx * dx + dy * dy < reach * reach:
+                return True
+    return False

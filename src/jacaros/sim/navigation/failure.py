@@ -10,8 +10,14 @@ NO_VALID_PATH = 208
 """203 to 208 are codes of Nav2's ``ComputePathToPose``; Nav2's navigator hands the codes of its parts on as its own."""
 TF_ERROR = 9002
 TIMEOUT = 9003
-"""Nav2's ``NavigateToPose``; ``NavigateThroughPoses`` has the same ones plus 100."""
-THROUGH_POSES = 100
+"""Nav2's ``NavigateToPose``."""
+NO_POSES = 309
+"""Nav2's ``ComputePathThroughPoses``: nothing to go through."""
+
+
+def through_poses(code: int) -> int:
+    """The same failure of ``NavigateThroughPoses``: planning and navigating through poses have numbers of their own."""
+    return code if code == FAILED_TO_MAKE_PROGRESS else code + 100
 
 
 class NavigationFailure(Exception):

@@ -71,12 +71,17 @@ def pose_of(pose: Any) -> Placement:
 
 def fault_of(stamped: Any) -> str | None:
     """What is wrong with a ``geometry_msgs/msg/PoseStamped`` as a goal, or None."""
-    place, rotation = stamped.pose.position, stamped.pose.orientation
+    return pose_fault(stamped.pose)
+
+
+def pose_fault(pose: Any) -> str | None:
+    """What is wrong with a ``geometry_msgs/msg/Pose``, or None."""
+    place, rotation = pose.position, pose.orientation
     turn = (rotation.x, rotation.y, rotation.z, rotation.w)
     if not all(math.isfinite(value) for value in (place.x, place.y, *turn)):
-        return "the goal pose has numbers that are not finite"
+        return "the pose has numbers that are not finite"
     if sum(value * value for value in turn) < 1e-6:
-        return "the orientation of the goal is no rotation: all of it is 0; write w: 1 for straight ahead"
+        return "the orientation of the pose is no rotation: all of it is 0; write w: 1 for straight ahead"
     return None
 
 

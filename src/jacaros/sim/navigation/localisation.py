@@ -2,11 +2,14 @@
 
 import math
 
-from jacaros.sim.navigation.placement import Placement
+from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.robot import Robot
+from jacaros.sim.trigonometry import PI, sine_cosine
 
 PERIOD = 0.5
 """Seconds between two corrections of the odometry."""
+SURE = 0.2
+"""Metres, and radians, that a pose may be off whatever it says of itself."""
 _SAME = 1e-6
 
 
@@ -15,32 +18,50 @@ class Localisation:
 
     Twice a second it takes away all errors that odometry has piled up; between two corrections the robot
     trusts its wheels.  (Matching scans with the map is not what this world is for, so the correction is taken from the
-    true pose.)
+    true pose.)  Somebody who tells it a wrong pose makes it lost, as he would AMCL: it then trusts its wheels alone.
 
     Attributes:
         map_to_odom: where the odometry frame stands on the map.
+        lost: whether the last pose that it was told was so far off that scans do not put it right.
     """
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
         self._next = -math.inf
         self.map_to_odom = Placement(0.0, 0.0)
+        self.lost = False
 
     def update(self, time: float) -> None:
         """Correct the transform if that is due at *time* (seconds of the world)."""
-        if time < self._next:
+        if time < self._next or self.lost:
             return
         self._next = time + PERIOD
-        robot = self._robot
-        found = Placement.at(robot.x, robot.y, robot.yaw).then(self._odometry().inverse())
+        found = self._truth().then(self._odometry().inverse())
         known = self.map_to_odom
         # Rounding alone must not make a robot with faultless odometry hop.
         if max(abs(a - b) for a, b in zip(found, known, strict=True)) > _SAME:
             self.map_to_odom = found
 
+    def believe(self, place: Placement, radius: float, turn: float, time: float) -> None:
+        """Be told where the robot is, give or take *radius* metres and *turn* radians, at *time* (see `update`).
+
+        With the truth within that, and within `SURE` at the least, the next correction finds it.
+        """
+        truth = self._truth()
+        apart = distance((place.x, place.y), (truth.x, truth.y))
+        alike = place.cosine * truth.cosine + place.sine * truth.sine
+        _, least_alike = sine_cosine(min(PI, max(SURE, turn)))
+        self.lost = apart > max(SURE, radius) or alike < least_alike
+        self.map_to_odom = place.then(self._odometry().inverse())
+        self._next = time + PERIOD
+
     def pose(self) -> Placement:
         """The robot's pose on the map, as it believes."""
         return self.map_to_odom.then(self._odometry())
+
+    def _truth(self) -> Placement:
+        robot = self._robot
+        return Placement.at(robot.x, robot.y, robot.yaw)
 
     def _odometry(self) -> Placement:
         odometry = self._robot.odometry

@@ -4,11 +4,13 @@ Names, fields and error codes are those of Nav2 (Jazzy; ``error_msg`` of Kilted)
 """
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from jacaros.ros.backend import Backend, Sample, Subscription
-from jacaros.sim.navigation.failure import TF_ERROR, THROUGH_POSES, TIMEOUT, NavigationFailure
+from jacaros.sim.navigation.failure import NO_POSES, TF_ERROR, NavigationFailure, through_poses
 from jacaros.sim.navigation.frames import MAP, Frames, FrameUnknown, fault_of, fill_in
 from jacaros.sim.navigation.navigator import Navigator
 from jacaros.sim.navigation.offers import Goal, Offers
@@ -18,6 +20,7 @@ from jacaros.sim.navigation.wheels import Overtaken
 
 POSE = "geometry_msgs/msg/PoseStamped"
 NO_VALID_WAYPOINTS = 602
+_TO_POSE, _THROUGH_POSES = "navigate_to_pose", "navigate_through_poses"
 
 
 class NavigationServers:
@@ -34,6 +37,7 @@ class NavigationServers:
         self._backend: Backend = offers.backend
         self._subscriptions: list[Subscription] = []
         self._simple: asyncio.Task[None] | None = None
+        self._navigators: Counter[str] = Counter()
 
     def offer_nav2(self) -> None:
         """``/navigate_to_pose``, ``/navigate_through_poses``, ``/follow_waypoints``, the topic ``/goal_pose``, and the
@@ -42,13 +46,13 @@ class NavigationServers:
             "/navigate_to_pose",
             "nav2_msgs/action/NavigateToPose",
             self._to_pose,
-            lambda goal: fault_of(goal.pose),
+            lambda goal: fault_of(goal.pose) or self._occupied(_THROUGH_POSES),
         )
         self.offers.action(
             "/navigate_through_poses",
             "nav2_msgs/action/NavigateThroughPoses",
             self._through_poses,
-            _poses_fault,
+            lambda goal: _poses_fault(goal) or self._occupied(_TO_POSE),
         )
         self.offers.action(
             "/follow_waypoints", "nav2_msgs/action/FollowWaypoints", self._waypoints, _poses_fault
@@ -63,12 +67,7 @@ class NavigationServers:
 
     def offer_move_base(self) -> None:
         """``/move_base``, the topic ``/move_base_simple/goal`` and the service ``/move_base/clear_costmaps``."""
-        self.offers.action(
-            "/move_base",
-            "move_base_msgs/action/MoveBase",
-            self._move_base,
-            lambda goal: fault_of(goal.target_pose),
-        )
+        self.offers.action("/move_base", "move_base_msgs/action/MoveBase", self._move_base)
         self.offers.service("/move_base/clear_costmaps", "std_srvs/srv/Empty", self._forget_obstacles)
         self._hear("/move_base_simple/goal")
 
@@ -87,21 +86,45 @@ class NavigationServers:
         name = self.offers.prefix + topic
         self._subscriptions.append(self._backend.subscription(name, POSE, self._simple_goal))
 
+    @contextmanager
+    def _navigating(self, navigator: str) -> Iterator[None]:
+        self._navigators[navigator] += 1
+        try:
+            yield
+        finally:
+            self._navigators[navigator] -= 1
+
+    def _occupied(self, navigator: str) -> str | None:
+        """Nav2's two navigators do not take over from each other, only from themselves."""
+        return f"{navigator} is at work; cancel that goal first" if self._navigators[navigator] else None
+
     async def _to_pose(self, goal: Goal) -> Mapping[str, Any]:
-        await self._go(goal, [goal.request.pose], lambda progress: goal.feedback(**self._feedback(progress)))
+        def tell(progress: Progress) -> None:
+            goal.feedback(**self._feedback(progress))
+
+        with self._navigating(_TO_POSE):
+            await self._go(goal, [goal.request.pose], tell)
         return {}
 
     async def _through_poses(self, goal: Goal) -> Mapping[str, Any]:
         def tell(progress: Progress) -> None:
             goal.feedback(**self._feedback(progress), number_of_poses_remaining=progress.poses_left)
 
-        await self._go(goal, _poses(goal.request), tell, THROUGH_POSES)
+        poses = _poses(goal.request)
+        if not poses:
+            goal.abort("there are no poses to go through", error_code=NO_POSES)
+        with self._navigating(_THROUGH_POSES):
+            await self._go(goal, poses, tell, through_poses)
         return {}
 
     async def _move_base(self, goal: Goal) -> Mapping[str, Any]:
         def tell(progress: Progress) -> None:
             goal.feedback(base_position=self._stamped(progress.pose))
 
+        # move_base takes any goal, and then aborts those that make no sense.
+        fault = fault_of(goal.request.target_pose)
+        if fault is not None:
+            goal.abort(fault)
         await self._go(goal, [goal.request.target_pose], tell)
         return {}
 
@@ -129,13 +152,16 @@ class NavigationServers:
         )
 
     async def _go(
-        self, goal: Goal, poses: list[Any], tell: Callable[[Progress], None], shift: int = 0
+        self,
+        goal: Goal,
+        poses: list[Any],
+        tell: Callable[[Progress], None],
+        coded: Callable[[int], int] = int,
     ) -> None:
         try:
             await self._drive(poses, tell)
         except NavigationFailure as failure:
-            code = failure.code + (shift if failure.code in (TF_ERROR, TIMEOUT) else 0)
-            goal.abort(failure.text, error_code=code)
+            goal.abort(failure.text, error_code=coded(failure.code))
 
     async def _drive(self, poses: list[Any], tell: Callable[[Progress], None]) -> None:
         self.navigator.pose()  # localises
@@ -143,8 +169,7 @@ class NavigationServers:
             places = [await self.frames.on_map(pose) for pose in poses]
         except FrameUnknown as problem:
             raise NavigationFailure(TF_ERROR, str(problem)) from None
-        if places:
-            await go(self.navigator, places, tell)
+        await go(self.navigator, places, tell)
 
     def _stamped(self, place: Placement) -> Any:
         return fill_in(

@@ -60,7 +60,7 @@ class Offers:
             try:
                 return goal.result(await execute(goal))
             except Overtaken:
-                goal.abort(OVERTAKEN)
+                goal.abort(OVERTAKEN, success=False)
 
         policy = ActionPolicy(accept=accept, preempt=True)
         try:

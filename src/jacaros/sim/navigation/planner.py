@@ -164,14 +164,16 @@ class Planner:
 
 
 def _stamp(weights: list[float], grid: Grid, x: float, y: float, radius: float) -> None:
-    steps = math.ceil(radius / grid.resolution) + 1
-    column = math.floor((x - grid.x_min) / grid.resolution) + 1
-    row = math.floor((y - grid.y_min) / grid.resolution) + 1
-    for other_row in range(max(0, row - steps), min(grid.height, row + steps + 1)):
-        for other_column in range(max(0, column - steps), min(grid.width, column + steps + 1)):
-            cell = other_row * grid.width + other_column
-            if weights[cell] and distance((x, y), grid.centre(cell)) < radius:
-                weights[cell] = 0.0
+    # In cells, from the middle of the first one.
+    across, up = (x - grid.x_min) / grid.resolution + 0.5, (y - grid.y_min) / grid.resolution + 0.5
+    reach = radius / grid.resolution
+    for row in range(max(0, math.ceil(up - reach)), min(grid.height - 1, math.floor(up + reach)) + 1):
+        half = math.sqrt(max(0.0, reach * reach - (row - up) * (row - up)))
+        first = max(0, math.ceil(across - half))
+        last = min(grid.width - 1, math.floor(across + half))
+        if first <= last:
+            begin = row * grid.width
+            weights[begin + first : begin + last + 1] = [0.0] * (last - first + 1)
 
 
 def _distinct(points: list[Point]) -> list[Point]:
