@@ -112,7 +112,7 @@ class OperationExecution:
             return
         pause = self._pauses(self._turns)
         pause.since = self._turns.clock.elapsed
-        for callback in pause.callbacks:
+        for callback in list(pause.callbacks):
             try:
                 callback()
             except BaseException as error:
@@ -138,15 +138,19 @@ class OperationExecution:
         """True between `pause` and `resume`."""
         return self._pause is not None and self._pause.since is not None
 
-    def on_pause(self, callback: Callable[[], None]) -> None:
+    def on_pause(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Call *callback* at the moment of every `pause` from now on, at once if it is paused already.
 
-        It runs outside of the steps of the artifact: it may stop a motor, not change properties.
+        It runs outside of the steps of the artifact: it may stop a motor, not change properties.  Call what this gives
+        when it is to be called no more; without that it is called until the operation ends.
         """
-        if self._turns is not None:
-            self._pauses(self._turns).callbacks.append(callback)
-            if self.paused:
-                callback()
+        if self._turns is None:
+            return lambda: None
+        callbacks = self._pauses(self._turns).callbacks
+        callbacks.append(callback)
+        if self.paused:
+            callback()
+        return lambda: callbacks.remove(callback) if callback in callbacks else None
 
     async def resumed(self) -> None:
         """Wait until it is not paused; to be awaited through `Artifact.pause_point` or `Artifact.step`."""

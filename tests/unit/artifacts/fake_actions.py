@@ -9,6 +9,7 @@ from robot_lab import Lab
 
 from jacaros.ros.action import GoalStatus, Outcome
 from jacaros.ros.errors import CallTimedOut, GoalRejected, MessageMismatch, ServerLost, ServerUnavailable
+from jacaros.ros.waiting import within
 
 
 class FakeServer:
@@ -82,8 +83,10 @@ class FakeGoal:
             self._end.exception()
 
     async def outcome(self, timeout: float | None = None) -> Outcome:
-        assert timeout is None
-        return await asyncio.shield(self._end)
+        try:
+            return await within(self.server.lab.clock, asyncio.shield(self._end), timeout)
+        except TimeoutError:
+            raise CallTimedOut("the goal is still under way") from None
 
     async def cancel(self, timeout: float | None = None) -> bool:
         self.server.note(f"cancel {self.goal_id}")

@@ -105,6 +105,7 @@ class Host(Protocol):
         *,
         timeout: float | None = None,
         on_feedback: Callable[[Any], None] | None = None,
+        under_way: Callable[[bool], None] | None = None,
         suspend: Any = ...,
     ) -> Awaitable[Any]: ...
     def fail(self, message: str, functor: str | None = None, *arguments: object) -> NoReturn: ...

@@ -161,26 +161,25 @@ class _Pursuing(_Answered):
         """Pursue a goal to its end."""
         await self._ready()
         host, part = self._host, self._part
-        goal = self._fields(inputs)
-        self._under_way += 1
-        try:
-            result = await host.act(
-                self._client,
-                goal,
-                timeout=part.timeout,
-                on_feedback=self._feed if self._feeds else None,
-                suspend=part.suspend,
-            )
-        finally:
-            self._under_way -= 1
-            if not self._under_way:
-                # Later: what a failing step starts does not begin.
-                asyncio.get_running_loop().call_soon(self._withdraw)
+        result = await host.act(
+            self._client,
+            self._fields(inputs),
+            timeout=part.timeout,
+            on_feedback=self._feed if self._feeds else None,
+            under_way=self._count if self._feeds else None,
+            suspend=part.suspend,
+        )
         if not self._succeeded(result):
             code, text = error_code(result), error_text(result)
             told = f": {text}" if text else ""
             host.fail(f"action {self._client.name} had no success{told}", "aborted", code, text)
         self._give(result, outs)
+
+    def _count(self, begins: bool) -> None:
+        self._under_way += 1 if begins else -1
+        if not self._under_way:
+            # Later: what a failing step starts does not begin.
+            asyncio.get_running_loop().call_soon(self._withdraw)
 
     def _feed(self, message: Any) -> None:
         for feed in self._feeds:

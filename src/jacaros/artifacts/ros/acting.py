@@ -16,10 +16,10 @@ server_lost           nobody offers the action, or nobody does any more: whether
 import asyncio
 import math
 from collections.abc import Awaitable, Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
+from jacaros.artifacts.ros.giving_up import ENDING, give_up
 from jacaros.clock import Clock
 from jacaros.env.execution import OperationExecution
 from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
@@ -37,8 +37,8 @@ Switch = Callable[[], Awaitable[object] | None]
 ACCEPTANCE = 5.0
 """Seconds that a server has for being there and for accepting a goal."""
 
-ENDING = 5.0
-"""Seconds that a server has for answering a request to cancel, and as many for ending the goal after it agreed."""
+GRACE = 1.0
+"""Seconds in which the end of a goal may come that is why the server would not cancel it."""
 
 CODES = ("error_code", "error_code.val")
 """Fields of results that say why a goal was aborted: of Nav2 and others, and of MoveIt."""
@@ -66,13 +66,15 @@ class Conduct:
     Attributes:
         timeout: seconds that the goal may take in all; None: no limit.  Time in which it is cancelled or paused because
             of a suspended intention does not count.
-        on_feedback: takes each feedback message, on the loop.
+        on_feedback: takes each feedback message while the goal is under way, on the loop.
+        under_way: told True when a goal is sent, and False when it is over or nobody wants it any more.
         suspend: what a suspended intention means for the goal.
         pause, resume: pause the goal at its server, and let it go on; for ``suspend="pause"``.
     """
 
     timeout: float | None = None
     on_feedback: Callable[[Any], None] | None = None
+    under_way: Callable[[bool], None] | None = None
     suspend: Suspending = "go_on"
     pause: Switch | None = None
     resume: Switch | None = None
@@ -101,10 +103,9 @@ class Pursuit:
     ) -> None:
         self._client, self._goal, self._conduct = client, goal, conduct
         self._clock, self._execution, self._log = clock, execution, log
-        self._used = self._share = 0.0
+        self._used = self._limit = 0.0
+        self._heeded = self._held = False
         self._wake: asyncio.Future[None] | None = None
-        if conduct.suspend != "go_on":
-            execution.on_pause(self._on_pause)
 
     async def run(self) -> Any:
         """Pursue the goal to its end and give the result message.
@@ -114,19 +115,24 @@ class Pursuit:
         Raises:
             GoalFailed: with one of the reasons of this file.
         """
+        forget = None if self._conduct.suspend == "go_on" else self._execution.on_pause(self._on_pause)
         try:
             while True:
-                if self._conduct.suspend != "go_on":
+                if forget is not None:
                     await self._execution.resumed()
+                    await self._release()
                 outcome = await self._once()
                 if outcome is not None:
                     return self._result(outcome)
         except GoalRejected as error:
             raise GoalFailed(str(error), "rejected") from None
         except CallTimedOut as error:
-            raise GoalFailed(str(error), "timeout", _figure(self._share)) from None
+            raise GoalFailed(str(error), "timeout", _figure(self._limit)) from None
         except ServiceError as error:
             raise GoalFailed(str(error), "server_lost") from None
+        finally:
+            if forget is not None:
+                forget()
 
     def _on_pause(self) -> None:
         if self._wake is not None and not self._wake.done():
@@ -136,28 +142,49 @@ class Pursuit:
     def _paused(self) -> bool:
         return self._conduct.suspend != "go_on" and self._execution.paused
 
+    def _heed(self, under_way: bool) -> None:
+        """Hear the feedback, or no more: a goal that is being cancelled may go on with it for a while."""
+        if under_way != self._heeded:
+            self._heeded = under_way
+            if self._conduct.under_way is not None:
+                self._conduct.under_way(under_way)
+
+    def _hear(self, feedback: Any) -> None:
+        if self._heeded and self._conduct.on_feedback is not None:
+            self._conduct.on_feedback(feedback)
+
     async def _once(self) -> Outcome | None:
         """Send the goal and follow it; None when it was cancelled because the intention was suspended."""
-        handle = await self._send()
-        if handle is None:
-            return None
+        self._heed(True)
+        try:
+            handle = await self._send()
+            return None if handle is None else await self._follow_to_the_end(handle)
+        finally:
+            self._heed(False)
+
+    async def _follow_to_the_end(self, handle: GoalHandle) -> Outcome | None:
         ending = asyncio.ensure_future(handle.outcome())
         try:
-            return await self._follow(handle, ending)
+            outcome = await self._follow(handle, ending)
+            await self._release()
+            return outcome
         except BaseException:
             if not ending.done():
-                give_up(handle)
+                self._give_up(handle)
             raise
         finally:
             _forget(ending)
 
+    def _give_up(self, handle: GoalHandle) -> None:
+        give_up(handle, self._client.name, self._log, self._release)
+
     async def _send(self) -> GoalHandle | None:
         """Send the goal; None when the intention was suspended before the server accepted it, which cancels it."""
         conduct = self._conduct
-        began, self._share = self._clock.elapsed, ACCEPTANCE
-        if conduct.timeout is not None:
-            self._share = min(ACCEPTANCE, conduct.timeout - self._used)
-        sending = asyncio.ensure_future(self._client.send(self._goal, conduct.on_feedback, self._share))
+        began, share, self._limit = self._clock.elapsed, ACCEPTANCE, ACCEPTANCE
+        if conduct.timeout is not None and conduct.timeout - self._used < ACCEPTANCE:
+            share, self._limit = conduct.timeout - self._used, conduct.timeout
+        sending = asyncio.ensure_future(self._client.send(self._goal, self._hear, share))
         try:
             while not sending.done():
                 if conduct.suspend == "cancel":
@@ -171,7 +198,7 @@ class Pursuit:
             return sending.result()
         except asyncio.CancelledError:
             if sending.done() and not sending.cancelled() and sending.exception() is None:
-                give_up(sending.result())
+                self._give_up(sending.result())
             raise
         finally:
             _forget(sending)
@@ -180,7 +207,7 @@ class Pursuit:
         timeout = self._conduct.timeout
         while not ending.done():
             if self._paused:
-                if self._conduct.suspend == "pause" and await self._switch(self._conduct.pause, "paused"):
+                if self._conduct.suspend == "pause" and await self._is_held():
                     await self._rest(ending)
                 elif await self._is_cancelled(handle, ending):
                     return None
@@ -195,22 +222,20 @@ class Pursuit:
 
     async def _rest(self, ending: "asyncio.Future[Outcome]") -> None:
         """Wait for the end of the pause, or of the goal."""
-        resumed = asyncio.ensure_future(self._execution.resumed())
-        try:
-            await any_of(self._clock, (ending, resumed), None)
-        finally:
-            _forget(resumed)
-        if not ending.done() and not await self._switch(self._conduct.resume, "resumed"):
+        await self._resumed_or(ending, None)
+        if not ending.done() and not await self._release():
             raise GoalFailed(f"the goal of {self._client.name} could not be resumed", "canceled")
 
     async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> bool:
         """Cancel the goal for a suspended intention; False when it ends otherwise, or goes on."""
+        self._heed(False)
         try:
             agreed = await handle.cancel(ENDING)
         except CallTimedOut as error:
-            self._log(f"{error}; the goal may go on although its intention is suspended")
+            self._log(f"{error}; it may go on although its intention is suspended")
             agreed = False
         if not agreed:
+            self._heed(True)
             await self._go_on(ending)
             return False
         await any_of(self._clock, (ending,), ENDING)
@@ -220,14 +245,35 @@ class Pursuit:
 
     async def _go_on(self, ending: "asyncio.Future[Outcome]") -> None:
         """Wait as if nothing had been asked: the server does not cancel."""
+        if not await self._resumed_or(ending, GRACE):
+            self._log(f"the goal of {self._client.name} goes on although its intention is suspended")
+            await self._resumed_or(ending, None)
+
+    async def _resumed_or(self, ending: "asyncio.Future[Outcome]", seconds: float | None) -> bool:
+        """Wait for the end of the pause, or of the goal; False when neither came in so many seconds."""
         resumed = asyncio.ensure_future(self._execution.resumed())
         try:
-            await any_of(self._clock, (ending, resumed), None)
+            await any_of(self._clock, (ending, resumed), seconds)
+            return ending.done() or resumed.done()
         finally:
             _forget(resumed)
 
-    async def _switch(self, switch: Switch | None, what: str) -> bool:
-        """Pause the goal, or let it go on; False when that failed."""
+    async def _is_held(self) -> bool:
+        """Pause the goal at its server; False when that failed."""
+        self._held = True
+        problem = await self._switch(self._conduct.pause, "paused")
+        # A server that was asked and did not answer may have paused.
+        self._held = problem is None or isinstance(problem, CallTimedOut)
+        return problem is None
+
+    async def _release(self) -> bool:
+        """Let the server go on that was paused: with the goal, or with those of others after it; False when it does not."""
+        if self._held:
+            self._held = await self._switch(self._conduct.resume, "resumed") is not None
+        return not self._held
+
+    async def _switch(self, switch: Switch | None, what: str) -> Exception | None:
+        """Pause the server, or let it go on; gives what went wrong."""
         assert switch is not None
         try:
             waiting = switch()
@@ -235,8 +281,8 @@ class Pursuit:
                 await waiting
         except Exception as error:  # whatever a user's code raises: the robot must not drive on because of it
             self._log(f"the goal of {self._client.name} could not be {what}: {type(error).__name__}: {error}")
-            return False
-        return True
+            return error
+        return None
 
     async def _first_of(self, future: "asyncio.Future[Any]", seconds: float | None) -> None:
         """Wait for *future*, for a pause to begin, or for so many seconds."""
@@ -289,22 +335,6 @@ def missing_number(fields: object, path: str = "") -> str | None:
     else:
         return None
     return next((found for where, each in pairs if (found := missing_number(each, where)) is not None), None)
-
-
-_cancelling: set["asyncio.Task[None]"] = set()
-"""Requests to cancel that nobody waits for; the loop itself would forget them."""
-
-
-def give_up(handle: GoalHandle) -> None:
-    """Have a goal cancelled without waiting for it."""
-
-    async def cancel() -> None:
-        with suppress(ServiceError):  # it has ended, or its server has: nobody is left to be told
-            await handle.cancel(ENDING)
-
-    task = asyncio.get_running_loop().create_task(cancel())
-    _cancelling.add(task)
-    task.add_done_callback(_cancelling.discard)
 
 
 async def any_of(clock: Clock, futures: tuple["asyncio.Future[Any]", ...], seconds: float | None) -> None:

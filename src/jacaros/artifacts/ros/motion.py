@@ -117,11 +117,12 @@ class Motion:
         Raises:
             MotionFailed: ``aborted``, ``no_odometry``, ``blocked`` or ``timeout``.
         """
-        self._execution.on_pause(self._on_pause)
+        forget = self._execution.on_pause(self._on_pause)
         try:
             await self._enter_lane()
             await self._drive()
         finally:
+            forget()
             self.end()
 
     def _on_pause(self) -> None:

@@ -67,6 +67,7 @@ class RosArtifact(SensingArtifact):
         *,
         timeout: float | None = None,
         on_feedback: Callable[[Any], None] | None = None,
+        under_way: Callable[[bool], None] | None = None,
         suspend: Suspending = "go_on",
         pause: Switch | None = None,
         resume: Switch | None = None,
@@ -83,12 +84,15 @@ class RosArtifact(SensingArtifact):
                 accepts, is given up after 5 s anyway.
             on_feedback: takes each feedback message.  An `internal_operation` of this artifact may change properties;
                 another function stands outside of all operations.
+            under_way: told True when the goal is sent, and False when it is over, or cancelled because its intention is
+                suspended or dropped; no feedback comes after that.  It stands outside of all operations.
             suspend: what happens while the intention is suspended: ``go_on``; ``cancel``, the goal is cancelled, and
                 sent again at ``.resume``; ``pause``, by *pause* and *resume*.  All but ``go_on`` need
                 ``@operation(pausable=True)``, and the time does not count.
             pause, resume: pause the goal at its server and let it go on, such as
                 ``lambda: self.pauser.call({"data": True}, 2.0)``.  A goal that cannot be paused is cancelled, and sent
-                again at ``.resume``.
+                again at ``.resume``.  When a paused goal has ended, or was cancelled, *resume* is called too: others may
+                want the server.
 
         Raises:
             OperationFailed: ``rejected``, ``aborted(Code,Text)``, ``canceled``, ``timeout(Seconds)`` or
@@ -99,7 +103,7 @@ class RosArtifact(SensingArtifact):
         missing = missing_number(goal)
         if missing is not None:
             self.fail(f"the goal's {missing} is not a number; nothing was sent", "wrong_value", missing)
-        conduct = Conduct(timeout, self._feedback(on_feedback), suspend, pause, resume)
+        conduct = Conduct(timeout, self._feedback(on_feedback), under_way, suspend, pause, resume)
         try:
             return await self.step(Pursuit(client, goal, conduct, self.clock, self.current, self.log).run())
         except GoalFailed as failed:
