@@ -246,6 +246,8 @@ class OperationPart:
         at_end: fields of the last message; None: zero for velocities, else nothing.
         properties: those that are refreshed or read.
         feedback: properties from the feedback.
+        suspend: what a suspended intention means for the goal: ``go_on``, ``cancel``, or ``pause`` by two operations.
+        pause, resume: names of these operations.
     """
 
     name: str
@@ -266,6 +268,8 @@ class OperationPart:
     timeout: float | None = None
     feedback: tuple[TopicPart, ...] = ()
     suspend: str = "go_on"
+    pause: Written = NOTHING
+    resume: Written = NOTHING
     node: str = ""
     properties: tuple[Written, ...] = ()
     description: str = ""

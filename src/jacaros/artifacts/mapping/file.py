@@ -4,9 +4,16 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, OperationKind, Place, TopicPart
+from jacaros.artifacts.mapping.declared import (
+    NOTHING,
+    ArtifactPart,
+    MappingFile,
+    OperationKind,
+    Place,
+    TopicPart,
+)
 from jacaros.artifacts.mapping.errors import MappingError
-from jacaros.artifacts.mapping.operation_methods import arity
+from jacaros.artifacts.mapping.operation_methods import arity, is_switch
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
@@ -153,6 +160,7 @@ def _artifact(
     node.problems += _names(part)
     node.problems += _arities(part)
     node.problems += _references(part)
+    node.problems += _switches(part)
     return part
 
 
@@ -217,6 +225,24 @@ def _arities(part: ArtifactPart) -> Iterator[Problem]:
             yield operation.place.problem(
                 f"'{operation.name}' with {key[1]} arguments is in line {before.line} already",
                 "give it another name, or other parameters",
+            )
+
+
+def _switches(part: ArtifactPart) -> Iterator[Problem]:
+    """Operations that are to pause and resume others, and that there are not, or that cannot."""
+    plain = {each.name: each for each in part.operations if arity(part, each) == 0}
+    able = [name for name, each in plain.items() if is_switch(each)]
+    for operation in part.operations:
+        for wanted in (operation.pause, operation.resume):
+            if wanted is NOTHING or not wanted.text or wanted.text in able:
+                continue
+            known = any(each.name == wanted.text for each in part.operations)
+            yield wanted.place.problem(
+                f"'{wanted.text}' cannot pause or resume a goal: it takes arguments, or its time"
+                if known
+                else f"there is no operation '{wanted.text}'",
+                "name one without arguments that calls a service, publishes once or sets a parameter; there "
+                f"{'are: ' + ', '.join(able) if able else 'is none yet'}",
             )
 
 

@@ -9,6 +9,7 @@ from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, Operati
 from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
 from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.operation_methods import arity
 from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
 from jacaros.artifacts.mapping.taking import Take, Unshowable, converted, taker
@@ -39,6 +40,20 @@ class Runner(Protocol):
         """Do it, within an operation of the artifact."""
 
 
+class Switch(Protocol):
+    """Carries out an operation that pauses or resumes the server of a goal."""
+
+    async def ready(self) -> None:
+        """Find out what is not known yet, within an operation of the artifact."""
+
+    async def switch(self) -> None:
+        """Do it, outside of all operations.
+
+        Raises:
+            RosError, OperationFailed: it did not work.
+        """
+
+
 class Operations:
     """The operations of one artifact.
 
@@ -47,7 +62,17 @@ class Operations:
     """
 
     def __init__(self, host: Host) -> None:
-        self._runners: list[Runner] = [_RUNNERS[part.kind](host, part) for part in host.part.operations]
+        parts = host.part.operations
+        self._runners: list[Runner] = [_RUNNERS[part.kind](host, part) for part in parts]
+        plain = {
+            part.name: runner
+            for part, runner in zip(parts, self._runners, strict=True)
+            if arity(host.part, part) == 0
+        }
+        for part, runner in zip(parts, self._runners, strict=True):
+            if isinstance(runner, _Pursuing) and part.suspend == "pause":
+                # That these operations are of the right kind was seen when the file was read.
+                runner.switches = (plain[part.pause.text], plain[part.resume.text])  # type: ignore[assignment]
 
     async def run(self, number: int, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Carry out the operation with this place in the file."""
@@ -129,14 +154,24 @@ class _Calling(_Answered):
         await self._ready()
         assert self._part.timeout is not None
         response = await self._host.call(self._client, self._part.timeout, **self._fields(inputs))
-        if not self._succeeded(response):
-            name = self._client.name
-            text = next(
-                (str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), ""
-            )
-            told = f": {text}" if text else ""
-            self._host.fail(f"service {name} refused{told}", "service_refused", Atom(name.lstrip("/")), text)
+        self._check_success(response)
         self._give(response, outs)
+
+    async def ready(self) -> None:
+        """Know the type."""
+        await self._ready()
+
+    async def switch(self) -> None:
+        """Call the service."""
+        self._check_success(await self._client.call(self._fields(()), self._part.timeout))
+
+    def _check_success(self, response: Any) -> None:
+        if self._succeeded(response):
+            return
+        name = self._client.name
+        text = next((str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), "")
+        told = f": {text}" if text else ""
+        self._host.fail(f"service {name} refused{told}", "service_refused", Atom(name.lstrip("/")), text)
 
 
 class _Pursuing(_Answered):
@@ -148,6 +183,7 @@ class _Pursuing(_Answered):
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._feeds: list[Feed] = [feedback_feed(host, each) for each in part.feedback]
         self._under_way = 0
+        self.switches: tuple[Switch, Switch] | tuple[()] = ()
         super().__init__(host, part)
 
     def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
@@ -160,7 +196,10 @@ class _Pursuing(_Answered):
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Pursue a goal to its end."""
         await self._ready()
+        for each in self.switches:
+            await each.ready()
         host, part = self._host, self._part
+        pause, resume = (each.switch for each in self.switches) if self.switches else (None, None)
         result = await host.act(
             self._client,
             self._fields(inputs),
@@ -168,6 +207,8 @@ class _Pursuing(_Answered):
             on_feedback=self._feed if self._feeds else None,
             under_way=self._count if self._feeds else None,
             suspend=part.suspend,
+            pause=pause,
+            resume=resume,
         )
         if not self._succeeded(result):
             code, text = error_code(result), error_text(result)
@@ -225,6 +266,13 @@ class _Setting(_OfNode):
             await self._host.step(self._set(self._value(inputs)))
         except RosError as error:
             self._fail(error)
+
+    async def ready(self) -> None:
+        """All is known."""
+
+    async def switch(self) -> None:
+        """Set the parameter."""
+        await self._set(self._value(()))
 
     async def _set(self, value: Any) -> None:
         # Agents do not tell 1 from 1.0, nodes do.

@@ -37,6 +37,13 @@ def is_pausable(part: OperationPart) -> bool:
     return part.rate is not None or (part.kind is OperationKind.ACTION and part.suspend != "go_on")
 
 
+def is_switch(part: OperationPart) -> bool:
+    """Whether it is of those that pause and resume goals of others: it asks for something and is over."""
+    if part.kind is OperationKind.PUBLISH:
+        return part.rate is None
+    return part.kind in (OperationKind.SERVICE, OperationKind.SET)
+
+
 def arity(artifact: ArtifactPart, part: OperationPart) -> int:
     """How many arguments an operation takes, outputs included."""
     return len(part.parameters) + len(output_names(artifact, part))

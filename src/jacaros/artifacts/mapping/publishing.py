@@ -63,14 +63,25 @@ class Publishing:
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Publish, once or for a while."""
-        if self._publisher is None:
-            self._open(await ask_type(self._host, "topic", self._part.target))
+        await self.ready()
         if self._part.rate is None:
-            self._send(inputs)
-            if self._part.at_end is not None:
-                self._end(inputs)
+            self._send_once(inputs)
             return
         await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
+
+    async def ready(self) -> None:
+        """Know the type."""
+        if self._publisher is None:
+            self._open(await ask_type(self._host, "topic", self._part.target))
+
+    async def switch(self) -> None:
+        """Publish once."""
+        self._send_once(())
+
+    def _send_once(self, inputs: Sequence[object]) -> None:
+        self._send(inputs)
+        if self._part.at_end is not None:
+            self._end(inputs)
 
     def _seconds(self, inputs: Sequence[object]) -> float:
         duration = self._part.duration
@@ -87,11 +98,15 @@ class Publishing:
         host, lane = self._host, self._lane
 
         def stop() -> None:
+            halt()
             lane.leave(ticket)
-            self._end(inputs)
             ticket.wake()
 
-        ticket = Ticket(lambda: self._end(inputs))
+        def halt() -> None:
+            if lane.holds(ticket):  # else another motion drives the robot, if any
+                self._end(inputs)
+
+        ticket = Ticket(halt)
         host.current.on_pause(stop)
         left = seconds
         try:
@@ -107,8 +122,7 @@ class Publishing:
                 if ticket.aborted:
                     host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
         finally:
-            if lane.holds(ticket):
-                self._end(inputs)
+            halt()
             lane.leave(ticket)
 
     def _send(self, inputs: Sequence[object]) -> None:

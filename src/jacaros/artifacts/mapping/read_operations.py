@@ -138,8 +138,25 @@ def _action(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         **_filled(entries.get("goal"), part.parameters),
         feedback=tuple(read_feedback(key, value) for key, value in feedback),
         timeout=_timeout(entries, None),
-        suspend=entries["suspend"].choice("go_on", "cancel") if "suspend" in entries else "go_on",
+        **_suspend(entries.get("suspend")),
     )
+
+
+def _suspend(node: Node | None) -> dict[str, Any]:
+    """What a suspended intention means for a goal."""
+    if node is None:
+        return {}
+    if node.value == "pause":
+        node.wrong(
+            "an action can only be cancelled, not paused",
+            "name operations that pause and resume the server: suspend: {pause: hold, resume: go_on}",
+        )
+        return {}
+    if not isinstance(node.value, dict):
+        return {"suspend": node.choice("go_on", "cancel")}
+    entries = node.mapping("pause", "resume", required=("pause", "resume"))
+    named = {key: Written(each.text(), place_of(each)) for key, each in entries.items()}
+    return {"suspend": "pause", **named}
 
 
 def _answered(part: OperationPart, entries: dict[str, Node]) -> OperationPart:

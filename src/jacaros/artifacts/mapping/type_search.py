@@ -109,11 +109,11 @@ async def ask_type(host: Host, kind: str, written: Written) -> str:
         OperationFailed: ``type_unknown(Name)``.
     """
     name = host.ros.resolve(host.robot_topic(written.text))
-    patience = host.clock.now() + MISSING_AFTER
+    patience = host.clock.elapsed + MISSING_AFTER
     try:
         # A node that has just come takes a while to know its graph.
         while not (found := type_in(await host.step(host.ros.contents()), kind, name)):
-            if host.clock.now() >= patience:
+            if host.clock.elapsed >= patience:
                 break
             await host.sleep(LOOK)
     except RosError as error:

@@ -1,8 +1,5 @@
 """Operations of mapped artifacts: publishing, services, actions, parameters, on the graph inside the process."""
 
-import asyncio
-from typing import Any
-
 import pytest
 from mapped_lab import settle, with_mapped
 from robot_lab import STANDSTILL, Lab
@@ -10,7 +7,6 @@ from robot_lab import STANDSTILL, Lab
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.env import ArtifactId, Atom, Out, Structure
-from jacaros.ros.action import Abort, ActionPolicy, ServerGoal
 from jacaros.ros.parameter import Declaration
 
 DRIVE = """
@@ -93,6 +89,25 @@ def test_one_motion_waits_for_another() -> None:
         assert lab.clock.elapsed == pytest.approx(2.0)
         signs = [speed for _, speed, _ in lab.commands if speed]
         assert signs == sorted(signs, reverse=True)
+
+    with_mapped(DRIVE, body)
+
+
+def test_a_motion_that_is_suspended_while_it_waits_does_not_stop_the_one_that_drives() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        first = lab.begin(artifact, "drive", 0.5, 0, 2)
+        second = lab.begin(artifact, "drive", -0.5, 0, 1)
+        await lab.sleep(1.05)
+        second.execution.pause()
+        await lab.sleep(0.5)
+        assert STANDSTILL not in [command for _, *command in lab.commands]
+        assert all(speed == 0.5 for _, speed, _ in lab.commands)
+        second.execution.cancel()
+        await first.done
+        await settle()
+        assert lab.commands[-1][0] == pytest.approx(2)
+        assert lab.last_command == STANDSTILL
 
     with_mapped(DRIVE, body)
 
@@ -242,127 +257,6 @@ def test_the_type_of_a_service_is_found() -> None:
         assert out.value == "done"
 
     with_mapped(text, body)
-
-
-# ---- actions
-
-COUNT = """
-operations:
-  count:
-    parameters: [n, period]
-    action: count
-    type: jacaros_interfaces/action/Count
-    goal: {target: $n, period: $period}
-    feedback: {at: [current]}
-    outputs: [last]
-    MORE
-"""
-
-
-async def counting(goal: ServerGoal, lab: Lab) -> dict[str, Any]:
-    """Count, one number each period."""
-    for number in range(1, int(goal.request.target) + 1):
-        await lab.clock.sleep(float(goal.request.period))
-        goal.feedback(current=number)
-        if number == 13:
-            raise Abort("unlucky")
-    return {"last": int(goal.request.target)}
-
-
-def offer(lab: Lab, policy: ActionPolicy | None = None) -> list[str]:
-    """Offer the action; the events of its goals."""
-    events: list[str] = []
-
-    async def execute(goal: ServerGoal) -> Any:
-        events.append("begin")
-        try:
-            return await counting(goal, lab)
-        except asyncio.CancelledError:
-            events.append("cancelled")
-            raise
-
-    lab.backend.action_server("count", "jacaros_interfaces/action/Count", execute, policy or ActionPolicy())
-    return events
-
-
-def test_a_goal_with_feedback_and_result() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab)
-        watcher, out = lab.watch(artifact), Out()
-        await lab.do(artifact, "count", 3, 1, out)
-        await settle()
-        assert out.value == 3
-        assert watcher.values("at") == [(1,), (2,), (3,)]
-        assert watcher.holds("at") == []
-
-    with_mapped(COUNT.replace("MORE", ""), body)
-
-
-def test_a_cancelled_operation_cancels_its_goal() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        events = offer(lab)
-        watcher = lab.watch(artifact)
-        run = lab.begin(artifact, "count", 9, 1, Out())
-        await lab.sleep(1.5)
-        assert watcher.holds("at") == [(1,)]
-        run.execution.cancel()
-        await lab.sleep(0.1)
-        assert events == ["begin", "cancelled"]
-        assert watcher.holds("at") == []
-
-    with_mapped(COUNT.replace("MORE", ""), body)
-
-
-def test_an_aborted_goal_fails_with_the_reason() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab)
-        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == 'aborted(0,"unlucky")'
-
-    with_mapped(COUNT.replace("MORE", ""), body)
-
-
-def test_a_goal_that_is_rejected() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab, ActionPolicy(accept=lambda goal: "no"))
-        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == "rejected"
-
-    with_mapped(COUNT.replace("MORE", ""), body)
-
-
-def test_a_goal_that_takes_too_long() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        events = offer(lab)
-        assert (await lab.call(artifact, "count", 20, 1, Out())).reason == "timeout(3)"
-        await lab.sleep(0.1)
-        assert events == ["begin", "cancelled"]
-
-    with_mapped(COUNT.replace("MORE", "timeout: 3"), body)
-
-
-def test_a_goal_without_success_fails() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab)
-        assert (await lab.call(artifact, "count", 2, 1, Out())).reason == 'aborted(0,"")'
-        await lab.do(artifact, "count", 3, 1, Out())
-
-    with_mapped(COUNT.replace("MORE", "success: {path: last, is: 3}"), body)
-
-
-def test_a_suspended_goal_is_cancelled_and_sent_again() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        events = offer(lab)
-        out = Out()
-        run = lab.begin(artifact, "count", 3, 1, out)
-        await lab.sleep(1.5)
-        run.execution.pause()
-        await lab.sleep(1)
-        assert events == ["begin", "cancelled"]
-        run.execution.resume()
-        await run.done
-        assert events == ["begin", "cancelled", "begin"]
-        assert out.value == 3
-
-    with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
 
 
 def test_frames_in_goals_get_the_prefix_of_the_robot() -> None:

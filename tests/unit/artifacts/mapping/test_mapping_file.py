@@ -237,6 +237,26 @@ WRONG = {
         "operations: {go: {action: a, suspend: stop}}",
         "1:39: 'suspend' is 'stop' | choose one of: go_on, cancel",
     ),
+    "pause without operations": (
+        "operations: {go: {action: a, suspend: pause}}",
+        "1:39: an action can only be cancelled, not paused | name operations that pause and resume the server",
+    ),
+    "pause without resume": (
+        "operations: {hold: {service: s}, go: {action: a, suspend: {pause: hold}}}",
+        "1:59: 'suspend' lacks the key 'resume' | add 'resume: ...'",
+    ),
+    "pause by nothing": (
+        "operations: {hold: {service: s}, go: {action: a, suspend: {pause: hodl, resume: hold}}}",
+        "1:67: there is no operation 'hodl' | name one without arguments that calls a service",
+    ),
+    "pause by an action": (
+        "operations: {go: {action: a, suspend: {pause: halt, resume: halt}}, halt: {action: b}}",
+        "1:47: 'halt' cannot pause or resume a goal: it takes arguments, or its time | name one without",
+    ),
+    "resume with arguments": (
+        "operations: {h: {service: s}, go: {action: a, suspend: {pause: h, resume: i}}, i: {parameters: [x], service: s}}",
+        "1:75: 'i' cannot pause or resume a goal: it takes arguments, or its time | name one without",
+    ),
     "refresh": (
         "operations: {look: {refresh: pose}}",
         "1:30: there is no property 'pose' | properties from topics and frames: none",

@@ -1,0 +1,283 @@
+"""Operations of mapped artifacts over actions, on the graph inside the process."""
+
+import asyncio
+from typing import Any
+
+import pytest
+from mapped_lab import settle, with_mapped
+from robot_lab import Lab
+
+from jacaros.env import ArtifactId, Out
+from jacaros.ros.action import Abort, ActionPolicy, ServerGoal
+from jacaros.ros.parameter import Declaration
+
+COUNT = """
+operations:
+  count:
+    parameters: [n, period]
+    action: count
+    type: jacaros_interfaces/action/Count
+    goal: {target: $n, period: $period}
+    feedback: {at: [current]}
+    outputs: [last]
+    MORE
+"""
+
+
+async def counting(goal: ServerGoal, lab: Lab) -> dict[str, Any]:
+    """Count, one number each period."""
+    for number in range(1, int(goal.request.target) + 1):
+        await lab.clock.sleep(float(goal.request.period))
+        goal.feedback(current=number)
+        if number == 13:
+            raise Abort("unlucky")
+    return {"last": int(goal.request.target)}
+
+
+def offer(lab: Lab, policy: ActionPolicy | None = None) -> list[str]:
+    """Offer the action; the events of its goals."""
+    events: list[str] = []
+
+    async def execute(goal: ServerGoal) -> Any:
+        events.append("begin")
+        try:
+            return await counting(goal, lab)
+        except asyncio.CancelledError:
+            events.append("cancelled")
+            raise
+
+    lab.backend.action_server("count", "jacaros_interfaces/action/Count", execute, policy or ActionPolicy())
+    return events
+
+
+def test_a_goal_with_feedback_and_result() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab)
+        watcher, out = lab.watch(artifact), Out()
+        await lab.do(artifact, "count", 3, 1, out)
+        await settle()
+        assert out.value == 3
+        assert watcher.values("at") == [(1,), (2,), (3,)]
+        assert watcher.holds("at") == []
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_a_cancelled_operation_cancels_its_goal() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        events = offer(lab)
+        watcher = lab.watch(artifact)
+        run = lab.begin(artifact, "count", 9, 1, Out())
+        await lab.sleep(1.5)
+        assert watcher.holds("at") == [(1,)]
+        run.execution.cancel()
+        await lab.sleep(0.1)
+        assert events == ["begin", "cancelled"]
+        assert watcher.holds("at") == []
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_an_aborted_goal_fails_with_the_reason() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab)
+        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == 'aborted(0,"unlucky")'
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_a_goal_that_is_rejected() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab, ActionPolicy(accept=lambda goal: "no"))
+        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == "rejected"
+
+    with_mapped(COUNT.replace("MORE", ""), body)
+
+
+def test_a_goal_that_takes_too_long() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        events = offer(lab)
+        assert (await lab.call(artifact, "count", 20, 1, Out())).reason == "timeout(3)"
+        await lab.sleep(0.1)
+        assert events == ["begin", "cancelled"]
+
+    with_mapped(COUNT.replace("MORE", "timeout: 3"), body)
+
+
+def test_a_goal_without_success_fails() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        offer(lab)
+        assert (await lab.call(artifact, "count", 2, 1, Out())).reason == 'aborted(0,"")'
+        await lab.do(artifact, "count", 3, 1, Out())
+
+    with_mapped(COUNT.replace("MORE", "success: {path: last, is: 3}"), body)
+
+
+def test_a_suspended_goal_is_cancelled_and_sent_again() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        events = offer(lab)
+        out = Out()
+        run = lab.begin(artifact, "count", 3, 1, out)
+        await lab.sleep(1.5)
+        run.execution.pause()
+        await lab.sleep(1)
+        assert events == ["begin", "cancelled"]
+        run.execution.resume()
+        await run.done
+        assert events == ["begin", "cancelled", "begin"]
+        assert out.value == 3
+
+    with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
+
+
+def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        async def brake(goal: ServerGoal) -> Any:
+            try:
+                goal.feedback(current=1)
+                await lab.clock.sleep(100)
+            except asyncio.CancelledError:
+                for number in range(2, 9):
+                    goal.feedback(current=number)
+                    await lab.clock.sleep(0.1)
+                raise
+
+        lab.backend.action_server("count", "jacaros_interfaces/action/Count", brake)
+        watcher = lab.watch(artifact)
+        run = lab.begin(artifact, "count", 9, 1, Out())
+        await lab.sleep(1)
+        assert watcher.holds("at") == [(1,)]
+        run.execution.pause()
+        await lab.sleep(2)
+        assert watcher.holds("at") == []
+        run.execution.resume()
+        await lab.sleep(1)
+        assert watcher.holds("at") == [(1,)]
+        run.execution.cancel()
+        await lab.sleep(2)
+        assert watcher.holds("at") == []
+        assert watcher.values("at") == [(1,), (1,)]
+
+    with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
+
+
+HOLD = """
+  hold: {service: hold, TYPEtimeout: 2, request: {data: true}}
+  go_on: {service: hold, TYPEtimeout: 2, request: {data: false}}
+"""
+
+
+class Holding:
+    """A server that counts, and that a service pauses."""
+
+    def __init__(self, lab: Lab, agrees: bool = True) -> None:
+        self.lab, self.agrees = lab, agrees
+        self.asked: list[bool] = []
+        self.held = False
+        self.cancelled = 0
+        lab.backend.action_server("count", "jacaros_interfaces/action/Count", self.execute)
+        lab.backend.service("hold", "std_srvs/srv/SetBool", self.hold)
+
+    def hold(self, request: Any) -> dict[str, Any]:
+        self.asked.append(request.data)
+        self.held = request.data and self.agrees
+        return {"success": self.agrees, "message": "" if self.agrees else "no brakes"}
+
+    async def execute(self, goal: ServerGoal) -> dict[str, Any]:
+        done = 0
+        try:
+            while done < goal.request.target:
+                await self.lab.clock.sleep(1)
+                done += 0 if self.held else 1
+        except asyncio.CancelledError:
+            self.cancelled += 1
+            raise
+        return {"last": done}
+
+
+@pytest.mark.parametrize("type_key", ["type: std_srvs/srv/SetBool, ", ""], ids=["with type", "type found"])
+def test_a_goal_is_paused_and_resumed_by_services(type_key: str) -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        server = Holding(lab)
+        out = Out()
+        run = lab.begin(artifact, "count", 4, 1, out)
+        await lab.sleep(1.5)
+        run.execution.pause()
+        await lab.sleep(10)
+        assert server.held
+        run.execution.resume()
+        await run.done
+        assert lab.clock.elapsed == pytest.approx(14)
+        assert (server.asked, server.cancelled, out.value) == ([True, False], 0, 4)
+        await lab.do(artifact, "hold")  # they are operations like any others
+        assert server.held
+
+    text = COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}") + HOLD.replace("TYPE", type_key)
+    with_mapped(text, body)
+
+
+def test_a_goal_whose_server_refuses_to_pause_is_cancelled_and_sent_again() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        server = Holding(lab, agrees=False)
+        run = lab.begin(artifact, "count", 2, 1, Out())
+        await lab.sleep(0.5)
+        run.execution.pause()
+        await lab.sleep(5)
+        assert server.cancelled == 1
+        assert any(
+            "could not be paused: OperationFailed: service /hold refused: no brakes" in t for t in lab.logged
+        )
+        run.execution.resume()
+        await run.done
+        assert run.outcome is not None
+        assert run.outcome.ok
+
+    text = COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}") + HOLD.replace(
+        "TYPE", "type: std_srvs/srv/SetBool, "
+    )
+    with_mapped(text, body)
+
+
+def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter() -> None:
+    text = (
+        COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}")
+        + """
+  hold: {publish: hold, type: std_msgs/msg/Bool, fields: {data: true}}
+  go_on: {set_parameter: speed, node: lab, value: 1}
+"""
+    )
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        own = lab.backend.parameters()
+        own.declare("speed", Declaration(0))
+        held: list[bool] = []
+        lab.backend.subscription("hold", "std_msgs/msg/Bool", lambda sample: held.append(sample.message.data))
+        offer(lab)
+        run = lab.begin(artifact, "count", 3, 1, Out())
+        await lab.sleep(0.5)
+        run.execution.pause()
+        await lab.sleep(1)
+        assert held == [True]
+        assert await own.get("speed") == 0
+        run.execution.resume()
+        await run.done
+        assert await own.get("speed") == 1
+
+    with_mapped(text, body)
+
+
+def test_a_dropped_goal_leaves_no_paused_server_behind() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        server = Holding(lab)
+        run = lab.begin(artifact, "count", 4, 1, Out())
+        await lab.sleep(0.5)
+        run.execution.pause()
+        await lab.sleep(1)
+        run.execution.cancel()
+        await lab.sleep(1)
+        assert (server.asked, server.held, server.cancelled) == ([True, False], False, 1)
+
+    text = COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}") + HOLD.replace(
+        "TYPE", "type: std_srvs/srv/SetBool, "
+    )
+    with_mapped(text, body)
