@@ -186,7 +186,7 @@ def _observables(told: dict[str, tuple[str, str]], written: dict[str, str]) -> t
 
 
 def _describe(declared: DeclaredOperation) -> OperationManual:
-    signature = declared.signature
+    signature = _worded(declared)
     return OperationManual(
         declared.name,
         declared.kind,
@@ -197,6 +197,17 @@ def _describe(declared: DeclaredOperation) -> OperationManual:
         declared.guard is not None,
         declared.pausable,
     )
+
+
+def _worded(declared: DeclaredOperation) -> Signature:
+    """The signature, with what only the maker of an operation knows of its parameters: those of mappings are not written
+    in Python, and have no annotations."""
+    signature = declared.signature
+    words: dict[str, str] = getattr(declared.source, "parameter_words", dict)()
+    parameters = [
+        each._replace(expected=words.get(each.name, each.expected)) for each in signature.parameters
+    ]
+    return Signature(tuple(parameters), signature.rest)
 
 
 def _parameters(signature: Signature) -> tuple[ParameterManual, ...]:

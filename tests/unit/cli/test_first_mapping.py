@@ -81,7 +81,7 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
         ("std_msgs/msg/Float32", ["{path: data, round: 3}"]),
         ("std_msgs/msg/UInt64", ["- data\n"]),
         ("std_msgs/msg/Empty", ["signals:\n", "# t, for each message"]),
-        ("builtin_interfaces/msg/Time", ["# t(Seconds): seconds", "{path: ., round: 2}"]),
+        ("builtin_interfaces/msg/Time", ["# t(Seconds): seconds", "{path: ., round: 2, name: seconds}"]),
         ("geometry_msgs/msg/WrenchStamped", ["t(ForceX, ForceY, ForceZ, TorqueX, TorqueY, TorqueZ)"]),
         ("geometry_msgs/msg/PoseArray", ["# t(N): how many poses there are"]),
         ("tf2_msgs/msg/TFMessage", ["each: transforms", "t(ChildFrameId, X, Y, Z, Yaw)"]),

@@ -9,7 +9,7 @@ from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.feeds import Feed, Topic
 from jacaros.artifacts.mapping.frames import FrameFeed
 from jacaros.artifacts.mapping.host import Elements
-from jacaros.artifacts.mapping.manual import documentation
+from jacaros.artifacts.mapping.manual import Documentation
 from jacaros.artifacts.mapping.node_parameters import NodeParameter
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods
@@ -180,7 +180,7 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
     """The class of one artifact of a file; its operations are operations like any others."""
     part = mapping.artifacts[name]
     members: dict[str, Any] = {
-        "__doc__": documentation(mapping, part),
+        "__doc__": Documentation(mapping, part),
         "__module__": __name__,
         "mapping": mapping,
         "part": part,

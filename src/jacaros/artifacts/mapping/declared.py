@@ -49,6 +49,7 @@ class Conversion:
         kind: ``yaw``, ``pitch``, ``roll``, ``name``, ``atom``, ``object``, ``count``, ``min``, ``max``, ``mean`` or "".
         prefix: with which the constants begin that ``name`` means.
         names: atoms for values.
+        unit: the unit for the agent, for the manual; empty when none is said.
         line: of units, scale and offset; None when the number stays as it is.
         digits: decimals; None: as many as there are.
     """
@@ -58,6 +59,7 @@ class Conversion:
     names: tuple[tuple[object, str], ...] = ()
     line: Line | None = None
     digits: int | None = None
+    unit: str = ""
 
 
 AS_IT_IS = Conversion()

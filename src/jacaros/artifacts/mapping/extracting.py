@@ -39,6 +39,20 @@ Extract = Callable[[Any], list[Row]]
 """Takes a message; raises `Unshowable`."""
 
 
+def fields_of(part: TopicPart, root: FieldType, interfaces: Interfaces) -> tuple[FieldPart, ...]:
+    """The fields of a property or signal: unless the mapping says which, all of the message or element *root*.
+
+    Raises:
+        UnknownInterface: its type is not known.
+    """
+    if part.fields is not None:
+        return part.fields
+    if not root.is_message:
+        return (FieldPart(WHOLE, part.place, name="value"),)
+    names = interfaces.fields(root.base)
+    return tuple(FieldPart(read_path(name), part.place, name=name) for name in names)
+
+
 def extractor(
     part: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
 ) -> Extract | None:
@@ -107,17 +121,11 @@ class _Maker:
             self.wrong(frame.place, WrongPath(text, "leave it out"))
 
     def _fields(self) -> Sequence[FieldPart]:
-        if self.part.fields is not None:
-            return self.part.fields
-        root = self.element or self.message
-        if not root.is_message:
-            return (FieldPart(WHOLE, self.part.place, name="value"),)
         try:
-            names = list(self.interfaces.fields(root.base))
+            return fields_of(self.part, self.element or self.message, self.interfaces)
         except UnknownInterface as error:
             self.wrong(self.part.place, error)
             return ()
-        return [FieldPart(read_path(name), self.part.place, name=name) for name in names]
 
     def _taker(self, field: FieldPart) -> Take | None:
         try:

@@ -29,7 +29,15 @@ def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
     run.__annotations__ = dict.fromkeys(names[inputs:], Out)
     run.__qualname__ = run.__name__ = part.name
     run.__doc__ = description(part)
+    run.parameter_words = lambda: _words(artifact, part)  # type: ignore[attr-defined]  # for manuals
     return operation(name=part.name, pausable=is_pausable(part))(run)
+
+
+def _words(artifact: ArtifactPart, part: OperationPart) -> dict[str, str]:
+    # Imported here: definitions of types are looked up only for those who ask for a manual.
+    from jacaros.artifacts.mapping.manual import parameter_words
+
+    return parameter_words(artifact, part)
 
 
 def is_pausable(part: OperationPart) -> bool:

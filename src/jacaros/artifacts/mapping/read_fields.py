@@ -73,7 +73,7 @@ def read_field(node: Node) -> FieldPart:
 def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
     """A word for a value, for the manual."""
     kind = entries["as"].value if entries is not None and "as" in entries else ""
-    if kind in ANGLES or kind == "count":
+    if kind in (*ANGLES, "count", "object"):
         return str(kind)
     names = [step[1:] for step in path.steps if isinstance(step, str) and step.startswith(".")]
     return names[-1] if names else "value"
@@ -91,6 +91,7 @@ def read_conversion(entries: dict[str, Node]) -> Conversion:
         _names(entries["names"]) if "names" in entries else (),
         _line(entries, kind),
         digits.whole(0, 0) if digits is not None else None,
+        str(entries["unit"].value) if "unit" in entries else "",
     )
 
 

@@ -45,7 +45,12 @@ def _joints(name: str) -> Body:
     return (
         "properties",
         f"{name}(Joint, Position): one for each joint; radians, or metres of a joint that slides",
-        ["each: name", 'fields: [., {path: "/position[i]", round: 3}]', "rate: 5", "dead_band: 0.01"],
+        [
+            "each: name",
+            'fields: [{path: ., name: joint}, {path: "/position[i]", round: 3}]',
+            "rate: 5",
+            "dead_band: 0.01",
+        ],
     )
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from jacaros.artifacts.mapping.interfaces import Interfaces, constants
-from jacaros.cli.graph.definitions import is_time, unit_of
+from jacaros.artifacts.mapping.message_units import unit_of
+from jacaros.cli.graph.definitions import is_time
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 
 HEADER = "std_msgs/msg/Header"
@@ -104,7 +105,9 @@ class Value:
     def as_field(self) -> str:
         """An entry of ``fields`` of a property."""
         digits = f"round: {self.unit.digits}" if self.unit.digits is not None else ""
-        keys = ", ".join(filter(None, (self.conversion, digits)))
+        usual = "yaw" if "as: yaw" in self.conversion else self.path.rpartition(".")[2].lower()
+        name = f"name: {self.name}" if self.name != usual else ""
+        keys = ", ".join(filter(None, (self.conversion, digits, name)))
         return f"{{path: {quoted(self.path)}, {keys}}}" if keys else quoted(self.path)
 
     @property

@@ -12,6 +12,8 @@ from jacaros.env.kernel.acceptance import kind_of
 from jacaros.env.kernel.kinds import Accept, Unsuitable, shown
 from jacaros.env.values import Atom, Out, Structure
 
+_ANY_OUTPUT = kind_of(Out).expected
+
 
 class WrongArguments(Exception):
     """The arguments of a call do not fit; the text names parameter, value and expected kind."""
@@ -93,11 +95,16 @@ class Signature:
         return self.rest
 
     def __str__(self) -> str:
-        shown = [
-            f"-{p.name}" if p.output else f"{p.name}: {p.expected}" + (" (optional)" if p.optional else "")
-            for p in self.parameters
-        ]
+        shown = [_shown(each) for each in self.parameters]
         return ", ".join([*shown, "..."] if self.rest else shown)
+
+
+def _shown(parameter: Parameter) -> str:
+    """A parameter for people; of outputs mostly nothing is known but their name."""
+    if not parameter.output:
+        return f"{parameter.name}: {parameter.expected}" + (" (optional)" if parameter.optional else "")
+    unknown = parameter.expected == _ANY_OUTPUT
+    return f"-{parameter.name}" if unknown else f"-{parameter.name}: {parameter.expected}"
 
 
 def signature_of(function: Callable[..., object], skip_first: bool) -> Signature:
