@@ -248,8 +248,8 @@ def test_describe_tells_what_is_mapped(folder: Path, capsys: pytest.CaptureFixtu
         "  odom(X, Y)",
         "  pose(X, Y, Yaw)",
         "  left(DistanceRemaining)",
-        "  drive(speed: any value, seconds: any value)  [pausable]",
-        "  navigate_to(x: any value, y: any value)  [pausable]",
+        "  drive(speed: number in metres per second, seconds: number of seconds)  [pausable]",
+        "  navigate_to(x: number in metres, y: number in metres)  [pausable]",
     ):
         assert line in lines, line
 
