@@ -140,6 +140,18 @@ def test_a_newer_goal_takes_over_where_goals_preempt(graph: Any, pair: Pair, top
     assert right.deeds(topic) == [["begin", 500], ["end", 500, False], ["begin", 1], ["end", 1, False]]
 
 
+def test_goals_that_wait_for_their_server_arrive_in_their_order(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    targets = [1, 2, 3, 4, 5]
+    for target in targets:
+        left.begin_send(f"{topic}{target}", topic, {"target": target, "period": 0.01}, timeout=LOST)
+    right.serve_action(topic, "count")
+    for target in targets:
+        left.end_send(f"{topic}{target}")
+        assert left.outcome(f"{topic}{target}", timeout=20)["result"]["last"] == target
+    assert [deed[1] for deed in right.deeds(topic) if deed[0] == "begin"] == targets
+
+
 def test_a_preempted_goal_says_why(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, preempt=True)
     left.send_goal(topic + "old", topic, SLOW, timeout=20)

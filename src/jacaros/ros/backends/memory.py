@@ -7,7 +7,7 @@ order of publishing; so messages are read-only from `publish` on.
 
 import asyncio
 from collections.abc import Callable
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 from jacaros.ros.action import ActionPolicy, Execute
 from jacaros.ros.action_calling import GoalSender
@@ -31,7 +31,7 @@ from jacaros.ros.backend import (
 )
 from jacaros.ros.backends.memory_actions import MemoryActionServer, MemoryGoalWire
 from jacaros.ros.backends.memory_graph import MemoryGraph
-from jacaros.ros.backends.memory_node import MemoryNode
+from jacaros.ros.backends.memory_node import Member, MemoryNode
 from jacaros.ros.backends.memory_parameters import MemoryParameters
 from jacaros.ros.backends.memory_services import MemoryClient, MemoryService
 from jacaros.ros.backends.memory_topics import MemoryPublisher, MemorySubscription
@@ -45,11 +45,7 @@ from jacaros.ros.typestore import RosbagsSchema
 __all__ = ["BACKEND", "MemoryBackend", "MemoryGraph", "MemoryPublisher", "MemorySubscription"]
 
 
-class _Member(Protocol):
-    def close(self) -> None: ...
-
-
-_M = TypeVar("_M", bound=_Member)
+_M = TypeVar("_M", bound=Member)
 
 
 class MemoryBackend(MemoryNode):
@@ -80,7 +76,6 @@ class MemoryBackend(MemoryNode):
     def __init__(self, settings: NodeSettings, graph: MemoryGraph | None = None) -> None:
         self._schema = RosbagsSchema(settings.interface_paths)
         super().__init__(settings, self._schema, graph)
-        self._members: list[_Member] = []
 
     async def start(self) -> None:
         """Join the graph."""
@@ -91,18 +86,18 @@ class MemoryBackend(MemoryNode):
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
         self.exit_hooks.run()
-        for member in self._members:
+        for member in list(self.members):
             member.close()
-        self._members.clear()
+        self.members.clear()
         self.graph.leave(self)
         self.set_connected(False)
 
     def vanish(self) -> None:
         """Be gone without a word, as a killed process is; see `MemoryGraph.vanish`."""
         self.vanished = True
-        for member in self._members:
+        for member in list(self.members):
             getattr(member, "vanish", member.close)()
-        self._members.clear()
+        self.members.clear()
         self.graph.leave(self)
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> MemoryPublisher:
@@ -139,7 +134,7 @@ class MemoryBackend(MemoryNode):
         """Make a client of an action."""
         full_type = action_type(type_name)
         self._schema.action(full_type)
-        return self._joined(MemoryGoalWire(self, self.resolve(name), full_type).sender)
+        return self._joined(MemoryGoalWire(self, self.resolve(name), full_type)).sender
 
     def action_server(
         self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
@@ -164,7 +159,7 @@ class MemoryBackend(MemoryNode):
         if self.vanished:
             member.close()
             raise RosError(f"node {self.node_name} was taken away from the graph")
-        self._members.append(member)
+        self.members.append(member)
         return member
 
 

@@ -20,6 +20,7 @@ class MemoryActionServer:
         self.name = name
         self.type_name = type_name
         self.vanished = False
+        self._node = node
         self._graph = node.graph
         self._goals = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
         self._graph.offer_action(self)
@@ -43,13 +44,17 @@ class MemoryActionServer:
     def close(self) -> None:
         """Stop to offer the action."""
         self._goals.close()
-        self._graph.withdraw_action(self)
+        self._leave()
 
     def vanish(self) -> None:
         """Be gone without a word: the clients of goals under way learn nothing."""
         self.vanished = True
         self._goals.abandon()
+        self._leave()
+
+    def _leave(self) -> None:
         self._graph.withdraw_action(self)
+        self._node.forget(self)
 
 
 class _News:
@@ -111,8 +116,10 @@ class MemoryGoalWire:
         self._servers.pop(goal_id, None)
 
     def close(self) -> None:
-        """Leave."""
+        """Cancel the goals, and leave."""
+        self.sender.close()  # which calls this again, when they are cancelled
         self.graph.disconnect(self)
+        self._node.forget(self)
 
     def server_came(self) -> None:
         """A server is there."""

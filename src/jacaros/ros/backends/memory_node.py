@@ -1,11 +1,19 @@
 """A node in a graph inside the process, as its publishers, services and actions know it."""
 
 import itertools
+from typing import Protocol
 
 from jacaros.ros.backends.memory_graph import MemoryGraph
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.typestore import RosbagsSchema
+
+
+class Member(Protocol):
+    """What a node has in its graph."""
+
+    def close(self) -> None:
+        """Leave, and be forgotten by the node."""
 
 
 class MemoryNode(Node):
@@ -15,6 +23,9 @@ class MemoryNode(Node):
         settings: names, clock and reports.
         schema: the message classes.
         graph: the graph to join; a new one without it.
+
+    Attributes:
+        members: what the node has in the graph, in its order.
     """
 
     def __init__(self, settings: NodeSettings, schema: RosbagsSchema, graph: MemoryGraph | None) -> None:
@@ -27,7 +38,13 @@ class MemoryNode(Node):
             self.log,
         )
         self.vanished = False
+        self.members: list[Member] = []
         self._goal_numbers = itertools.count(1)
+
+    def forget(self, member: Member) -> None:
+        """Note that a member has left."""
+        if member in self.members:
+            self.members.remove(member)
 
     def new_goal_id(self) -> str:
         """Number the goals that this node sends."""

@@ -20,6 +20,7 @@ class MemoryService:
     def __init__(self, node: MemoryNode, name: str, type_name: str, handler: Handler) -> None:
         self.name = name
         self.type_name = type_name
+        self._node = node
         self._graph = node.graph
         self._responder = Responder(node.factory, name, type_name, handler, node.log)
         self._vanished = False
@@ -46,6 +47,7 @@ class MemoryService:
         """Stop to offer the service."""
         self._graph.withdraw(self)
         self._responder.close()
+        self._node.forget(self)
 
     def vanish(self) -> None:
         """Be gone without a word: its clients find that out after a while."""
@@ -101,6 +103,7 @@ class MemoryClient:
     def close(self) -> None:
         """Give the client up."""
         self._pending.close()
+        self._node.forget(self)
 
 
 async def come(node: MemoryNode, thing: str, what: str, timeout: float | None) -> None:

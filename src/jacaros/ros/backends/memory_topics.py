@@ -86,6 +86,7 @@ class MemoryPublisher:
         if self in self._shared.publishers:
             self._shared.publishers.remove(self)
         self._receivers = []
+        self._node.forget(self)
 
 
 class MemorySubscription:
@@ -187,6 +188,7 @@ class MemorySubscription:
         self._waiting.clear()
         if self._deadline is not None:
             self._deadline.stop()
+        self._node.forget(self)
 
     def _queue(self, message: Any) -> None:
         """Queue *message* for a turn of the loop; the oldest is dropped when the queue is full."""

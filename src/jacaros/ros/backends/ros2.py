@@ -1,7 +1,7 @@
 """ROS 2 through rclpy: the backend, put together."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from jacaros.ros.action import ActionClient, ActionPolicy, Execute
 from jacaros.ros.backend import (
@@ -66,7 +66,6 @@ class Ros2Backend(Ros2Node):
         super().__init__(settings, domain_id)
         self._news = ParameterNews(self)
         self._parameters: dict[str, Parameters] = {}
-        self._actions: list[Any] = []
 
     @property
     def capabilities(self) -> frozenset[str]:  # type: ignore[override]
@@ -84,9 +83,9 @@ class Ros2Backend(Ros2Node):
 
     async def close(self) -> None:
         """Run the exit hooks and leave the graph; goals of both sides are told that we go."""
-        for action in self._actions:
-            if not self.ended:
-                action.close()
+        for member in list(self.members):
+            if isinstance(member, Ros2GoalWire | Ros2ActionServer) and not self.ended:
+                (member.sender if isinstance(member, Ros2GoalWire) else member).close()
         await super().close()
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Ros2Publisher:
@@ -115,17 +114,13 @@ class Ros2Backend(Ros2Node):
 
     def action_client(self, name: str, type_name: str) -> ActionClient:
         """Make a client of an action."""
-        wire = self._keep(Ros2GoalWire(self, self.resolve(name), action_type(type_name)))
-        self._actions.append(wire.sender)
-        return wire.sender
+        return self._keep(Ros2GoalWire(self, self.resolve(name), action_type(type_name))).sender
 
     def action_server(
         self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
     ) -> Ros2ActionServer:
         """Offer an action."""
-        server = Ros2ActionServer(self, self.resolve(name), action_type(type_name), execute, policy)
-        self._actions.append(server)
-        return self._keep(server)
+        return self._keep(Ros2ActionServer(self, self.resolve(name), action_type(type_name), execute, policy))
 
     def parameters(self, node: str | None = None) -> Parameters:
         """Give the parameters of our own node, or of another."""

@@ -75,6 +75,8 @@ class Ros2GoalWire:
         self._servers: frozenset[bytes] = frozenset()
         self._signs = SignsOfLife(self._probe, self.sender.server_present)
         self._looking: Any = None
+        self._unsent: list[str] = []
+        self._sending: Any = None
         self._closed = False
         rcl, impl = node.rcl, self._impl
         self._goal_client: Any = rcl.create_client(impl.SendGoalService, name + SEND_GOAL)
@@ -145,8 +147,9 @@ class Ros2GoalWire:
             return
         self._closed = True
         self._feedback.close()
-        if self._looking is not None:
-            self._looking.cancel()
+        for timer in (self._looking, self._sending):
+            if timer is not None:
+                timer.cancel()
         node = self._node
         for client in (self._goal_client, self._cancel_client, self._result_client):
             node.retire_later(node.rcl.destroy_client, client)
@@ -301,20 +304,31 @@ class Ros2GoalWire:
                 self._send_when_settled(goal.identity)
 
     def _send_when_settled(self, identity: str) -> None:
-        """Send a goal, as soon as the server knows us: what it is sent earlier, or answers earlier, is lost."""
+        """Send a goal, as soon as the server knows us: what it is sent earlier, or answers earlier, is lost.
 
-        def send() -> None:
-            goal = self._goals.get(identity)
-            if goal is None or not self.sender.wants(identity):
-                return
-            if not self._closed and not self._node.ended:
-                self._call(self._goal_client, goal.request, lambda answer: self._answered(identity, answer))
+        Goals are sent in their order: where a newer one takes over, it must be the newer one that does.
+        """
+        if identity not in self._unsent:
+            self._unsent.append(identity)
+        if self._sending is None:
+            self._send_all_settled()
 
+    def _send_all_settled(self) -> None:
+        self._sending = None
+        if self._closed or self._node.ended:
+            return
         rest = self._there_since + SETTLING - time.monotonic()
         if rest > 0.0:
-            self._node.loop.call_later(rest, send)
-        else:
-            send()
+            self._sending = self._node.loop.call_later(rest, self._send_all_settled)
+            return
+        unsent, self._unsent = self._unsent, []
+        for identity in unsent:
+            self._send(identity)
+
+    def _send(self, identity: str) -> None:
+        goal = self._goals.get(identity)
+        if goal is not None and self.sender.wants(identity):
+            self._call(self._goal_client, goal.request, lambda answer: self._answered(identity, answer))
 
     def _probe(self) -> None:
         """Ask for something that every server answers at once: the result of a goal that nobody knows."""
