@@ -35,6 +35,25 @@ class Assertion:
         return f"{self.name} failed: {told}"
 
 
+class OthersInGraph(Protocol):
+    """The rest of the ROS graph, as a test plays it; each method raises `ValueError` with what is wrong."""
+
+    def publish(self, topic: str, fields: str, type_name: str) -> None:
+        """Publish a message; *type_name* is empty when it is to be that of those who listen."""
+
+    def hear(self, topic: str, type_name: str) -> None:
+        """Listen to a topic."""
+
+    def answer(self, service: str, type_name: str, fields: str) -> None:
+        """Offer a service that gives this response."""
+
+    def count_published(self, topic: str, fields: str) -> tuple[int, list[str]]:
+        """How many messages of the run on a topic had these values, and all of them for people."""
+
+    def count_asked(self, service: str, fields: str) -> tuple[int, list[str]]:
+        """How many requests to such a service had these values, and all of them for people."""
+
+
 class Probe(Protocol):
     """A test that looks on at one agent."""
 
@@ -56,3 +75,6 @@ class Probe(Protocol):
 
     def prints(self) -> Sequence[str]:
         """What the agent has printed, oldest first."""
+
+    def others(self) -> OthersInGraph:
+        """The rest of the ROS graph."""

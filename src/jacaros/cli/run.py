@@ -40,7 +40,7 @@ from jacaros.mas.system import System
     metavar="FILE",
     envvar="JACAROS_WORLD",
     show_envvar=True,
-    help="World file, or the name of a world that comes with jacaros.",
+    help="World file, or the name of a world that comes with jacaros; `none` for a graph without a robot.",
 )
 @click.option(
     "--mapping",

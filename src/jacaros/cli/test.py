@@ -58,7 +58,16 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 )
 @click.option("--seed", type=int, default=0, show_default=True, metavar="N", help="Of all random numbers.")
 @click.option(
-    "--world", metavar="FILE", help="World file, or the name of a world, in place of the project's own."
+    "--world",
+    metavar="FILE",
+    help="World file, or the name of a world, in place of the project's own; `none` for a graph without a robot.",
+)
+@click.option(
+    "--mapping",
+    "mappings",
+    multiple=True,
+    metavar="FILE",
+    help="Mapping file whose artifacts all tests have; a label [test, mapping(FILE)] has its own. May be given more often.",
 )
 @click.option(
     "--shared", is_flag=True, help="One run for all tests of a file, as on Jason; else one for each."
@@ -90,6 +99,7 @@ def command(
     clock: str,
     seed: int,
     world: str | None,
+    mappings: tuple[str, ...],
     shared: bool,
     junit: Path | None,
     slow: int,
@@ -109,7 +119,7 @@ def command(
 
     paint = _Paint(color)
     suites = _chosen(collect(paths or (Path(),)), paths, pattern)
-    options = TrialOptions(clock == "fast", seed, timeout, cycles, patience, world, shared)
+    options = TrialOptions(clock == "fast", seed, timeout, cycles, patience, world, shared, mappings)
     outcomes = _Progress(options, paint, pattern, first, verbose).run(suites)
     for line in (*failures(outcomes, paint), *slowest(outcomes, slow), "", summary(outcomes, seed, paint)):
         click.echo(line, color=True)

@@ -31,6 +31,9 @@ _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWor
 _OPEN_ACTIONS: Final = frozenset({".create_agent", ".clone", ".include", ".add_plan", ".load_agent"})
 """Internal actions that bring programs in which are not those of the project file."""
 
+_FAKES: Final = frozenset({"fake_action", "fake_message", "fake_service", "fake_subscriber"})
+"""Goals by which a test plays the environment."""
+
 _CLOSED: Final = ("jacaros.env.", "jacaros.artifacts.")
 """Modules whose artifacts offer what their classes declare."""
 
@@ -87,7 +90,7 @@ def _is_open(program: nodes.Program) -> bool:
     for node in walk(*clauses_of(program), *program.goals):
         if isinstance(node, nodes.InternalAction) and node.name in _OPEN_ACTIONS:
             return True
-        if isinstance(node, nodes.Literal) and node.functor == "fake_action":
+        if isinstance(node, nodes.Literal) and node.functor in _FAKES:
             return True
     return False
 

@@ -22,6 +22,9 @@ DEFAULT_WORLD = "empty"
 """The world of a project that names none: an open floor with one robot."""
 
 
+NO_WORLD = "none"
+"""In place of the name of a world: nobody else is in the graph inside the process."""
+
 _GROUND_TRUTH = 100_000
 """Points of a robot's path that are kept in memory: some hours of motion."""
 
@@ -54,7 +57,7 @@ class RosGraph:
         self._source = options.world if options.world is not None else world
         self._log = log
         self._backend: Backend | None = None
-        self._world_backend: Backend | None = None
+        self._companions: list[Backend] = []
         self._node: SimNode | None = None
         self._followed: RosClock | None = None
         self._looking: Subscription | None = None
@@ -88,10 +91,19 @@ class RosGraph:
         if self._backend is None:
             self._backend = self._open()
             _finish_at_once(self._backend.start())
-            self._world_backend = self._open_for_world(self._backend)
-            _finish_at_once(self._world_backend.start())
-            self._start_world(self._world_backend)
+            if self._source != NO_WORLD:
+                self._start_world(self.companion("world"))
         return self._backend
+
+    def companion(self, name: str) -> Any:
+        """One more node in the graph inside the process, such as that of the world or of a test; it goes with the run."""
+        from jacaros.ros.open import open_backend
+
+        beside: Any = self.backend()
+        made = open_backend("memory", self._clock, name, log=self._log_ros, graph=beside.graph)
+        self._companions.append(made)
+        _finish_at_once(made.start())
+        return made
 
     @property
     def joined(self) -> "Backend | None":
@@ -101,8 +113,8 @@ class RosGraph:
     async def close(self) -> None:
         """Stop the robots, then the world, and leave the graph."""
         async with AsyncExitStack() as steps:  # the last one that is written goes first
-            if self._world_backend is not None:
-                steps.push_async_callback(self._world_backend.close)
+            for companion in self._companions:
+                steps.push_async_callback(companion.close)
             if self._node is not None:
                 steps.callback(self._node.close)
             if self._backend is not None:
@@ -112,11 +124,6 @@ class RosGraph:
 
     def _open(self) -> "Backend":
         return self._options.address.open(self._clock, self._name, self._log_ros)
-
-    def _open_for_world(self, beside: Any) -> "Backend":
-        from jacaros.ros.open import open_backend
-
-        return open_backend("memory", self._clock, "world", log=self._log_ros, graph=beside.graph)
 
     def _follow_clock(self, backend: "Backend") -> None:
         from jacaros.ros.ros_clock import RosClock

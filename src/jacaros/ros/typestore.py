@@ -104,6 +104,11 @@ class RosbagsSchema:
             self.service(whole)
         elif "/action/" in type_name and part in ("Goal", "Result", "Feedback"):
             self.action(whole)
+        elif (kind := type_name.split("/")[1]) in ("srv", "action"):
+            what = "a service" if kind == "srv" else "an action"
+            raise UnknownInterface(
+                f"{type_name} is the type of {what}, not of messages; write package/msg/Name"
+            )
         else:
             self._register(type_name, self._definition(type_name, "message", "msg"))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from jacaros.mas.embedding.pursued_goal import PursuedGoal
+    from jacaros.testing.fake_graph import FakeGraph
     from jacaros.testing.harness import AgentHarness
     from jacaros.testing.judging import Verdict, judge
     from jacaros.testing.junit import write_junit
@@ -21,6 +22,7 @@ __all__ = [
     "ActionFailed",
     "AgentHarness",
     "AgentTest",
+    "FakeGraph",
     "Outcome",
     "Problem",
     "PursuedGoal",
@@ -41,6 +43,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "fake_graph": ("FakeGraph",),
     "harness": ("AgentHarness", "PursuedGoal"),
     "judging": ("Verdict", "judge"),
     "junit": ("write_junit",),

@@ -5,7 +5,8 @@ A plan for an achievement goal whose label has the annotation ``test`` is a test
     @charges_when_low[test]
     +!test_charging <- ... .
 
-``[test, timeout(2000)]`` gives it a time limit of its own, in milliseconds.
+``[test, timeout(2000)]`` gives it a time limit of its own, in milliseconds; ``[test, mapping("robot.yaml")]`` the artifacts
+of a mapping file, in a ROS graph without a robot.
 
 In a folder, and in all folders in it, the test files are: programs that have such a plan themselves, and projects
 (`.jcm`, `.mas2j`) called ``test_...`` or ``..._test``, of which all agents are looked at.  A program called
@@ -67,6 +68,7 @@ class AgentTest:
         goal: what it is to achieve.
         span: where the plan stands.
         timeout: time limit in seconds, None for the usual one.
+        mappings: mapping files whose artifacts the run has.
     """
 
     name: str
@@ -74,6 +76,7 @@ class AgentTest:
     goal: nodes.Literal
     span: Span | None
     timeout: float | None = None
+    mappings: tuple[str, ...] = ()
 
 
 @dataclass
@@ -304,7 +307,8 @@ def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> It
                     )
                 )
             continue
-        yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(annotations))
+        mappings = tuple(_mappings(annotations, plan, problems))
+        yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(annotations), mappings)
 
 
 def _annotations(plan: nodes.Plan) -> tuple[nodes.Term, ...]:
@@ -320,6 +324,24 @@ def _timeout(annotations: Iterable[nodes.Term]) -> float | None:
                 case (nodes.Number(value=milliseconds),):
                     return milliseconds / 1000.0
     return None
+
+
+def _mappings(
+    annotations: Iterable[nodes.Term], plan: nodes.Plan, problems: list[Diagnostic]
+) -> Iterator[str]:
+    """The mapping files of a test: beside its file, or as the current folder and the package have them."""
+    for annotation in annotations:
+        if not isinstance(annotation, nodes.Literal) or annotation.functor != "mapping":
+            continue
+        for argument in annotation.arguments or (None,):
+            if not isinstance(argument, nodes.String):
+                told = "mapping(...) names no file"
+                problems.append(
+                    Diagnostic("error", told, plan.span, 'as in @name[test, mapping("robot.yaml")]')
+                )
+                continue
+            beside = Path(plan.span.file.name).parent / argument.value if plan.span is not None else None
+            yield str(beside) if beside is not None and beside.is_file() else argument.value
 
 
 def _label(plan: nodes.Plan) -> str | None:

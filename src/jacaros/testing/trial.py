@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from jacaros.asl.source import Span
 from jacaros.bdi.agent import Agent
@@ -24,13 +24,19 @@ from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.compiler.lowering import lower_value
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.deployment import Deployment, ProjectError
+from jacaros.mas.loading import mapped
 from jacaros.mas.options import RunOptions
+from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.terms.text import text
 from jacaros.terms.values import Term
 from jacaros.testing.fakes import Fakes
 from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
 from jacaros.testing.suites import AgentTest, Suite, with_assertions
+
+if TYPE_CHECKING:
+    from jacaros.testing.fake_graph import FakeGraph
 
 LINGER_SECONDS = 1.0
 LINGER_CYCLES = 10_000
@@ -51,6 +57,7 @@ class TrialOptions:
             in the main thread of a process on POSIX systems.
         world: world file or name in place of the project's own.
         shared: the tests of a file run one after the other in one system, as on Jason.
+        mappings: mapping files whose artifacts every run has, beside those that a label names.
     """
 
     fast: bool = True
@@ -60,6 +67,7 @@ class TrialOptions:
     patience: float = 300.0
     world: str | Path | None = None
     shared: bool = False
+    mappings: tuple[str, ...] = ()
 
 
 def run_suite(
@@ -76,11 +84,18 @@ def run_suite(
     tests = [test for test in suite.tests if chosen(test)]
     if suite.error is not None or not tests:
         return
-    if options.shared:
-        yield from Trial(suite, tests, options).run()
-        return
-    for test in tests:
-        yield from Trial(suite, [test], options).run()
+    for together in [tests] if options.shared else [[test] for test in tests]:
+        yield from _outcomes(suite, together, options)
+
+
+def _outcomes(suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> list[Outcome]:
+    """Make tests in one run."""
+    try:
+        trial = Trial(suite, tests, options)
+    except ProjectError as wrong:
+        told = Problem("a mapping is wrong", tuple(str(wrong).splitlines()), tests[0].span)
+        return [Outcome(test, problems=[told]) for test in tests]
+    return trial.run()
 
 
 def run_suites(suites: Sequence[Suite], options: TrialOptions | None = None) -> list[SuiteOutcome]:
@@ -103,7 +118,6 @@ class Trial:
 
     def __init__(self, suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> None:
         assert suite.deployment is not None
-        self._deployment = suite.deployment
         self._warnings = frozenset(suite.warnings)
         self._options = options
         self._waiting = deque(tests)
@@ -117,11 +131,22 @@ class Trial:
         self._timers: list[Any] = []
         clock_class = _MeteredVirtualClock if options.fast else _MeteredWallClock
         self._clock: Clock = clock_class(self._busy)
-        self._mas = System(
-            self._deployment,
+        self._others: FakeGraph | None = None
+        self._mappings = tuple(
+            dict.fromkeys((*options.mappings, *(name for test in tests for name in test.mappings)))
+        )
+        self._mas = self._system(suite.deployment)
+
+    def _system(self, deployment: Deployment) -> System:
+        """The system, with the artifacts of the mappings; then in a graph without a robot, unless a world is named."""
+        options, world = self._options, self._options.world
+        if self._mappings and world is None and deployment.world is None:
+            world = NO_WORLD
+        return System(
+            mapped(deployment, self._mappings),
             self._clock,
             self,
-            RunOptions(fast=options.fast, seed=options.seed, world=options.world),
+            RunOptions(fast=options.fast, seed=options.seed, world=world),
             with_assertions,
             self._observe,
             self._idle,
@@ -170,6 +195,7 @@ class Trial:
             return
         test = self._waiting.popleft()
         self._number += 1
+        self._forget_messages()
         self._lingers = False
         self._cycles = 0
         self._began, self._began_run = time.perf_counter(), self._clock.now()
@@ -182,6 +208,21 @@ class Trial:
             )
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
+
+    def _forget_messages(self) -> None:
+        """A test hears what is published from its beginning on."""
+        if self._others is not None:
+            self._others.forget()
+        elif self._mappings:
+            self.others()
+
+    def others(self) -> "FakeGraph":
+        """The rest of the ROS graph, which comes into being when a test first plays it."""
+        if self._others is None:
+            from jacaros.testing.fake_graph import FakeGraph  # here: most tests have no ROS graph
+
+            self._others = FakeGraph(self._mas.ros)
+        return self._others
 
     def _goal_ended(self) -> None:
         """The goal of the test is achieved or has failed."""
@@ -336,6 +377,9 @@ class _AgentProbe:
 
     def acts(self) -> Sequence[Term]:
         return self.fakes.acts
+
+    def others(self) -> "FakeGraph":
+        return self._trial.others()
 
     def prints(self) -> Sequence[str]:
         prefix = f"[{self._name}] "

@@ -95,3 +95,48 @@
 @test__assert_printed[atomic]
 +!assert_printed(Text)
   <- jacaros.assert_printed(Text).
+
+/* The rest of the ROS graph, as the test plays it */
+
+// Somebody publishes a message; a moment later agents believe what it says.
+@test__fake_message
++!fake_message(Topic, Fields)
+  <- jacaros.fake_message(Topic, Fields);
+     .wait(20).
+
+@test__fake_message_type
++!fake_message(Topic, Type, Fields)
+  <- jacaros.fake_message(Topic, Type, Fields);
+     .wait(20).
+
+// Somebody listens to a topic, of which the mapping does not say the type.
+@test__fake_subscriber[atomic]
++!fake_subscriber(Topic, Type)
+  <- jacaros.fake_subscriber(Topic, Type).
+
+// Somebody offers a service, and always gives this response.
+@test__fake_service[atomic]
++!fake_service(Name, Type, Fields)
+  <- jacaros.fake_service(Name, Type, Fields).
+
+// An artifact of this run has published such a message since the test began.
+@test__assert_published[atomic]
++!assert_published(Topic, Fields)
+  <- jacaros.assert_published(Topic, Fields).
+
+@test__assert_published_times[atomic]
++!assert_published(Topic, Fields, Times)
+  <- jacaros.assert_published(Topic, Fields, Times).
+
+@test__assert_not_published[atomic]
++!assert_not_published(Topic)
+  <- jacaros.assert_not_published(Topic).
+
+// A service of the test was called with such a request since the test began.
+@test__assert_called[atomic]
++!assert_called(Service, Fields)
+  <- jacaros.assert_called(Service, Fields).
+
+@test__assert_called_times[atomic]
++!assert_called(Service, Fields, Times)
+  <- jacaros.assert_called(Service, Fields, Times).

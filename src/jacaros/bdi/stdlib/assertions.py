@@ -23,7 +23,7 @@ _SHOWN = 8
 """Number of beliefs that are shown beside a formula that does not hold."""
 
 
-def _tell(ctx: Context, passed: bool, expected: str, actual: str = "") -> None:
+def tell_assertion(ctx: Context, passed: bool, expected: str, actual: str = "") -> None:
     """Report the assertion made by the goal whose plan calls this."""
     assertion = Assertion(_goal_name(ctx), passed, _readable(expected), _readable(actual), _place(ctx))
     probe: Probe | None = ctx.agent.probe
@@ -60,7 +60,12 @@ def _goal_name(ctx: Context) -> str:
     return name
 
 
-def _probe(ctx: Context, what: str) -> Probe:
+def probe_of(ctx: Context, what: str) -> Probe:
+    """Who tests this agent; *what* asks.
+
+    Raises:
+        ActionError: nobody does.
+    """
     probe: Probe | None = ctx.agent.probe
     if probe is None:
         raise ActionError(f"{what} is for tests: run them with jacaros test")
@@ -128,19 +133,19 @@ def _alike(one: Term, other: Term) -> bool:
 def assert_equals(ctx: Context, expected: Term, actual: Term, tolerance: Term = None) -> None:
     """``jacaros.assert_equals(Expected, Actual [,Tolerance])``; see `_same` for what is equal."""
     if tolerance is None:
-        _tell(ctx, _same(expected, actual), text(expected), f"was {text(actual)}")
+        tell_assertion(ctx, _same(expected, actual), text(expected), f"was {text(actual)}")
         return
     numbers = (expected, actual, tolerance)
     passed = (
         all(isinstance(n, float) for n in numbers) and expected - tolerance <= actual <= expected + tolerance
     )
-    _tell(ctx, passed, f"{text(expected)} +/- {text(tolerance)}", f"was {text(actual)}")
+    tell_assertion(ctx, passed, f"{text(expected)} +/- {text(tolerance)}", f"was {text(actual)}")
 
 
 @internal_action("jacaros.assert_not_equals", arity=2)
 def assert_not_equals(ctx: Context, unwanted: Term, actual: Term) -> None:
     """``jacaros.assert_not_equals(Unwanted, Actual)``."""
-    _tell(ctx, not _same(unwanted, actual), f"anything but {text(unwanted)}", f"was {text(actual)}")
+    tell_assertion(ctx, not _same(unwanted, actual), f"anything but {text(unwanted)}", f"was {text(actual)}")
 
 
 @internal_action("jacaros.assert_true", arity=1)
@@ -151,9 +156,9 @@ def assert_true(ctx: Context, formula: Term) -> None:
     except InternalError:
         raise
     except Exception as fault:
-        _tell(ctx, False, text(formula), _fault(fault))
+        tell_assertion(ctx, False, text(formula), _fault(fault))
         return
-    _tell(ctx, passed, text(formula), "" if passed else _believed(ctx, formula))
+    tell_assertion(ctx, passed, text(formula), "" if passed else _believed(ctx, formula))
 
 
 @internal_action("jacaros.assert_false", arity=1)
@@ -164,9 +169,9 @@ def assert_false(ctx: Context, formula: Term) -> None:
     except InternalError:
         raise
     except Exception as fault:
-        _tell(ctx, False, f"not {text(formula)}", _fault(fault))
+        tell_assertion(ctx, False, f"not {text(formula)}", _fault(fault))
         return
-    _tell(ctx, passed, f"not {text(formula)}", "" if passed else "it holds")
+    tell_assertion(ctx, passed, f"not {text(formula)}", "" if passed else "it holds")
 
 
 @internal_action("jacaros.assert_contains", arity=2)
@@ -174,7 +179,7 @@ def assert_contains(ctx: Context, collection: Term, item: Term) -> None:
     """``jacaros.assert_contains(Collection, Item)``: an element of the list or set unifies with *item*."""
     items = _items(collection)
     told = "is no list or set" if items is None else "does not contain it"
-    _tell(ctx, items is not None and _is_in(item, items), text(item), f"{text(collection)} {told}")
+    tell_assertion(ctx, items is not None and _is_in(item, items), text(item), f"{text(collection)} {told}")
 
 
 @internal_action("jacaros.assert_not_contains", arity=2)
@@ -182,7 +187,7 @@ def assert_not_contains(ctx: Context, collection: Term, item: Term) -> None:
     """``jacaros.assert_not_contains(Collection, Item)``: no element of the list or set unifies with *item*."""
     items = _items(collection)
     told = "is no list or set" if items is None else "contains it"
-    _tell(
+    tell_assertion(
         ctx, items is not None and not _is_in(item, items), f"no {text(item)}", f"{text(collection)} {told}"
     )
 
@@ -191,41 +196,41 @@ def assert_not_contains(ctx: Context, collection: Term, item: Term) -> None:
 def assert_greater_than(ctx: Context, left: Term, right: Term) -> None:
     """``jacaros.assert_greater_than(A, B)``: numbers, A > B."""
     passed = isinstance(left, float) and isinstance(right, float) and left > right
-    _tell(ctx, passed, f"more than {text(right)}", f"was {text(left)}")
+    tell_assertion(ctx, passed, f"more than {text(right)}", f"was {text(left)}")
 
 
 @internal_action("jacaros.assert_greater_than_equals", arity=2)
 def assert_greater_than_equals(ctx: Context, left: Term, right: Term) -> None:
     """``jacaros.assert_greater_than_equals(A, B)``: numbers, A >= B."""
     passed = isinstance(left, float) and isinstance(right, float) and left >= right
-    _tell(ctx, passed, f"{text(right)} or more", f"was {text(left)}")
+    tell_assertion(ctx, passed, f"{text(right)} or more", f"was {text(left)}")
 
 
 @internal_action("jacaros.assert_between", arity=3)
 def assert_between(ctx: Context, value: Term, least: Term, most: Term) -> None:
     """``jacaros.assert_between(X, Least, Most)``: numbers, both bounds included."""
     passed = all(isinstance(n, float) for n in (value, least, most)) and least <= value <= most
-    _tell(ctx, passed, f"{text(least)} to {text(most)}", f"was {text(value)}")
+    tell_assertion(ctx, passed, f"{text(least)} to {text(most)}", f"was {text(value)}")
 
 
 @internal_action("jacaros.force_pass", arity=0)
 def force_pass(ctx: Context) -> None:
     """``jacaros.force_pass``: an assertion that holds."""
-    _tell(ctx, True, "")
+    tell_assertion(ctx, True, "")
 
 
 @internal_action("jacaros.force_failure", arity=1)
 def force_failure(ctx: Context, message: Term) -> None:
     """``jacaros.force_failure(Message)``: an assertion that fails."""
     shown = str(message) if isinstance(message, str) else text(message)
-    _tell(ctx, False, "", shown)
+    tell_assertion(ctx, False, "", shown)
 
 
 @internal_action("jacaros.assert_fail", arity=2)
 def assert_fail(ctx: Context, goal: Term, failed: Term) -> None:
     """``jacaros.assert_fail(Goal, failed|achieved)``: how a goal that ought to fail has ended."""
     passed = text(failed) == "failed"
-    _tell(ctx, passed, f"!{text(goal)} to fail", "" if passed else "it was achieved")
+    tell_assertion(ctx, passed, f"!{text(goal)} to fail", "" if passed else "it was achieved")
 
 
 @internal_action("jacaros.fake", arity=(1, 2))
@@ -236,7 +241,7 @@ def fake(ctx: Context, action: Term, outcome: Term = None) -> None:
         ActionError: nobody tests this agent, or the outcome is none.
     """
     try:
-        _probe(ctx, "fake_action").fake(action, outcome)
+        probe_of(ctx, "fake_action").fake(action, outcome)
     except ValueError as wrong:
         raise ActionError(str(wrong)) from None
 
@@ -244,28 +249,30 @@ def fake(ctx: Context, action: Term, outcome: Term = None) -> None:
 @internal_action("jacaros.assert_did", arity=(1, 2))
 def assert_did(ctx: Context, action: Term, times: Term = None) -> None:
     """``jacaros.assert_did(Action [,Times])``: the agent has begun an external action that matches (so many times)."""
-    acts = _probe(ctx, "assert_did").acts()
+    acts = probe_of(ctx, "assert_did").acts()
     told = f"it did {', '.join(map(text, acts))}" if acts else "it did nothing"
     if times is None:
-        _tell(ctx, _is_in(action, acts), text(action), told)
+        tell_assertion(ctx, _is_in(action, acts), text(action), told)
     else:
         count = sum(_is_in(action, [act]) for act in acts)
-        _tell(ctx, float(count) == times, f"{text(times)} times {text(action)}", told)
+        tell_assertion(ctx, float(count) == times, f"{text(times)} times {text(action)}", told)
 
 
 @internal_action("jacaros.assert_printed", arity=1)
 def assert_printed(ctx: Context, part: Term) -> None:
     """``jacaros.assert_printed(Text)``: a line that the agent has printed has this in it."""
     shown = display(part)
-    prints = _probe(ctx, "assert_printed").prints()
+    prints = probe_of(ctx, "assert_printed").prints()
     told = (
         f"it printed {', '.join(repr(line) for line in prints[-_SHOWN:])}" if prints else "it printed nothing"
     )
-    _tell(ctx, any(shown in line for line in prints), f"the print {shown!r}", told)
+    tell_assertion(ctx, any(shown in line for line in prints), f"the print {shown!r}", told)
 
 
 @internal_action("jacaros.assert_not_did", arity=1)
 def assert_not_did(ctx: Context, action: Term) -> None:
     """``jacaros.assert_not_did(Action)``: the agent has begun no external action that matches."""
-    acts = _probe(ctx, "assert_not_did").acts()
-    _tell(ctx, not _is_in(action, acts), f"no {text(action)}", f"it did {', '.join(map(text, acts))}")
+    acts = probe_of(ctx, "assert_not_did").acts()
+    tell_assertion(
+        ctx, not _is_in(action, acts), f"no {text(action)}", f"it did {', '.join(map(text, acts))}"
+    )

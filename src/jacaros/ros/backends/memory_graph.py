@@ -59,6 +59,7 @@ class MemoryGraph:
         self._nodes: dict[str, GraphNode] = {}
         self._awaited: dict[str, list[asyncio.Future[None]]] = {}
         self._held: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
+        self._publisher_watchers: list[Callable[[GraphPublisher], None]] = []
         self._parameter_listeners: dict[str, list[Callable[[Mapping[str, ParameterValue]], None]]] = {}
 
     # Nodes
@@ -96,6 +97,18 @@ class MemoryGraph:
     def topic(self, name: str) -> Topic:
         """Give the topic called *name*."""
         return self._topics.setdefault(name, Topic())
+
+    def watch_publishers(self, watcher: Callable[[GraphPublisher], None]) -> None:
+        """Have *watcher* called with each publisher that is there, and with each that comes, before it publishes."""
+        self._publisher_watchers.append(watcher)
+        for topic in list(self._topics.values()):
+            for publisher in list(topic.publishers):
+                watcher(publisher)
+
+    def published_by(self, publisher: GraphPublisher) -> None:
+        """Tell those who watch of a new publisher."""
+        for watcher in self._publisher_watchers:
+            watcher(publisher)
 
     def topics(self) -> dict[str, str]:
         """Names of all topics in use with their types."""

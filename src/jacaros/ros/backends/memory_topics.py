@@ -32,6 +32,7 @@ class MemoryPublisher:
         self._shared.publishers.append(self)
         for subscription in self._shared.subscriptions:
             subscription.meet(self)
+        node.graph.published_by(self)
 
     @property
     def node_name(self) -> str:

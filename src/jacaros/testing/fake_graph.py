@@ -1,0 +1,206 @@
+"""The rest of the ROS graph in a test: it sends messages, hears what is published, and answers services."""
+
+import difflib
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from jacaros.artifacts.mapping.filling import filler
+from jacaros.artifacts.mapping.read_values import read_values
+from jacaros.mas.ros_graph import RosGraph
+from jacaros.ros.backend import Publisher, Sample, Service
+from jacaros.ros.errors import RosError
+from jacaros.ros.names import message_type, request_type, response_type, service_type
+from jacaros.ros.qos import LATCHED, QoS
+from jacaros.yaml_nodes import Problem, read_document
+
+NODE = "test"
+"""Name of the node that stands for everybody else."""
+_ALL = QoS("best_effort", depth=10_000)
+_TOLERANCE = 1e-6
+
+
+class FakeGraph:
+    """Stands for the robot in a test on the graph inside the process.
+
+    Messages are given as mapping files have them, as text such as ``{pose.position.x: 1, header.stamp: now}``, or as
+    nested Python mappings.
+
+    Args:
+        graph: of the run.
+
+    Attributes:
+        node: the node of the test.
+    """
+
+    def __init__(self, graph: RosGraph) -> None:
+        self._ours = graph.backend()
+        self.node = graph.companion(NODE)
+        self._publishers: dict[str, Publisher] = {}
+        self._services: dict[str, Service] = {}
+        self._heard: dict[str, list[Any]] = {}
+        self._asked: dict[str, list[Any]] = {}
+        self.node.graph.watch_publishers(self._listen_to)
+
+    def publish(self, topic: str, fields: str | Mapping[str, Any] = "", type_name: str = "") -> None:
+        """Publish a message.
+
+        Args:
+            topic: its name; a relative one is below ``/``.
+            fields: of the message; others stay zero or empty.
+            type_name: of the message; without it that of those who listen.
+
+        Raises:
+            ValueError: the topic, the type or the fields are wrong; the text tells.
+        """
+        try:
+            name = self.node.resolve(topic)
+            full = message_type(type_name) if type_name else self._type_of(name)
+            given = self._fields(fields, full)
+            if name not in self._publishers:
+                self._publishers[name] = self.node.publisher(name, full, LATCHED)
+            publisher = self._publishers[name]
+            publisher.publish(publisher.message(**given))
+        except RosError as wrong:
+            raise ValueError(str(wrong)) from None
+
+    def answer(self, service: str, type_name: str, fields: str | Mapping[str, Any] = "") -> None:
+        """Offer a service that always gives the same response; a later answer replaces it.
+
+        Raises:
+            ValueError: the name, the type or the fields are wrong; the text tells.
+        """
+        try:
+            name, full = self.node.resolve(service), service_type(type_name)
+            response = self._fields(fields, response_type(full))
+            if name in self._services:
+                self._services.pop(name).close()
+
+            def handle(request: Any) -> Mapping[str, Any]:
+                self._asked.setdefault(name, []).append(request)
+                return response
+
+            self._services[name] = self.node.service(name, full, handle)
+        except RosError as wrong:
+            raise ValueError(str(wrong)) from None
+
+    def published(self, topic: str) -> list[Any]:
+        """The messages that agents' artifacts published on a topic, oldest first."""
+        return self._heard.get(self.node.resolve(topic), [])
+
+    def asked(self, service: str) -> list[Any]:
+        """The requests to a service of `answer`, oldest first."""
+        return self._asked.get(self.node.resolve(service), [])
+
+    def forget(self) -> None:
+        """Hear and be asked as if nothing had been before."""
+        for messages in (*self._heard.values(), *self._asked.values()):
+            messages.clear()
+
+    def hear(self, topic: str, type_name: str) -> None:
+        """Listen to a topic, so that those who look for its type find one.
+
+        Raises:
+            ValueError: the topic or the type is wrong; the text tells.
+        """
+        try:
+            self.node.subscription(topic, type_name, lambda sample: None, _ALL)
+        except RosError as wrong:
+            raise ValueError(str(wrong)) from None
+
+    def count_published(self, topic: str, fields: str) -> tuple[int, list[str]]:
+        """How many messages on a topic had these values, and all of them as text.
+
+        Raises:
+            ValueError: the fields are wrong; the text tells.
+        """
+        messages = self.published(topic)
+        types = self.node.graph.topics()
+        name = self.node.resolve(topic)
+        if not messages and name not in types:
+            return 0, []
+        return self._count(messages, fields, types.get(name, ""))
+
+    def count_asked(self, service: str, fields: str) -> tuple[int, list[str]]:
+        """How many requests to a service had these values, and all of them as text.
+
+        Raises:
+            ValueError: no answer was given for the service, or the fields are wrong; the text tells.
+        """
+        name = self.node.resolve(service)
+        offered = self.node.graph.contents().services
+        if name not in self._services:
+            raise ValueError(f"the test has no service {name}; begin with fake_service")
+        return self._count(self.asked(name), fields, request_type(offered[name]))
+
+    def _count(self, messages: list[Any], fields: str, type_name: str) -> tuple[int, list[str]]:
+        wanted = self._fields(fields, type_name) if fields else {}
+        return sum(_has(message, wanted) for message in messages), [shown(each) for each in messages]
+
+    def _listen_to(self, publisher: Any) -> None:
+        """Hear what the run publishes from now on; what a world says is nobody's business here."""
+        name = publisher.topic
+        if publisher.node_name != self._ours.node_name or name in self._heard:
+            return
+        messages = self._heard[name] = []
+
+        def keep(sample: Sample) -> None:
+            messages.append(sample.message)
+
+        self.node.subscription(name, publisher.type_name, keep, _ALL)
+
+    def _type_of(self, name: str) -> str:
+        topics: dict[str, str] = self.node.graph.topics()
+        if found := topics.get(name):
+            return found
+        near = difflib.get_close_matches(name, topics, 2)
+        cure = f"did you mean {' or '.join(near)}?" if near else "write its type as the second argument"
+        raise ValueError(f"nobody listens to {name}, so that its type is not known; {cure}")
+
+    def _fields(self, fields: str | Mapping[str, Any], type_name: str) -> dict[str, Any]:
+        if not isinstance(fields, str):
+            return dict(fields)
+        problems: list[Problem] = []
+        values = read_values(read_document(fields, problems, "a message"), ())
+        fill = filler(values, type_name, self.node, problems) if not problems else None
+        if fill is None:
+            told = "; ".join(
+                f"{each.message}: {each.cure}" if each.cure else each.message for each in problems
+            )
+            raise ValueError(f"{fields}: {told}")
+        return fill((), self.node.clock.now())
+
+
+def _has(given: Any, wanted: Any) -> bool:
+    """Whether a message, or a value in it, has all that is wanted; numbers may differ a little."""
+    if isinstance(wanted, Mapping):
+        return all(_has(getattr(given, name), value) for name, value in wanted.items())
+    if isinstance(wanted, list | tuple):
+        return len(given) == len(wanted) and all(map(_has, given, wanted))
+    if isinstance(wanted, float) or (isinstance(wanted, int) and not isinstance(wanted, bool)):
+        if isinstance(given, bytes):
+            return bool(given == bytes([int(wanted)]))
+        return math.isclose(given, wanted, rel_tol=_TOLERANCE, abs_tol=_TOLERANCE)
+    return bool(given == wanted)
+
+
+def shown(message: Any) -> str:
+    """A message for people: its fields that are not zero or empty."""
+    parts = [f"{name}: {text}" for name in _names(message) if (text := _shown(getattr(message, name)))]
+    return f"{{{', '.join(parts)}}}"
+
+
+def _shown(value: Any) -> str:
+    """A value; empty when it is zero or empty."""
+    if _names(value):
+        text = shown(value)
+        return "" if text == "{}" else text
+    if hasattr(value, "__len__") and not isinstance(value, str):
+        items = [_shown(each) or str(each) for each in list(value)[:5]]
+        return f"[{', '.join(items)}{', ...' if len(value) > 5 else ''}]" if items else ""
+    return f"{value:g}" if isinstance(value, float) and value else str(value or "")
+
+
+def _names(value: Any) -> list[str]:
+    fields = getattr(value, "__dataclass_fields__", ())
+    return [name for name in fields if not name.startswith("__")]
