@@ -99,6 +99,16 @@ class ActionlibServer:
         self._served.close()
         for finish in list(self._ending.values()):
             finish()
+        self._leave()
+
+    def abandon(self) -> None:
+        """Stop what is under way and leave, without a word to clients: there is no way to them."""
+        if not self._closed:
+            self._served.abandon()
+            self._ending.clear()
+            self._leave()
+
+    def _leave(self) -> None:
         self._closed = True
         if self._timer is not None:
             self._timer.cancel()

@@ -37,7 +37,7 @@ from jacaros.ros.backends.rosbridge_parameters import BridgeParameters
 from jacaros.ros.backends.rosbridge_requests import Done, Requests
 from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
 from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
-from jacaros.ros.backends.rosbridge_types import BridgeSchema
+from jacaros.ros.backends.rosbridge_types import BridgeSchema, written_on_ros1
 from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread, post
@@ -203,13 +203,7 @@ class RosbridgeBackend(Node):
 
     def written_type(self, type_name: str) -> str:
         """A type in full form as the server writes it."""
-        package, _, name = type_name.split("/")
-        return f"{package}/{name}" if self.ros_version == 1 else type_name
-
-    def written_time(self) -> dict[str, int]:
-        """The time now, as ROS 1 writes it."""
-        now = self.clock.now()
-        return {"secs": int(now), "nsecs": int(now % 1.0 * 1e9)}
+        return written_on_ros1(type_name) if self.ros_version == 1 else type_name
 
     def settling(self, answer: asyncio.Future[Any]) -> Done:
         """What settles a future of the loop from another thread."""

@@ -7,20 +7,21 @@ each goal already, so a refused goal is aborted, with the reason in its result.
 """
 
 import uuid
-from collections.abc import Callable
 from typing import Any
 
 from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import TEXT_FIELDS, OneGoalOf, ServedGoals, text_of
+from jacaros.ros.backend import Sample
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_requests import LOOK_AGAIN, Sight
-from jacaros.ros.backends.rosbridge_topics import RawTopics
-from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
+from jacaros.ros.backends.rosbridge_topics import BridgeSubscription
+from jacaros.ros.errors import CallFailed, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
+from jacaros.ros.qos import QoS
 
-STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
+STATUS_TYPE, STATUS = "action_msgs/msg/GoalStatusArray", QoS(durability="transient_local", depth=100)
 _ALIVE, _CANCELING = (1, 2, 3), 3
 _ENDS = {4: GoalStatus.SUCCEEDED, 5: GoalStatus.CANCELED, 6: GoalStatus.ABORTED}
 _NUMBERS = {status: number for number, status in _ENDS.items()}
@@ -29,7 +30,6 @@ ACCEPTED_AFTER = 2.0
 """Seconds after which a goal counts as accepted that nobody refused: the bridge looks for a server for one of them."""
 CANCELED_AFTER = 1.0
 """Seconds within which a server that agrees to cancel has changed the goal's status."""
-LOST_LINK = "the connection to the rosbridge server was lost during goal {}; whether it goes on is not known"
 
 
 class _Sent:
@@ -95,8 +95,11 @@ class Ros2Goals:
         self._goals: dict[str, _Sent] = {}
         self._known: set[str] = set()
         self._watch = PresenceWatch(node, f"{sender.name}/_action/status", sender)
-        self._status = RawTopics(node)
-        self._status.listen(f"{sender.name}/_action/status", STATUS_TYPE, self._status_changed, latched=True)
+        self._status = BridgeSubscription(
+            node, f"{sender.name}/_action/status", STATUS_TYPE, self._status_changed, STATUS, None
+        )
+        node.members.add(self._status)
+        self._forget_hook = node.add_exit_hook(self._cancel_all)
 
     @property
     def offered(self) -> bool:
@@ -127,7 +130,7 @@ class Ros2Goals:
     def cancel_goal(self, goal_id: str) -> None:
         """Ask the server to cancel a goal."""
         sent = self._goals.get(goal_id)
-        self._node.send({"op": "cancel_action_goal", "id": goal_id, "action": self._sender.name})
+        self._ask_to_cancel(goal_id)
         if sent is not None:
             sent.cancel_asked = True
             self._node.clock.call_later(CANCELED_AFTER, lambda: self._cancel_is_overdue(goal_id))
@@ -139,17 +142,14 @@ class Ros2Goals:
 
     def close(self) -> None:
         """Leave."""
+        self._forget_hook()
         self._watch.stop()
         self._status.close()
 
-    def join(self) -> None:
-        """The link is up again; the status topic is subscribed with all others."""
-
-    def lost(self) -> None:
-        """The link is down, and with it all that the bridge knew of our goals."""
+    def _cancel_all(self) -> None:
+        """An exit hook: a process that ends leaves no robot driving to its goal."""
         for goal_id in list(self._goals):
-            self._sender.fail(goal_id, ServerLost(LOST_LINK.format(goal_id)))
-        self._known.clear()
+            self._ask_to_cancel(goal_id)
 
     # What the bridge tells, on the loop:
 
@@ -193,10 +193,13 @@ class Ros2Goals:
         else:
             self._sender.rejected(goal_id, text)
 
-    def _status_changed(self, message: Any) -> None:
-        seen: dict[str, int] = {}
-        for each in message.get("status_list", ()):
-            seen[str(each["goal_info"]["goal_id"]["uuid"])] = each["status"]
+    def _ask_to_cancel(self, goal_id: str) -> None:
+        self._node.send({"op": "cancel_action_goal", "id": goal_id, "action": self._sender.name})
+
+    def _status_changed(self, sample: Sample) -> None:
+        seen = {
+            bytes(each.goal_info.goal_id.uuid).hex(): int(each.status) for each in sample.message.status_list
+        }
         for key, number in seen.items():
             if key not in self._known and number in _ALIVE:
                 self._appeared(key)
@@ -243,19 +246,12 @@ class Ros2GoalService:
         self.name = name
         self._node = node
         self._type_name = type_name
-        self._make: Callable[[], ServedGoals] = lambda: ServedGoals(
-            node.factory, name, type_name, execute, policy, node.log
-        )
-        self._goals = self._make()
+        self._goals = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
+        node.send({"op": "advertise_action", "type": type_name, "action": name})
 
-    def join(self) -> None:
-        """Offer the action at a server that does not know us yet."""
-        self._node.send({"op": "advertise_action", "type": self._type_name, "action": self.name})
-
-    def lost(self) -> None:
+    def abandon(self) -> None:
         """The link is down: the bridge has told the clients that their goals are aborted, so they are."""
-        self._goals.close()
-        self._goals = self._make()
+        self._goals.abandon()
 
     def close(self) -> None:
         """Stop to offer the action."""

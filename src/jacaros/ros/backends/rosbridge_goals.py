@@ -1,33 +1,17 @@
 """Action clients and servers of `RosbridgeBackend`: the side of ROS 1 or that of ROS 2, as soon as it is known which."""
 
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.ros.action import ActionPolicy, Execute
-from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.backends.rosbridge_actionlib import Ros1Goals, Ros1GoalService
+from jacaros.ros.action_calling import GoalSender, GoalWire
+from jacaros.ros.actionlib_client import ActionlibWire
+from jacaros.ros.actionlib_server import ActionlibServer
+from jacaros.ros.backends.rosbridge_actionlib import ActionTopics
 from jacaros.ros.backends.rosbridge_actions import Ros2Goals, Ros2GoalService
 from jacaros.ros.backends.rosbridge_node import BridgeNode
-from jacaros.ros.errors import CallFailed
+from jacaros.ros.errors import CallFailed, ServerLost
 
-
-class _Goals(Protocol):
-    @property
-    def offered(self) -> bool: ...
-    def new_id(self) -> str: ...
-    def send_goal(self, goal_id: str, goal: Any) -> None: ...
-    def cancel_goal(self, goal_id: str) -> None: ...
-    def forget_goal(self, goal_id: str) -> None: ...
-    def close(self) -> None: ...
-    def join(self) -> None: ...
-    def lost(self) -> None: ...
-
-
-class _GoalService(Protocol):
-    def join(self) -> None: ...
-    def lost(self) -> None: ...
-    def close(self) -> None: ...
-    def goal(self, message: dict[str, Any]) -> None: ...
-    def cancel(self, goal_id: str) -> None: ...
+LOST_LINK = "the connection to the rosbridge server was lost during goal {}; whether it goes on is not known"
 
 
 class BridgeActionClient(GoalSender):
@@ -46,8 +30,9 @@ class BridgeActionClient(GoalSender):
         self._wire.join()
 
     def lost(self) -> None:
-        """The link is down."""
-        self._wire.lost()
+        """The link is down, and what a goal does meanwhile would be told to nobody."""
+        for goal_id in list(self._goals):
+            self.fail(goal_id, ServerLost(LOST_LINK.format(goal_id)))
 
     def close(self) -> None:
         """Give the client up."""
@@ -62,25 +47,23 @@ class _Wire:
         self._node = node
         self._sender = sender
         self._version = 0
-        self._goals: _Goals | None = None
+        self._fitting: GoalWire | None = None
 
     def join(self) -> None:
         if self._version != self._node.ros_version:
             self.close()
             self._version = self._node.ros_version
-            self._goals = (Ros1Goals if self._version == 1 else Ros2Goals)(self._node, self._sender)
-        elif self._goals is not None:
-            self._goals.join()
+            self._fitting = (
+                ActionlibWire(ActionTopics(self._node), self._sender)
+                if self._version == 1
+                else Ros2Goals(self._node, self._sender)
+            )
         if self._sender.busy:
             _ = self.offered  # begins to ask
 
-    def lost(self) -> None:
-        if self._goals is not None:
-            self._goals.lost()
-
     @property
     def offered(self) -> bool:
-        return self._goals is not None and self._goals.offered
+        return self._fitting is not None and self._node.connected and self._fitting.offered
 
     def new_id(self) -> str:
         return self._known.new_id()
@@ -92,18 +75,18 @@ class _Wire:
         self._known.cancel_goal(goal_id)
 
     def forget_goal(self, goal_id: str) -> None:
-        if self._goals is not None:
-            self._goals.forget_goal(goal_id)
+        if self._fitting is not None:
+            self._fitting.forget_goal(goal_id)
 
     def close(self) -> None:
-        if self._goals is not None:
-            self._goals.close()
+        if self._fitting is not None:
+            self._fitting.close()
 
     @property
-    def _known(self) -> _Goals:
-        if self._goals is None:
+    def _known(self) -> GoalWire:
+        if self._fitting is None or not self._node.attached:
             raise CallFailed(f"action {self._sender.name}: there is no connection to the rosbridge server")
-        return self._goals
+        return self._fitting
 
 
 class BridgeActionServer:
@@ -114,26 +97,23 @@ class BridgeActionServer:
     ) -> None:
         self.name = name
         self._node = node
-        self._arguments = (node, name, type_name, execute, policy)
-        self._version = 0
-        self._service: _GoalService | None = None
+        self._offer = (name, type_name, execute, policy)
+        self._service: ActionlibServer | Ros2GoalService | None = None
         if node.attached:
             self.join()
 
     def join(self) -> None:
-        """The link is up."""
-        if self._version != self._node.ros_version:
-            if self._service is not None:
-                self._service.close()
-            self._version = self._node.ros_version
-            self._service = (Ros1GoalService if self._version == 1 else Ros2GoalService)(*self._arguments)
-        if self._service is not None:
-            self._service.join()
+        """The link is up: offer the action."""
+        if self._node.ros_version == 1:
+            self._service = ActionlibServer(ActionTopics(self._node), *self._offer)
+        else:
+            self._service = Ros2GoalService(self._node, *self._offer)
 
     def lost(self) -> None:
-        """The link is down."""
+        """The link is down: clients see the action go away, so nothing is to go on behind their backs."""
         if self._service is not None:
-            self._service.lost()
+            self._service.abandon()
+            self._service = None
 
     def close(self) -> None:
         """Stop to offer the action."""
@@ -144,10 +124,10 @@ class BridgeActionServer:
 
     def goal(self, message: dict[str, Any]) -> None:
         """Take a goal of the bridge (ROS 2)."""
-        if self._service is not None:
+        if isinstance(self._service, Ros2GoalService):
             self._service.goal(message)
 
     def cancel(self, goal_id: str) -> None:
         """Take a request for cancelling of the bridge (ROS 2)."""
-        if self._service is not None:
+        if isinstance(self._service, Ros2GoalService):
             self._service.cancel(goal_id)

@@ -29,6 +29,9 @@ class Queue(Protocol):
     def put(self, item: Any) -> None:
         """Queue *item*."""
 
+    def close(self) -> None:
+        """Forget what waits and take nothing more."""
+
 
 class Sink(Protocol):
     """A subscription of ours."""
@@ -72,6 +75,9 @@ class Membership(Protocol):
 
     def number(self, operation: str, name: str) -> str:
         """An id for an operation; the server names it when it has something to say about it."""
+
+    def add(self, member: Member) -> None:
+        """Keep *member* until it is closed."""
 
     def drop(self, member: Member) -> None:
         """Forget a member that was closed."""
@@ -121,8 +127,8 @@ class BridgeNode(Protocol):
     def written_type(self, type_name: str) -> str:
         """A type in full form as the server writes it."""
 
-    def written_time(self) -> dict[str, int]:
-        """The time now, as ROS 1 writes it."""
+    def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
+        """Have *hook* called when the process stops."""
 
     def settling(self, answer: asyncio.Future[Any]) -> Done:
         """What settles a future of the loop from another thread."""

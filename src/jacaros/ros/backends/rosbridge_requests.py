@@ -16,8 +16,9 @@ T = TypeVar("T")
 Done = Callable[[dict[str, Any] | None, ServiceError | None], None]
 """Takes the fields of a response, or why there is none."""
 
-LOOK_AGAIN = 0.25
-"""Seconds after which what was seen of the graph is asked for again, when somebody wants to know."""
+LOOK_AGAIN, LOOK_STEADILY = 0.25, 1.0
+"""Seconds after which what was seen of the graph is asked for again, when somebody wants to know: while there is nothing to
+be seen, and when there is."""
 
 
 class Requests:
@@ -143,7 +144,8 @@ class Sight(Generic[T]):
     def value(self) -> T:
         """What was seen last; asks again when that is some time ago."""
         now = time.monotonic()
-        if not self.asking and now - self._asked >= LOOK_AGAIN:
+        pause = LOOK_STEADILY if self._value else LOOK_AGAIN
+        if not self.asking and now - self._asked >= pause:
             self._asked, self.asking = now, True
             self._requests.begin(self._service, self._arguments, self._seen)
         return self._value

@@ -31,7 +31,7 @@ class BridgeClient:
 
     @property
     def ready(self) -> bool:
-        """Whether somebody offers the service, as the bridge said a quarter of a second ago at most."""
+        """Whether somebody offers the service, as the bridge said a second ago at most."""
         return self._node.connected and self._offered.value
 
     def request(self, **fields: Any) -> Any:

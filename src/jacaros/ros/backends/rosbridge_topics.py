@@ -7,15 +7,13 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.rosbridge_node import BridgeNode, Feed, Sink
+from jacaros.ros.backends.rosbridge_node import BridgeNode, Queue, Sink
 from jacaros.ros.backends.rosbridge_requests import Sight
 from jacaros.ros.handoff import Handoff
 from jacaros.ros.names import message_type
 from jacaros.ros.qos import QoS
 from jacaros.ros.serving import published_message
 
-RAW_DEPTH = 300
-"""Messages of an action's topics that may wait for the loop."""
 _CONFLICT = re.compile(r"already established with type ([\w/]+)")
 """What the server says when a topic has another type."""
 
@@ -28,10 +26,13 @@ class BridgePublisher:
     worse than none.
     """
 
-    def __init__(self, node: BridgeNode, topic: str, type_name: str, qos: QoS) -> None:
+    def __init__(
+        self, node: BridgeNode, topic: str, type_name: str, qos: QoS, droppable: bool = True
+    ) -> None:
         self.topic = topic
         self._node = node
         self._type_name = type_name
+        self._droppable = droppable
         self._class = node.factory.message_class(type_name)
         self._qos = qos
         self._kept: deque[Any] = deque(maxlen=qos.depth if qos.durability == "transient_local" else 0)
@@ -45,7 +46,7 @@ class BridgePublisher:
 
     @property
     def subscription_count(self) -> int:
-        """How many nodes subscribe, as the bridge said a quarter of a second ago at most."""
+        """How many nodes subscribe, as the bridge said a second ago at most."""
         return self._subscribers.value if self._node.connected and not self._closed else 0
 
     def message(self, **fields: Any) -> Any:
@@ -94,7 +95,7 @@ class BridgePublisher:
 
     def _send(self, message: Any) -> bool:
         values = self._node.translator.encode(self._type_name, message)
-        return self._node.send({"op": "publish", "topic": self.topic, "msg": values}, droppable=True)
+        return self._node.send({"op": "publish", "topic": self.topic, "msg": values}, self._droppable)
 
 
 class TopicFeed:
@@ -183,6 +184,7 @@ class BridgeSubscription:
         callback: Callable[[Sample], None],
         qos: QoS,
         on_event: Callable[[TopicEvent], None] | None,
+        queue: Callable[[Callable[[Any], None]], Queue] | None = None,
     ) -> None:
         self.topic = topic
         self.depth = qos.depth
@@ -192,14 +194,16 @@ class BridgeSubscription:
         self._callback = callback
         self._on_event = on_event
         self._told: set[str] = set()
-        self.queue: Handoff[Any] = Handoff(node.loop, qos.depth, self._deliver)
+        self.queue: Queue = (
+            Handoff(node.loop, qos.depth, self._deliver) if queue is None else queue(self._deliver)
+        )
         self._feed = node.members.feed(topic, lambda: node.written_type(type_name))
         self._feed.add(self)
         self._closed = False
 
     @property
     def publisher_count(self) -> int:
-        """How many nodes publish, as the bridge said a quarter of a second ago at most."""
+        """How many nodes publish, as the bridge said a second ago at most."""
         return self._feed.publishers.value if self._node.connected and not self._closed else 0
 
     def close(self) -> None:
@@ -228,63 +232,3 @@ class BridgeSubscription:
             self.trouble(f"topic {self.topic}: a message is no {self._type_name}: {problem}")
         else:
             self._callback(self._node.sample(message, self.topic))
-
-
-class RawTopics:
-    """Subscriptions for the backend's own use, whose messages stay as the protocol writes them.
-
-    What comes on several topics is delivered in the order in which it came: the end of a goal not before its feedback.
-
-    Args:
-        node: subscribes.
-    """
-
-    def __init__(self, node: BridgeNode) -> None:
-        self._node = node
-        self._queue: Handoff[tuple[Callable[[Any], None], Any]] = Handoff(
-            node.loop, RAW_DEPTH, lambda item: item[0](item[1])
-        )
-        self._sinks: list[tuple[_RawSink, Feed]] = []
-
-    def listen(
-        self, topic: str, written_type: str, deliver: Callable[[Any], None], latched: bool = False
-    ) -> None:
-        """Have *deliver* called on the loop for each message, with *latched* also for the last one before."""
-        feed = self._node.members.feed(topic, lambda: written_type)
-        sink = _RawSink(self._node, self._queue, deliver, latched)
-        self._sinks.append((sink, feed))
-        feed.add(sink)
-
-    def close(self) -> None:
-        """Leave the topics."""
-        self._queue.close()
-        for sink, feed in self._sinks:
-            if feed.remove(sink):
-                self._node.members.drop_feed(feed)
-        self._sinks.clear()
-
-
-class _RawSink:
-    depth = RAW_DEPTH
-
-    def __init__(
-        self,
-        node: BridgeNode,
-        queue: Handoff[tuple[Callable[[Any], None], Any]],
-        deliver: Callable[[Any], None],
-        latched: bool,
-    ) -> None:
-        self.latched = latched
-        self._node = node
-        self._queue = queue
-        self._deliver = deliver
-
-    @property
-    def queue(self) -> "_RawSink":
-        return self
-
-    def put(self, item: Any) -> None:
-        self._queue.put((self._deliver, item))
-
-    def trouble(self, text: str) -> None:
-        self._node.log(text)

@@ -30,6 +30,12 @@ _ROS1_ONLY = {
     "string function\nuint32 line\nstring[] topics\n"
 }
 """Definitions of ROS 1 that we need ourselves."""
+_ACTIONLIB = {
+    "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{action}_Goal goal\n",
+    "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Result result\n",
+    "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Feedback feedback\n",
+}
+"""What actionlib wraps around the three parts of an action."""
 _NO_FIELD = "structure_needs_at_least_one_member"
 _INTEGER = re.compile(r"-?\d+")
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
@@ -51,6 +57,9 @@ class BridgeSchema(RosbagsSchema):
         self._told: dict[str, str] = {}
 
     def _definition(self, type_name: str, what: str, ending: str) -> str:
+        action, _, part = type_name.rpartition("_")
+        if part in _ACTIONLIB and "/action/" in action:
+            return _ACTIONLIB[part].format(action=action)
         try:
             return super()._definition(type_name, what, ending)
         except UnknownInterface as unknown:
@@ -79,6 +88,14 @@ class BridgeSchema(RosbagsSchema):
             for other in others:
                 self._told.setdefault(message_type(other["type"]), definition_text(other))
         return "---\n".join(parts)
+
+
+def written_on_ros1(type_name: str) -> str:
+    """A type in full form as ROS 1 writes it: ``std_msgs/String``, ``nav2_msgs/NavigateToPoseActionGoal``."""
+    package, kind, name = type_name.split("/")
+    if kind == "action":  # one of the messages that an action is made of
+        name = "".join(name.rsplit("_", 1))
+    return f"{package}/{name}"
 
 
 def definition_text(typedef: Mapping[str, Any]) -> str:
