@@ -28,9 +28,11 @@ FLAVOURS = ("ros1", "ros2")
 
 @pytest.fixture(params=FLAVOURS)
 def bridged(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
-    """A bridge of this test's own; the peer ``robot`` is a node behind it, the others are clients."""
+    """A bridge of this test's own; the peers ``robot`` and ``other_robot`` are nodes behind it, the others are clients."""
     need("rosbridge", request.config)
-    made = BehindBridge(f"rosbridge-{request.param}", BridgeServer(request.param), native=("robot",))
+    made = BehindBridge(
+        f"rosbridge-{request.param}", BridgeServer(request.param), native=("robot", "other_robot")
+    )
     yield made
     made.close()
 
@@ -159,15 +161,40 @@ def test_a_lost_link_loses_the_goals_under_way(bridged: BehindBridge) -> None:
     assert client.outcome("h", timeout=20)["status"] == "succeeded"
 
 
-def test_a_dead_action_server_behind_the_bridge_is_noticed(robot_of_ros2: BehindBridge) -> None:
+def test_an_action_server_that_goes_is_noticed_between_two_goals(robot_of_ros2: BehindBridge) -> None:
+    """During a goal rosapi takes the bridge's own client for a server."""
     graph = robot_of_ros2
     robot, client = graph.peer("robot"), graph.peer("client")
     robot.serve_action("/count")
-    client.send_goal("g", "/count", {"target": 1000, "period": 0.05}, timeout=20)
-    client.begin_outcome("g")
+    client.send_goal("g", "/count", {"target": 2, "period": 0.01}, timeout=20)
+    assert client.outcome("g", timeout=20)["status"] == "succeeded"
     graph.kill(robot)
-    with pytest.raises(ServerLost):
-        client.end_outcome("g")
+    graph.wait_until(lambda: not client.action_ready("/count"), "the loss is noticed")
+
+
+def test_a_goal_of_which_nothing_is_heard_fails(request: pytest.FixtureRequest) -> None:
+    """Servers older than actions say nothing at all of an operation that they do not know."""
+    need("rosbridge", request.config)
+    graph = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--without-actions"), native=("robot",))
+    try:
+        robot, client = graph.peer("robot"), graph.peer("client")
+        robot.serve_action("/count")
+        with pytest.raises(
+            CallFailed, match=r"nothing was heard of the goal .* does this rosbridge server know actions"
+        ):
+            client.send_goal("g", "/count", {"target": 2, "period": 0.01}, timeout=25)
+        assert robot.deeds("/count") == []
+    finally:
+        graph.close()
+
+
+def test_a_goal_is_cancelled_when_the_program_ends(bridged: BehindBridge) -> None:
+    server, client = bridged.peer("server"), bridged.peer("client")
+    server.serve_action("/count")
+    client.send_goal("g", "/count", {"target": 1000, "period": 0.05}, timeout=20)
+    bridged.wait_until(lambda: client.feedback("g"), "the goal is under way")
+    bridged.dispose(client)
+    bridged.wait_until(lambda: ["end", 1000, True] in server.deeds("/count"), "the goal is cancelled")
 
 
 def test_a_big_message_goes_both_ways(bridged: BehindBridge) -> None:
@@ -200,11 +227,55 @@ def test_a_topic_of_another_type_is_told(bridged: BehindBridge) -> None:
     client.subscribe("/a", STRING)
     bridged.wait_until(
         lambda: f"topic /a carries geometry_msgs/msg/Twist, not {STRING}" in client.log(),
-        "the server's refusal is passed on",
+        "the refusal, of which the server says nothing, is noticed",
+    )
+    client.advertise("/a", STRING)
+    bridged.wait_until(
+        lambda: any(
+            line.startswith("what is published there goes nowhere: topic /a") for line in client.log()
+        ),
+        "and that of the publisher",
     )
 
 
-def test_a_refused_message_is_told_once(bridged: BehindBridge) -> None:
+def test_a_topic_that_gets_the_right_type_is_joined_again(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.advertise("/a", "geometry_msgs/msg/Twist")
+    client.subscribe("/a", STRING)
+    bridged.wait_until(lambda: any("topic /a carries" in line for line in client.log()), "it is refused")
+    bridged.kill(robot)
+    second = bridged.peer("other_robot")
+    second.advertise("/a", STRING)
+
+    def arrives() -> bool:
+        second.publish("/a", {"data": "x"})
+        return {"data": "x"} in client.received("/a")
+
+    bridged.wait_until(arrives, "it is taken now")
+
+
+def test_a_type_that_the_robot_does_not_have_is_told(robot_of_ros2: BehindBridge, tmp_path: Any) -> None:
+    (tmp_path / "odd_msgs" / "msg").mkdir(parents=True)
+    (tmp_path / "odd_msgs" / "msg" / "Thing.msg").write_text("int8 size\n")
+    client = robot_of_ros2.peer("client", start=False, interface_paths=[str(tmp_path)])
+    client.start()
+    client.subscribe("/thing", "odd_msgs/msg/Thing")
+    robot_of_ros2.wait_until(
+        lambda: any("is odd_msgs/msg/Thing installed on the robot" in line for line in client.log()),
+        "the type is missing there",
+    )
+
+
+def test_a_refused_message_is_told_once_where_the_server_talks(request: pytest.FixtureRequest) -> None:
+    need("rosbridge", request.config)
+    bridged = BehindBridge("rosbridge-ros2", BridgeServer("ros2", "--talkative"), native=("robot",))
+    try:
+        _a_refused_message_is_told_once(bridged)
+    finally:
+        bridged.close()
+
+
+def _a_refused_message_is_told_once(bridged: BehindBridge) -> None:
     robot, client = bridged.peer("robot"), bridged.peer("client")
     robot.subscribe("/a", "geometry_msgs/msg/Twist")
     client.advertise("/a", STRING)

@@ -55,7 +55,7 @@ class Connection:
         message = json.loads(payload)
         operation, number = message.get("op"), message.get("id")
         method = getattr(self, f"_op_{operation}", None)
-        if method is None or (self.bridge.ros1 and operation in ACTION_OPERATIONS):
+        if method is None or (not self.bridge.knows_actions and operation in ACTION_OPERATIONS):
             self.status(
                 "error", f"Unknown operation: {operation}.  Allowed operations: ['advertise', ...]", number
             )
@@ -71,16 +71,19 @@ class Connection:
             self._write(json.dumps(message).encode())
 
     def status(self, level: str, text: str, number: str | None) -> None:
-        """Say something; only errors are said by default."""
+        """Say something, if the server is one that talks: rosbridge_suite keeps it for its own log."""
+        if not self.bridge.talkative:
+            return
         said = {"op": "status", "level": level, "msg": text}
         self.send(said | ({"id": number} if number is not None else {}))
 
     def close(self) -> None:
         """Give up all that the client had; goals that it has sent go on."""
         self._alive = False
-        for table in (self._publishers, self._subscriptions):
-            for _, member, _ in table.values():
-                member.close()
+        for _, publisher, _ in self._publishers.values():
+            self.bridge.unregister_later(publisher)
+        for _, subscription, _ in self._subscriptions.values():
+            subscription.close()
         for served in (*self._services.values(), *self._actions.values()):
             served.close()
 
@@ -142,8 +145,11 @@ class Connection:
             _, member, numbers = table[topic]
             numbers.discard(number or "")
             if number is None or not numbers:
-                member.close()
                 del table[topic]
+                if table is self._publishers:
+                    self.bridge.unregister_later(member)
+                else:
+                    member.close()
 
     def _require_type(self, topic: str, kind: str, ours: dict[str, tuple[str, Any, set[str]]]) -> None:
         known = ours[topic][0] if topic in ours else self.bridge.topic_type(topic)

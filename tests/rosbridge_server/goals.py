@@ -31,6 +31,8 @@ class SentGoals:
         self._bridge = bridge
         self._handles: dict[str, Any] = {}
         self._statuses: dict[str, dict[str, int]] = {}
+        self.under_way: list[str] = []
+        """Actions with a client of the bridge's own."""
 
     async def send(self, connection: "Connection", message: dict[str, Any]) -> None:
         """Send a goal and see it through, as the server's own thread for it does."""
@@ -55,6 +57,7 @@ class SentGoals:
             connection.send({"op": "action_feedback", "action": action, "values": values, "id": number})
 
         client = node.action_client(action, kind)
+        self.under_way.append(action)
         key = uuid.uuid4().bytes
         try:
             goal = from_json(node, goal_type(kind), message.get("args") or {}, False)
@@ -79,6 +82,7 @@ class SentGoals:
             pass  # the server died: the genuine bridge waits on, and says nothing
         finally:
             self._handles.pop(str(number), None)
+            self.under_way.remove(action)
 
     async def cancel(self, message: dict[str, Any]) -> None:
         """Ask for cancelling; the client is told nothing."""

@@ -1,7 +1,7 @@
 """The services of rosapi, the node beside a rosbridge server, for a graph inside the process."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +24,16 @@ class RosApi:
     Args:
         node: looks.
         ros1: answer as rosapi of ROS 1 does.
+        under_way: actions with clients that `Node.contents` does not tell.
 
     Attributes:
         master: the parameters of ROS 1, by absolute name.
         running: whether there is such a node.
     """
 
-    def __init__(self, node: Node, ros1: bool) -> None:
+    def __init__(self, node: Node, ros1: bool, under_way: Sequence[str] = ()) -> None:
         self._node = node
+        self._under_way = under_way
         self._ros1 = ros1
         self.master: dict[str, Any] = {}
         self.running = True
@@ -85,11 +87,8 @@ class RosApi:
         return {"nodes": [*(await self._contents()).nodes, "/rosapi"]}
 
     async def _publishers(self, topic: str) -> dict[str, Any]:
-        contents = await self._contents()
-        action = topic.removesuffix("/_action/status")
-        if action != topic:
-            return {"publishers": ["/server"] if action in contents.actions else []}
-        info = contents.topics.get(topic)
+        # The hidden topics of actions are not told, as in the genuine one.
+        info = (await self._contents()).topics.get(topic)
         return {"publishers": sorted({each.node for each in info.publishers}) if info else []}
 
     async def _subscribers(self, topic: str) -> dict[str, Any]:
@@ -105,7 +104,8 @@ class RosApi:
 
     async def _action_servers(self) -> dict[str, Any]:
         contents = await self._contents()
-        names = set(contents.actions)
+        # The genuine one goes by the names of topics, which a client alone makes too.
+        names = {*contents.actions, *self._under_way}
         for name in contents.topics:
             stem = name.removesuffix("/status")
             if all(f"{stem}/{part}" in contents.topics for part in ACTIONLIB):

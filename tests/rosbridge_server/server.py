@@ -14,7 +14,8 @@ import json
 import sys
 import tempfile
 import threading
-from collections.abc import Coroutine
+from collections import deque
+from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any
 
@@ -31,21 +32,36 @@ from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
 from jacaros.ros.handoff import post
 from jacaros.ros.node import NodeSettings
 
+DOING = 0.002
+"""Seconds after which what a client asks for is done."""
+UNREGISTER_TIMEOUT = 0.3
+"""Seconds for which a publisher stays after its client has left it (the server's parameter ``unregister_timeout``, 10)."""
+
 
 class Socket(WebSocketServerProtocol):  # type: ignore[misc]
     """The WebSocket of one client."""
 
     connection: Connection | None = None
+    waiting: deque[bytes]
 
     def onOpen(self) -> None:  # noqa: N802
+        self.waiting = deque()
         self.connection = Connection(self.factory.bridge, self._write)
         self.factory.bridge.connections[self.connection] = self
 
     def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
-        if self.connection is not None:
-            self.connection.receive(payload)
+        # As in the genuine server: a thread of its own does what is asked, and what it has not done is forgotten when the
+        # client leaves.
+        if not self.waiting:
+            asyncio.get_running_loop().call_later(DOING, self._do_all)
+        self.waiting.append(payload)
+
+    def _do_all(self) -> None:
+        while self.waiting and self.connection is not None:
+            self.connection.receive(self.waiting.popleft())
 
     def onClose(self, wasClean: bool, code: int, reason: str) -> None:  # noqa: N802, N803
+        self.waiting = deque()
         if self.connection is not None:
             self.factory.bridge.connections.pop(self.connection, None)
             self.connection.close()
@@ -58,14 +74,18 @@ class Socket(WebSocketServerProtocol):  # type: ignore[misc]
 class Bridge:
     """The server and its graph."""
 
-    def __init__(self, ros1: bool, folders: tuple[Path, ...]) -> None:
+    def __init__(
+        self, ros1: bool, folders: tuple[Path, ...], talkative: bool = False, knows_actions: bool = True
+    ) -> None:
         self.ros1 = ros1
+        self.talkative = talkative
+        self.knows_actions = knows_actions and not ros1
         self.frozen = False
         self.graph = MemoryGraph()
         settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=folders)
         self.node = MemoryBackend(settings, self.graph)
-        self.rosapi = RosApi(self.node, ros1)
         self.goals = SentGoals(self)
+        self.rosapi = RosApi(self.node, ros1, self.goals.under_way)
         self.connections: dict[Connection, Socket] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._server: asyncio.Server | None = None
@@ -99,6 +119,10 @@ class Bridge:
         task = asyncio.get_running_loop().create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    def unregister_later(self, publisher: Any) -> None:
+        """Take a publisher out of the graph some time after its client has left it."""
+        asyncio.get_running_loop().call_later(UNREGISTER_TIMEOUT, publisher.close)
 
     def topic_type(self, topic: str) -> str | None:
         """The type of a topic that is there."""
@@ -141,10 +165,10 @@ def reply(answer: dict[str, Any]) -> None:
     print("@" + json.dumps(answer), flush=True)
 
 
-async def serve(port: int, ros1: bool, folders: tuple[Path, ...]) -> None:
+async def serve(port: int, make: Callable[[], Bridge]) -> None:
     """Run until standard input ends."""
     loop = asyncio.get_running_loop()
-    bridge, peers = Bridge(ros1, folders), dict[str, Peer]()
+    bridge, peers = make(), dict[str, Peer]()
     await bridge.node.start()
     await bridge.start(port)
     reply({"port": bridge.port})
@@ -183,12 +207,17 @@ def main() -> None:
     parser.add_argument(
         "--interfaces", type=Path, action="append", default=[], help="a folder with definitions"
     )
+    parser.add_argument(
+        "--talkative", action="store_true", help="tell clients of refusals, as some other servers do"
+    )
+    parser.add_argument("--without-actions", action="store_true", help="be one of before actions")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         if options.flavour == "ros1":
             write_ros1_types(Path(folder))
         folders = (Path(folder), *options.interfaces)
-        run(lambda: serve(options.port, options.flavour == "ros1", folders), WallClock())
+        manner = (options.flavour == "ros1", folders, options.talkative, not options.without_actions)
+        run(lambda: serve(options.port, lambda: Bridge(*manner)), WallClock())
 
 
 if __name__ == "__main__":

@@ -52,6 +52,8 @@ FIRST_LOOK = 5.0
 """Seconds that starting waits for the first attempt to connect; a server that is not there refuses at once."""
 SENDING = 0.5
 """Seconds that closing waits for the messages published last to leave."""
+DOING = 1.0
+"""Seconds that closing waits until the server has done what it was sent last."""
 FETCHING = 3.0
 """Seconds that the loop may be held up by asking for a type that nobody here knows."""
 GREETINGS, GREETING_PAUSE = 6, 0.5
@@ -355,8 +357,8 @@ class RosbridgeBackend(Node):
             return  # a failed call is answered as well
         feed = self.members.feed_of(number)
         if feed is not None:
-            feed.refused(text)
-        elif number in self.goals and "Unknown operation" in text:
+            feed.refused(f"topic {feed.topic}: the rosbridge server refuses it: {text}")
+        elif number in self.goals and "nknown operation" in text:
             self.goals[number].refused(number, text)
         elif text not in self._told and not number.startswith("send_action_goal:"):
             self._told.add(text)
@@ -374,6 +376,9 @@ class RosbridgeBackend(Node):
         return f"the rosbridge server at {self.url} would be asked, but there is no connection to it"
 
     def _leave(self) -> None:
+        # A server forgets what it has received and not done yet when its client leaves; an answer says that all before it
+        # is done.
+        self.requests.call_blocking("/rosapi/get_time", {}, DOING)
         self._link.finish(SENDING)
 
 

@@ -26,8 +26,9 @@ _ALIVE, _CANCELING = (1, 2, 3), 3
 _ENDS = {4: GoalStatus.SUCCEEDED, 5: GoalStatus.CANCELED, 6: GoalStatus.ABORTED}
 _NUMBERS = {status: number for number, status in _ENDS.items()}
 """Numbers of ``action_msgs/msg/GoalStatus``."""
-ACCEPTED_AFTER = 2.0
-"""Seconds after which a goal counts as accepted that nobody refused: the bridge looks for a server for one of them."""
+TOLD_WITHIN = 10.0
+"""Seconds after which a goal of which nothing was heard was not sent: the bridge looks for a server for one of them."""
+UNTOLD = f"nothing was heard of the goal within {TOLD_WITHIN:g} s"
 CANCELED_AFTER = 1.0
 """Seconds within which a server that agrees to cancel has changed the goal's status."""
 
@@ -46,18 +47,18 @@ class PresenceWatch:
 
     Args:
         node: asks.
-        topic: the topic that every server of the action publishes.
         sender: is told when the server comes and goes.
     """
 
-    def __init__(self, node: BridgeNode, topic: str, sender: GoalSender) -> None:
+    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
         self._node = node
         self._sender = sender
+        # Who publishes the hidden topics of actions, and who serves their services, rosapi does not tell.
         self._sight = Sight(
             node.requests,
-            "/rosapi/publishers",
-            {"topic": topic},
-            lambda seen: bool(seen["publishers"]),
+            "/rosapi/action_servers",
+            {},
+            lambda seen: sender.name in seen["action_servers"],
             False,
         )
         self._known = False
@@ -94,7 +95,7 @@ class Ros2Goals:
         self._sender = sender
         self._goals: dict[str, _Sent] = {}
         self._known: set[str] = set()
-        self._watch = PresenceWatch(node, f"{sender.name}/_action/status", sender)
+        self._watch = PresenceWatch(node, sender)
         self._status = BridgeSubscription(
             node, f"{sender.name}/_action/status", STATUS_TYPE, self._status_changed, STATUS, None
         )
@@ -125,7 +126,7 @@ class Ros2Goals:
             raise CallFailed(f"action {sender.name}: there is no connection to the rosbridge server")
         self._goals[goal_id] = _Sent()
         node.goals[goal_id] = self
-        node.clock.call_later(ACCEPTED_AFTER, lambda: self._accept(goal_id))
+        node.clock.call_later(TOLD_WITHIN, lambda: self._expect_sign(goal_id))
 
     def cancel_goal(self, goal_id: str) -> None:
         """Ask the server to cancel a goal."""
@@ -165,7 +166,7 @@ class Ros2Goals:
     def result(self, goal_id: str, message: dict[str, Any]) -> None:
         """The end of a goal, or why it did not begin."""
         values, number = message.get("values"), message.get("status")
-        if not message.get("result", True):
+        if not message.get("result", True) and not (number in _ENDS and isinstance(values, dict)):
             self._refused(goal_id, str(values))
             return
         if number is None and isinstance(values, dict) and "status" in values:  # older servers
@@ -187,8 +188,10 @@ class Ros2Goals:
             self._sender.fail(goal_id, ServerUnavailable(f"nobody offers action {self._sender.name}"))
         elif "rejected" in text:
             self._sender.rejected(goal_id)
-        elif "Unknown operation" in text:
-            problem = f"action {self._sender.name}: this rosbridge server knows no actions; version 2 does"
+        elif "nknown operation" in text or text == UNTOLD:
+            problem = (
+                f"action {self._sender.name}: {text}: does this rosbridge server know actions? Version 2 does"
+            )
             self._sender.fail(goal_id, CallFailed(problem))
         else:
             self._sender.rejected(goal_id, text)
@@ -221,6 +224,13 @@ class Ros2Goals:
         if sent is not None and not sent.accepted:
             sent.accepted = True
             self._sender.accepted(goal_id)
+
+    def _expect_sign(self, goal_id: str) -> None:
+        """Servers that know no actions do not say so."""
+        sent = self._goals.get(goal_id)
+        if sent is not None and not sent.accepted:
+            self._ask_to_cancel(goal_id)
+            self._refused(goal_id, UNTOLD)
 
     def _cancel_is_overdue(self, goal_id: str) -> None:
         sent = self._goals.get(goal_id)

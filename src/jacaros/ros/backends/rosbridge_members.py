@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Callable
 
+from jacaros.ros.backends.rosbridge_admission import Admission
 from jacaros.ros.backends.rosbridge_node import BridgeNode, Member
 from jacaros.ros.backends.rosbridge_topics import TopicFeed
 
@@ -18,6 +19,7 @@ class Members:
         self._node = node
         self._members: list[Member] = []
         self._feeds: dict[str, TopicFeed] = {}
+        self.admission = Admission(node)
         self._numbers = itertools.count(1)
 
     def number(self, operation: str, name: str) -> str:
@@ -47,6 +49,7 @@ class Members:
         """Leave a topic: nobody here listens to it any more."""
         if self._feeds.get(feed.topic) is feed:
             del self._feeds[feed.topic]
+            self.admission.forget(feed)
             feed.leave()
 
     def feed_of(self, number: str) -> TopicFeed | None:
@@ -64,6 +67,8 @@ class Members:
 
     def lost(self) -> None:
         """The link is down; some have to act on it."""
+        for feed in list(self._feeds.values()):
+            feed.lost()
         for member in list(self._members):
             lost = getattr(member, "lost", None)
             if lost is not None:
@@ -71,6 +76,7 @@ class Members:
 
     def close(self) -> None:
         """Give all up."""
+        self.admission.close()
         for member in list(self._members):
             member.close()
         self._members.clear()

@@ -70,8 +70,22 @@ class Feed(Protocol):
         """Serve *sink* no more; True when it was the last."""
 
 
+class Admitting(Protocol):
+    """Looks whether the server took what it was asked for."""
+
+    def expect(self, asked: Any) -> None:
+        """*asked* was asked for just now."""
+
+    def forget(self, asked: Any) -> None:
+        """Nobody wants it any more."""
+
+
 class Membership(Protocol):
     """All that the node has at the server."""
+
+    @property
+    def admission(self) -> Admitting:
+        """Looks whether the server took what it was asked for."""
 
     def number(self, operation: str, name: str) -> str:
         """An id for an operation; the server names it when it has something to say about it."""

@@ -13,6 +13,9 @@ from jacaros.ros.errors import CallFailed, ServiceError, ServiceUnavailable
 
 T = TypeVar("T")
 
+_ABSENT = ("does not exist", "unavailable", "absent from")
+"""What servers say of a service that nobody offers."""
+
 Done = Callable[[dict[str, Any] | None, ServiceError | None], None]
 """Takes the fields of a response, or why there is none."""
 
@@ -105,7 +108,7 @@ class Requests:
 def _failure(service: str, text: object) -> ServiceError:
     """Translate the server's words; it has no other way to tell."""
     words = str(text)
-    if "does not exist" in words or "unavailable" in words:
+    if any(sign in words for sign in _ABSENT):
         return ServiceUnavailable(f"nobody offers service {service}: {words}")
     return CallFailed(f"service {service}: {words}")
 

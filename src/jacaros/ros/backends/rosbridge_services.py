@@ -13,7 +13,7 @@ from jacaros.ros.waiting import within
 _NOT_OUR_DEFINITION = ("does not have a field", "message requires a", "Expected a JSON object")
 """What the server says of a request whose fields are others in its definition."""
 
-FOR_EVER = 0.0
+FOR_EVER = 86400.0
 """The time-out of a call without one, for servers that would choose five seconds themselves."""
 
 
@@ -54,7 +54,8 @@ class BridgeClient:
         node.require_connection(self.name)
         answer = self._pending.new()
         arguments = node.translator.encode(request_type(self._type_name), message)
-        number = node.requests.begin(self.name, arguments, node.settling(answer), rest or FOR_EVER)
+        patience = FOR_EVER if rest is None else rest
+        number = node.requests.begin(self.name, arguments, node.settling(answer), patience)
         try:
             with ServerWatch(node.clock, self.name, answer, lambda: self._offered.value):
                 values = await within(node.clock, answer, rest)

@@ -1,6 +1,5 @@
 """Topics through the bridge."""
 
-import re
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -10,12 +9,8 @@ from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.backends.rosbridge_node import BridgeNode, Queue, Sink
 from jacaros.ros.backends.rosbridge_requests import Sight
 from jacaros.ros.handoff import Handoff
-from jacaros.ros.names import message_type
 from jacaros.ros.qos import QoS
 from jacaros.ros.serving import published_message
-
-_CONFLICT = re.compile(r"already established with type ([\w/]+)")
-"""What the server says when a topic has another type."""
 
 
 class BridgePublisher:
@@ -37,6 +32,7 @@ class BridgePublisher:
         self._qos = qos
         self._kept: deque[Any] = deque(maxlen=qos.depth if qos.durability == "transient_local" else 0)
         self._closed = False
+        self._told: set[str] = set()
         self._subscribers = Sight(
             node.requests, "/rosapi/subscribers", {"topic": topic}, lambda seen: len(seen["subscribers"]), 0
         )
@@ -69,6 +65,7 @@ class BridgePublisher:
         if not self._closed:
             self._closed = True
             self._node.members.drop(self)
+            self._node.members.admission.forget(self)
             self._node.send({"op": "unadvertise", "id": self._number, "topic": self.topic})
 
     def join(self) -> None:
@@ -78,7 +75,7 @@ class BridgePublisher:
             "op": "advertise",
             "id": self._number,
             "topic": self.topic,
-            "type": self._node.written_type(self._type_name),
+            "type": self.written_type(),
             "latch": qos.durability == "transient_local",
             "queue_size": qos.depth,
         }
@@ -90,8 +87,19 @@ class BridgePublisher:
                 "durability": qos.durability,
             }
         self._node.send(operation)
+        self._node.members.admission.expect(self)
         for message in self._kept:
             self._send(message)
+
+    def written_type(self) -> str:
+        """The type as the server writes it."""
+        return self._node.written_type(self._type_name)
+
+    def refused(self, text: str) -> None:
+        """The server does not publish for us; on the loop."""
+        if text not in self._told:
+            self._told.add(text)
+            self._node.log(f"what is published there goes nowhere: {text}")
 
     def _send(self, message: Any) -> bool:
         values = self._node.translator.encode(self._type_name, message)
@@ -107,7 +115,7 @@ class TopicFeed:
 
     def __init__(self, node: BridgeNode, topic: str, written_type: Callable[[], str]) -> None:
         self.topic = topic
-        self._written_type = written_type
+        self.written_type = written_type
         self.number = node.members.number("subscribe", topic)
         self._node = node
         self._lock = threading.Lock()
@@ -124,10 +132,11 @@ class TopicFeed:
             self._sinks = (*self._sinks, sink)
             if sink.latched and self._last is not None:
                 sink.queue.put(self._last)
-        if sink.depth > self._depth:
-            self._depth = sink.depth
-            if self._node.attached:
-                self.join()
+        self._depth = max(self._depth, sink.depth)
+        # Once only, though a longer queue would be right for a later sink: to a client that subscribes again the server
+        # sends the next message twice, and the latched one again.
+        if len(self._sinks) == 1 and self._node.attached:
+            self.join()
 
     def remove(self, sink: Sink) -> bool:
         """Serve *sink* no more; True when it was the last."""
@@ -136,17 +145,23 @@ class TopicFeed:
             return not self._sinks
 
     def join(self) -> None:
-        """Subscribe at a server that does not know us yet, or with a longer queue."""
+        """Subscribe at a server that does not know us yet."""
         # Without qos: the server then chooses what goes with all publishers that it sees.
         self._node.send(
             {
                 "op": "subscribe",
                 "id": self.number,
                 "topic": self.topic,
-                "type": self._written_type(),
+                "type": self.written_type(),
                 "queue_length": self._depth,
             }
         )
+        self._node.members.admission.expect(self)
+
+    def lost(self) -> None:
+        """The link is down: what is latched comes again, and may be another then."""
+        with self._lock:
+            self._last = None
 
     def leave(self) -> None:
         """Unsubscribe at the server."""
@@ -161,11 +176,6 @@ class TopicFeed:
 
     def refused(self, text: str) -> None:
         """The server does not give us the topic; on the loop."""
-        conflict = _CONFLICT.search(text)
-        if conflict is not None:
-            text = f"topic {self.topic} carries {message_type(conflict[1])}, not {message_type(self._written_type())}"
-        else:
-            text = f"topic {self.topic}: the rosbridge server refuses it: {text}"
         for sink in self._sinks:
             sink.trouble(text)
 
