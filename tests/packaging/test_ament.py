@@ -1,5 +1,6 @@
 """The repository as an ament_python package: what colcon would ask of it, without colcon."""
 
+import ast
 import shutil
 import subprocess
 import sys
@@ -54,6 +55,29 @@ def test_package_xml_is_what_the_ros_tools_expect(request: pytest.FixtureRequest
 def test_setup_py_knows_the_package(tree: Path) -> None:
     assert setup(tree, "--name") == "jacaros"
     assert setup(tree, "--version") == "0.1.0"
+
+
+READING = """
+import setuptools
+from distutils.core import run_setup
+dist = run_setup("setup.py", script_args=("--dry-run",), stop_after="config")
+skipped = ("cmdclass", "distclass", "ext_modules", "metadata", *dist.display_option_names)
+data = {key: value for key, value in vars(dist).items() if key[0] != "_" and not callable(value) and key not in skipped}
+skipped = ("license_files", "provides_extras")
+data["metadata"] = {key: value for key, value in vars(dist.metadata).items() if key not in skipped}
+print(repr(data))
+"""
+"""What colcon runs to learn about a package (colcon-python-setup-py 0.2.9), in few words."""
+
+
+def test_what_setup_py_says_of_itself_are_literals(tree: Path) -> None:
+    call = [sys.executable, "-W", "ignore", "-c", READING]
+    done = subprocess.run(call, cwd=tree, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    data = ast.literal_eval(done.stdout.splitlines()[-1])
+    assert data["metadata"]["name"] == "jacaros"
+    assert data["python_requires"] == ">=3.11"
+    assert ("share/jacaros", ["package.xml"]) in data["data_files"]
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.replay import write_replay
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
+from jacaros.inspector.watch_of import watch_of
 from jacaros.mas.console import Console
 from jacaros.mas.system import System
 from jacaros.sim import World
@@ -43,15 +44,13 @@ class Watching:
         world = mas.ros.world
         if self._outputs.ground_truth is not None:
             self._ground_truth = _ground_truth_file(self._outputs.ground_truth, world, mas)
-        drawing = world.description.drawing() if world is not None else {}
         watchers: list[Watcher] = []
         if self._recorder is not None:
-            self._recorder.world(drawing)
             watchers.append(self._recorder)
         if self._outputs.view:
-            self._view = TerminalView(drawing)
+            self._view = TerminalView()
             watchers.append(self._view)
-        self._watch = Watch(mas.clock, watchers, world)
+        self._watch = watch_of(mas, watchers, world)
         self._watch.start()
         news = GoalNews(partial(self._watch.event, "goal"))
         for host in mas.directory:

@@ -9,7 +9,7 @@ from jacaros.inspector.goal_news import GoalNews
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import write_replay
-from jacaros.inspector.watch import Watch
+from jacaros.inspector.watch_of import watch_of
 from jacaros.mas.embedding.mas import Mas
 
 
@@ -37,12 +37,9 @@ def record(
         OSError: a file cannot be written.
         RunEnded: the system does not run.
     """
-    world = mas.world
-    drawing = world.description.drawing() if world is not None else {}
     keep = replay is not None or path is None
     recorder = Recorder(path, keep=keep)
-    recorder.world(drawing)
-    watch = Watch(mas.clock, [recorder], world)
+    watch = watch_of(mas.system, [recorder], mas.world)
     watch.start()
     directory = mas.system.directory
     news = GoalNews(partial(watch.event, "goal"))

@@ -18,6 +18,9 @@ events of the world       ``robot`` and what `jacaros.sim.ground_truth.Event` sa
 ========================  ==========================================================================
 
 Others are kept, and shown by their kind.
+
+On a real graph the world is what the graph tells, and may come late, or more than once: the last line that describes one
+counts, and robots that are found later are behind the others in the rows of frames.
 """
 
 import json
@@ -54,7 +57,7 @@ class Recorder:
         self._held: Frame | None = None
 
     def world(self, drawing: Mapping[str, Any]) -> None:
-        """The world, as `jacaros.sim.WorldDescription.drawing` gives it; once, before everything else."""
+        """The world, as `jacaros.sim.WorldDescription.drawing` gives it, before everything else; the last one counts."""
         self.recording.world = dict(drawing)
         self._write({"kind": "world", "version": VERSION, "world": dict(drawing)})
 

@@ -52,17 +52,18 @@ class Recording:
             OSError: the file cannot be read.
             JacarosError: it is no recording.
         """
-        recording = cls()
+        recording, described = cls(), False
         lines = Path(path).read_text(encoding="utf-8").splitlines()
         for number, line in enumerate(lines, 1):
             try:
                 record = json.loads(line)
                 recording._take(record)
+                described = described or record["kind"] == "world"
             except (ValueError, KeyError, TypeError) as error:
                 if number == len(lines) and isinstance(error, json.JSONDecodeError):
                     break
                 raise JacarosError(f"{path}:{number}: this is no line of a recording ({error})") from None
-        if not recording.world:
+        if not described:
             raise JacarosError(f"{path} is no recording: no line of it describes a world")
         return recording
 

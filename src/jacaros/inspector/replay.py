@@ -48,9 +48,7 @@ def payload(recording: Recording) -> dict[str, Any]:
     }
     world.update(recording.world)
     radii = {robot["name"]: robot.get("radius", 0.17) for robot in recording.world.get("robots", [])}
-    columns = [
-        list(zip(*rows, strict=True)) for rows in zip(*(f.robots for f in recording.frames), strict=True)
-    ]
+    columns = [list(zip(*rows, strict=True)) for rows in _rows(recording)]
     return {
         "world": world,
         "duration": round(recording.duration, 3),
@@ -70,6 +68,16 @@ def payload(recording: Recording) -> dict[str, Any]:
         "texts": [[round(t, 3), agent, text] for t, agent, text in recording.texts],
         "events": [[round(t, 3), kind, data] for t, kind, data in recording.events],
     }
+
+
+def _rows(recording: Recording) -> list[list[tuple[Any, ...]]]:
+    """The rows of each robot, one for each frame; a robot that was found late stands before that where it was found."""
+    found = []
+    for index in range(max((len(frame.robots) for frame in recording.frames), default=0)):
+        rows = [frame.robots[index] if index < len(frame.robots) else None for frame in recording.frames]
+        first = next(row for row in rows if row is not None)
+        found.append([first if row is None else row for row in rows])
+    return found
 
 
 def _differences(values: Iterable[float], scale: int) -> list[int]:

@@ -4,9 +4,15 @@ from typing import NamedTuple
 
 from jacaros.sim import World
 
+UNKNOWN = -1.0
+"""The level of a battery that nobody tells of."""
+
 
 class RobotView(NamedTuple):
-    """A robot at one moment: true pose (metres, radians), battery (percent) and what happens to it."""
+    """A robot at one moment: pose (metres, radians), battery (percent, or `UNKNOWN`) and what happens to it.
+
+    Of the embedded world the true pose, of a robot on a real graph the one that it believes in.
+    """
 
     name: str
     x: float

@@ -18,7 +18,7 @@ from rich.live import Live
 from rich.text import Text
 
 from jacaros.inspector.braille import BrailleMap, character, draw_world
-from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.robot_view import UNKNOWN, RobotView
 
 FRAME_PERIOD = 0.1
 """Seconds between two pictures, on the wall."""
@@ -34,18 +34,16 @@ class TerminalView:
     """Shows a run; told of it like a recorder, see `jacaros.inspector.watch.Watcher`.
 
     Args:
-        world: the drawing of the world.
         console: where to draw; standard error by default.
         wall: seconds on the wall.
     """
 
     def __init__(
         self,
-        world: Mapping[str, Any],
         console: Console | None = None,
         wall: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._drawing = world
+        self._drawing: Mapping[str, Any] = {}
         self._console = console if console is not None else Console(stderr=True)
         self._wall = wall
         self._live: Live | None = None
@@ -65,6 +63,11 @@ class TerminalView:
     def takes_prints(self) -> bool:
         """True when agents' prints must go through `text` alone, since stdout is the terminal drawn on."""
         return self._console.is_terminal and sys.stdout.isatty()
+
+    def world(self, drawing: Mapping[str, Any]) -> None:
+        """The world; when it is another one than before, the path so far is lost."""
+        self._drawing = drawing
+        self._size = (0, 0)
 
     def frame(self, t: float, robots: Sequence[RobotView]) -> None:
         """The robots at a moment; most calls draw nothing."""
@@ -123,7 +126,9 @@ class TerminalView:
     def line(self) -> Text:
         """The run in one line."""
         robots = "  ".join(
-            f"{robot.name} ({robot.x:.2f}, {robot.y:.2f}) {robot.battery:.0f} %" for robot in self._robots
+            f"{robot.name} ({robot.x:.2f}, {robot.y:.2f})"
+            + (f" {robot.battery:.0f} %" if robot.battery != UNKNOWN else "")
+            for robot in self._robots
         )
         return Text(f"t {self._t:.1f} s  ×{self._factor:.0f}  {robots}{self._goal_text()}")
 
@@ -131,7 +136,7 @@ class TerminalView:
         """The whole view."""
         head = Text(f"{self._drawing.get('name', '')}  ", style="bold")
         head.append(f"{_minutes(self._t)}  ×{self._factor:.0f}", style="not bold dim")
-        # Robots of another process, or real ones: there is nothing to draw, but goals and prints are worth a look.
+        # Where nothing is known of a world, goals and prints are worth a look all the same.
         rows = [head, self._map()] if self._drawing else [head]
         rows += [self._gauge(robot, i) for i, robot in enumerate(self._robots)]
         if self._goals:
@@ -189,13 +194,14 @@ class TerminalView:
         return marks
 
     def _gauge(self, robot: RobotView, index: int) -> Text:
-        full = round(robot.battery / 5)
+        full = round(max(0.0, robot.battery) / 5)
         colour = "green" if robot.battery > 50 else "yellow" if robot.battery > 20 else "red"
         text = Text(no_wrap=True, overflow="ellipsis")
         text.append(f"{robot.name} ", style=f"bold {_COLOURS[index % len(_COLOURS)]}")
-        text.append("█" * full, style=colour)
-        text.append("░" * (20 - full), style="dim")
-        text.append(f" {robot.battery:3.0f} %")
+        if robot.battery != UNKNOWN:
+            text.append("█" * full, style=colour)
+            text.append("░" * (20 - full), style="dim")
+            text.append(f" {robot.battery:3.0f} %")
         text.append(" charging" if robot.charging else "", style="green")
         text.append(" touching" if robot.touching else "", style="red")
         text.append(f"  ({robot.x:.2f}, {robot.y:.2f})", style="dim")

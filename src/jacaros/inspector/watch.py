@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from jacaros.clock import Clock, Timer
-from jacaros.inspector.robot_view import RobotView, views_of
-from jacaros.sim import World
+from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.scene import Scene
+from jacaros.sim import GroundTruth
 from jacaros.sim.ground_truth import Record
 
 PERIOD = 0.1
@@ -13,6 +14,9 @@ PERIOD = 0.1
 
 class Watcher(Protocol):
     """What is told of a run: a `jacaros.inspector.recorder.Recorder` or a view."""
+
+    def world(self, drawing: Mapping[str, Any]) -> None:
+        """The world, before everything else; once more when more of it is known."""
 
     def frame(self, t: float, robots: list[RobotView]) -> None:
         """The robots at a moment, *t* seconds after the run began."""
@@ -32,25 +36,46 @@ class Watch:
     Args:
         clock: the run's clock; ``t`` counts from now.
         watchers: who is told.
-        world: the embedded world, None when the robots are elsewhere.
+        scene: the world that is looked at, None when there is none; it is closed at the end.
+        truth: whose events are passed on, None when nobody knows what truly happens.
     """
 
-    def __init__(self, clock: Clock, watchers: list[Watcher], world: World | None = None) -> None:
-        self.clock, self.watchers, self.world = clock, watchers, world
+    def __init__(
+        self,
+        clock: Clock,
+        watchers: list[Watcher],
+        scene: Scene | None = None,
+        truth: GroundTruth | None = None,
+    ) -> None:
+        self.clock, self.watchers = clock, watchers
         self.beginning = clock.now()
+        self._scene = scene
+        self._drawing: Mapping[str, Any] | None = None
         self._timer: Timer | None = None
-        self._stop_listening = world.ground_truth.listen(self._listen) if world is not None else None
+        self._stop_listening = truth.listen(self._listen) if truth is not None else None
 
     def start(self) -> None:
         """Begin to look."""
+        self._drawing = self._scene.drawing() if self._scene is not None else None
+        self._show_world(self._drawing or {})
         self._look()
+
+    def _show_world(self, drawing: Mapping[str, Any]) -> None:
+        for watcher in self.watchers:
+            watcher.world(drawing)
 
     def _look(self) -> None:
         self._timer = self.clock.call_later(PERIOD, self._look)
         self._frame()
 
     def _frame(self) -> None:
-        robots = views_of(self.world) if self.world is not None else []
+        robots: list[RobotView] = []
+        if self._scene is not None:
+            drawing = self._scene.drawing()
+            if drawing is not self._drawing and drawing is not None:
+                self._drawing = drawing
+                self._show_world(drawing)
+            robots = self._scene.robots()
         t = self.t()
         for watcher in self.watchers:
             watcher.frame(t, robots)
@@ -79,6 +104,8 @@ class Watch:
             self._timer.cancel()
             self._timer = None
             self._frame()
+            if self._scene is not None:
+                self._scene.close()
         if self._stop_listening is not None:
             self._stop_listening()
             self._stop_listening = None

@@ -5,7 +5,7 @@ them, and viewers draw them.
 """
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from jacaros.sim.trigonometry import PI
 
@@ -165,7 +165,7 @@ class WorldDescription:
     robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
     seed: int = 0
 
-    def drawing(self) -> dict[str, object]:
+    def drawing(self) -> dict[str, Any]:
         """All that a viewer needs to draw the world, as plain JSON data."""
         return {
             "name": self.name,

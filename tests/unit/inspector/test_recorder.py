@@ -9,6 +9,7 @@ from jacaros.errors import JacarosError
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.robot_view import RobotView
+from jacaros.inspector.scene import EmbeddedScene
 from jacaros.inspector.watch import Watch
 from jacaros.ros.open import open_backend
 from jacaros.sim import SimNode, World
@@ -96,8 +97,7 @@ def watched_run() -> tuple[Recorder, World]:
         await backend.start()
         node = SimNode(world, backend, clock)
         node.start()
-        recorder.world(world.description.drawing())
-        watch = Watch(clock, [recorder], world)
+        watch = Watch(clock, [recorder], EmbeddedScene(world), world.ground_truth)
         watch.start()
         publisher = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
         for _ in range(20):

@@ -26,7 +26,9 @@ def view_of(world: str = "house", terminal: bool = True) -> tuple[TerminalView, 
     out = io.StringIO()
     console = Console(file=out, force_terminal=terminal, width=80, height=36)
     wall = Wall()
-    return TerminalView(World.load(world).description.drawing(), console, wall), wall, out, console
+    view = TerminalView(console, wall)
+    view.world(World.load(world).description.drawing())
+    return view, wall, out, console
 
 
 def robot(x: float = 0.0, y: float = 0.0, yaw: float = 0.0, **more: Any) -> RobotView:
@@ -111,7 +113,7 @@ def test_without_a_terminal_there_is_a_plain_line_now_and_then() -> None:
 
 
 def test_without_a_world_there_are_goals_and_prints() -> None:
-    view = TerminalView({}, Console(file=io.StringIO(), force_terminal=True, width=80), Wall())
+    view = TerminalView(Console(file=io.StringIO(), force_terminal=True, width=80), Wall())
     view.event(0.0, "goal", {"agent": "a", "goal": "!go", "state": "pursued"})
     view.text(0.0, "a", "on the way")
     view.frame(1.0, [])

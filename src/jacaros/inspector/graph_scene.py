@@ -1,0 +1,167 @@
+"""What a real graph tells of the world: its map, where the robots believe to be, and their batteries."""
+
+import asyncio
+import contextlib
+import math
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+from jacaros.clock import Clock
+from jacaros.inspector.map_drawing import map_drawing
+from jacaros.inspector.robot_view import UNKNOWN, RobotView
+from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
+from jacaros.ros.errors import RosError, TransformUnavailable
+from jacaros.ros.graph import GraphContents
+from jacaros.ros.message import constant
+from jacaros.ros.qos import QoS
+from jacaros.ros.transform import Transform
+from jacaros.sim.description import Rectangle, WorldDescription
+
+LOOK_PERIOD = 3.0
+"""Seconds between two looks for robots and maps that are new in the graph."""
+MAP_PERIOD = 5.0
+"""A map that is being made is drawn anew so often, in seconds."""
+MAP = "map"
+_ODOMETRY, _BATTERY, _GRID = (
+    "nav_msgs/msg/Odometry",
+    "sensor_msgs/msg/BatteryState",
+    "nav_msgs/msg/OccupancyGrid",
+)
+_LATCHED = QoS(durability="transient_local", depth=1)
+_NEWEST = QoS(reliability="best_effort", depth=1)
+"""Suits publishers that are reliable and those that are not."""
+_FLOOR = 3.0
+
+
+class SeenRobot:
+    """A robot whose odometry is in the graph.
+
+    Attributes:
+        name: what it is called.
+        odometry, battery: the newest messages, None before the first ones.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.odometry: Any = None
+        self.battery: Any = None
+
+    def hear_battery(self, sample: Sample) -> None:
+        """Keep the newest message."""
+        self.battery = sample.message
+
+    def pose(self, backend: Backend) -> Transform:
+        """Where it is: its odometry, put right by what localisation says, where there is one."""
+        message = self.odometry
+        place, turn = message.pose.pose.position, message.pose.pose.orientation
+        pose = Transform((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
+        if TRANSFORMS in backend.capabilities:
+            with contextlib.suppress(TransformUnavailable):
+                return backend.tf_lookup(MAP, message.header.frame_id.strip("/")).after(pose)
+        return pose
+
+    def view(self, backend: Backend) -> RobotView:
+        """How it is shown."""
+        pose = self.pose(backend)
+        x, y, _ = pose.translation
+        return RobotView(self.name, x, y, pose.yaw, self._percent(), self._charging())
+
+    def _percent(self) -> float:
+        share = UNKNOWN if self.battery is None else float(self.battery.percentage)
+        if not math.isfinite(share) or share < 0.0:
+            return UNKNOWN
+        # By its definition 0 to 1; there are drivers that say percent.
+        return min(100.0, share if share > 1.0 else 100.0 * share)
+
+    def _charging(self) -> bool:
+        message = self.battery
+        return message is not None and message.power_supply_status == constant(
+            message, "POWER_SUPPLY_STATUS_CHARGING"
+        )
+
+
+class GraphScene:
+    """Looks at a real graph: ``map``, and for every ``odom`` a robot, each below any namespace.
+
+    Args:
+        backend: our node; it is started already.
+        clock: paces the looking.
+        name: what the drawing is called.
+    """
+
+    def __init__(self, backend: Backend, clock: Clock, name: str = "") -> None:
+        self._backend, self._clock, self._name = backend, clock, name
+        self._robots: dict[str, SeenRobot] = {}
+        self._shown: list[SeenRobot] = []
+        self._subscriptions: dict[str, Subscription] = {}
+        self._map: Any = None
+        self._drawn: Any = None
+        self._drawn_at = -math.inf
+        self._drawing: dict[str, Any] | None = None
+        self._task = asyncio.get_running_loop().create_task(self._keep_looking())
+
+    def drawing(self) -> Mapping[str, Any] | None:
+        """The map, drawn anew now and then while it changes, and the robots."""
+        now = self._clock.now()
+        if self._map is not self._drawn and abs(now - self._drawn_at) >= MAP_PERIOD:
+            self._drawn, self._drawn_at = self._map, now
+            self._drawing = map_drawing(self._map, self._name)
+        if self._drawing is None and self._shown:
+            self._drawing = self._floor()
+        if self._drawing is not None and len(self._drawing["robots"]) < len(self._shown):
+            self._drawing = {**self._drawing, "robots": [{"name": robot.name} for robot in self._shown]}
+        return self._drawing
+
+    def _floor(self) -> dict[str, Any]:
+        """Without a map: an open floor around where the first robot is."""
+        x, y, _ = self._shown[0].pose(self._backend).translation
+        bounds = Rectangle(x - _FLOOR, y - _FLOOR, x + _FLOOR, y + _FLOOR)
+        return WorldDescription(self._name, bounds, robots=()).drawing()
+
+    def robots(self) -> list[RobotView]:
+        """The robots where they believe to be."""
+        return [robot.view(self._backend) for robot in self._shown]
+
+    def close(self) -> None:
+        """Leave the topics."""
+        self._task.cancel()
+        for subscription in self._subscriptions.values():
+            subscription.close()
+
+    async def _keep_looking(self) -> None:
+        if TRANSFORMS in self._backend.capabilities:
+            self._backend.tf_listen()
+        while True:
+            with contextlib.suppress(RosError):  # the graph may be gone for a while
+                self._join(await self._backend.contents())
+            await self._clock.sleep(LOOK_PERIOD)
+
+    def _join(self, contents: GraphContents) -> None:
+        """Listen to what is new."""
+        topics = contents.topics
+        found = [name for name, info in sorted(topics.items()) if info.publishers]
+        maps = [name for name in found if _GRID in topics[name].types and name.endswith("/map")]
+        if maps and not any(name in self._subscriptions for name in maps):
+            self._listen(min(maps, key=len), _GRID, self._hear_map, _LATCHED)
+        for name in found:
+            if _ODOMETRY in topics[name].types and name.endswith("/odom"):
+                namespace = name.removesuffix("/odom")
+                robot = self._robots.setdefault(namespace, SeenRobot(namespace.strip("/") or "robot"))
+                self._listen(name, _ODOMETRY, partial(self._hear_odometry, robot), _NEWEST)
+                battery = f"{namespace}/battery_state"
+                if battery in topics and _BATTERY in topics[battery].types:
+                    self._listen(battery, _BATTERY, robot.hear_battery, _NEWEST)
+
+    def _listen(self, topic: str, type_name: str, hear: Any, qos: QoS) -> None:
+        if topic not in self._subscriptions:
+            with contextlib.suppress(RosError):
+                self._subscriptions[topic] = self._backend.subscription(topic, type_name, hear, qos)
+
+    def _hear_odometry(self, robot: SeenRobot, sample: Sample) -> None:
+        if robot.odometry is None:
+            self._shown.append(robot)
+        robot.odometry = sample.message
+
+    def _hear_map(self, sample: Sample) -> None:
+        self._map = sample.message

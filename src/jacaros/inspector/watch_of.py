@@ -1,0 +1,19 @@
+"""The watch of a run: over the embedded world, or over what a real graph tells."""
+
+from jacaros.inspector.scene import EmbeddedScene, Scene
+from jacaros.inspector.watch import Watch, Watcher
+from jacaros.mas.system import System
+from jacaros.sim import World
+
+
+def watch_of(mas: System, watchers: list[Watcher], world: World | None = None) -> Watch:
+    """Make the watch of a system that has been started; *world* is its embedded world, if it has one."""
+    if world is not None:
+        return Watch(mas.clock, watchers, EmbeddedScene(world), world.ground_truth)
+    scene: Scene | None = None
+    backend = mas.ros.joined
+    if backend is not None and backend.name != "memory":
+        from jacaros.inspector.graph_scene import GraphScene  # here: only for runs on a real graph
+
+        scene = GraphScene(backend, mas.clock, mas.deployment.name)
+    return Watch(mas.clock, watchers, scene)

@@ -1,0 +1,155 @@
+"""What a graph tells of its world: drawn maps, and robots as they are seen."""
+
+import json
+import math
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.inspector.graph_scene import GraphScene
+from jacaros.inspector.map_drawing import map_drawing
+from jacaros.inspector.recorder import Recorder
+from jacaros.inspector.recording import Recording
+from jacaros.inspector.replay import payload
+from jacaros.inspector.robot_view import UNKNOWN
+from jacaros.inspector.watch import Watch
+from jacaros.ros.open import open_backend
+from jacaros.sim import SimNode, World
+
+PICTURE = """
+?????????
+?.......?
+?.###...?
+?.#.#.#.?
+?.###...?
+?.......?
+?????????
+"""
+
+
+def grid(picture: str, size: float = 0.5, x: float = 1.0, y: float = -1.0, yaw: float = 0.0) -> Any:
+    rows = picture.split()[::-1]
+    data = [{"?": -1, ".": 0, "#": 100}[cell] for row in rows for cell in row]
+    turn = SimpleNamespace(x=0.0, y=0.0, z=math.sin(yaw / 2), w=math.cos(yaw / 2))
+    origin = SimpleNamespace(position=SimpleNamespace(x=x, y=y, z=0.0), orientation=turn)
+    info = SimpleNamespace(resolution=size, width=len(rows[0]), height=len(rows), origin=origin)
+    return SimpleNamespace(info=info, data=data)
+
+
+def test_a_map_is_drawn_as_outlines_and_boxes() -> None:
+    drawing = map_drawing(grid(PICTURE), "hall")
+    assert drawing["name"] == "hall"
+    # One cell of nothing known around it.
+    assert drawing["bounds"] == [1.5, -0.5, 5.0, 2.0]
+    ring = [[2, 0, 3.5, 0], [2, 1.5, 3.5, 1.5], [2, 0, 2, 1.5], [3.5, 0, 3.5, 1.5]]
+    hole = [[2.5, 0.5, 3, 0.5], [2.5, 1, 3, 1], [2.5, 0.5, 2.5, 1], [3, 0.5, 3, 1]]
+    pillar = [[4, 0.5, 4.5, 0.5], [4, 1, 4.5, 1], [4, 0.5, 4, 1], [4.5, 0.5, 4.5, 1]]
+    assert sorted(drawing["walls"]) == sorted(ring + hole + pillar)
+    area = sum((right - left) * (top - bottom) for left, bottom, right, top in drawing["boxes"])
+    assert area == pytest.approx(9 * 0.25)
+    assert [4, 0.5, 4.5, 1] in drawing["boxes"]
+
+
+def test_a_map_that_is_turned_has_outlines_alone() -> None:
+    drawing = map_drawing(grid(PICTURE, yaw=math.pi / 2))
+    assert drawing["boxes"] == []
+    assert drawing["bounds"] == pytest.approx([-2.0, -0.5, 0.5, 3.0])
+    assert any(wall == pytest.approx([-0.5, 2.0, -1.0, 2.0]) for wall in drawing["walls"])
+
+
+def test_a_map_of_nothing_is_no_trouble() -> None:
+    drawing = map_drawing(grid("??\n??"))
+    assert drawing["walls"] == drawing["boxes"] == []
+    assert drawing["bounds"] == [1.0, -1.0, 2.0, 0.0]
+
+
+def looking(world_name: str, body: Callable[[VirtualClock, World, Any, SimNode], Awaitable[None]]) -> None:
+    clock = VirtualClock()
+
+    async def main() -> None:
+        backend = open_backend("memory", clock, "agents")
+        await backend.start()
+        beside = open_backend("memory", clock, "world", graph=backend.graph)  # type: ignore[attr-defined]
+        await beside.start()
+        world = World.load(world_name)
+        node = SimNode(world, beside, clock)
+        await body(clock, world, backend, node)
+        node.close()
+        await beside.close()
+        await backend.close()
+
+    run(main, clock)
+
+
+def test_robots_are_seen_where_they_believe_to_be_on_the_map() -> None:
+    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
+        scene = GraphScene(backend, clock, "storehouse")
+        await clock.sleep(1.0)
+        assert scene.drawing() is None
+        assert scene.robots() == []
+        node.start()
+        await clock.sleep(10.0)
+        drawing = scene.drawing()
+        assert drawing is not None
+        assert drawing is scene.drawing()
+        assert drawing["bounds"] == pytest.approx([-4, -3, 4, 3])
+        assert [robot["name"] for robot in drawing["robots"]] == ["robot_1", "robot_2", "robot_3"]
+        for seen, level in zip(scene.robots(), (100, 75, 50), strict=True):
+            true = world.robot(seen.name)
+            assert (seen.x, seen.y, seen.yaw) == pytest.approx((true.x, true.y, true.yaw), abs=1e-3)
+            assert level - 2 < seen.battery <= level
+            assert not seen.charging
+        scene.close()
+
+    looking("three_robots", body)
+
+
+def test_odometry_alone_is_enough() -> None:
+    """No map, no tf, no battery."""
+
+    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
+        publisher = backend.publisher("/odom", "nav_msgs/msg/Odometry")
+        scene = GraphScene(backend, clock)
+        for _ in range(50):
+            publisher.publish(
+                {"pose": {"pose": {"position": {"x": 4.0}, "orientation": {"z": 1.0, "w": 0.0}}}}
+            )
+            await clock.sleep(0.1)
+        (seen,) = scene.robots()
+        assert (seen.name, seen.x, seen.y, seen.battery) == ("robot", 4.0, 0.0, UNKNOWN)
+        drawing = scene.drawing()
+        assert drawing is not None
+        assert drawing["bounds"] == [1, -3, 7, 3]
+        scene.close()
+
+    looking("empty", body)
+
+
+def test_a_world_that_is_known_late_is_recorded_all_the_same(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+
+    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
+        recorder = Recorder(path)
+        watch = Watch(clock, [recorder], GraphScene(backend, clock, "late"))
+        watch.start()
+        await clock.sleep(1.0)
+        node.start()
+        await clock.sleep(10.0)
+        watch.stop()
+        recorder.close()
+
+    looking("two_robots", body)
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    assert lines[0] == {"kind": "world", "version": 1, "world": {}}
+    recording = Recording.read(path)
+    assert recording.robots == ["robot_0", "robot_1"]
+    shown = payload(recording)
+    assert shown["world"]["name"] == "late"
+    for robot in shown["robots"]:
+        assert len(robot["x"]) == len(shown["t"])
+        assert robot["x"][0] == {"robot_0": -1000, "robot_1": 1000}[robot["name"]]
+        assert set(robot["x"][1:]) == {0}
