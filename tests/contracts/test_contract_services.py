@@ -62,6 +62,23 @@ def test_a_missing_service_is_unavailable_after_the_time_out(graph: Any, pair: P
     assert f"waiting for the service {topic} (example_interfaces/srv/AddTwoInts)" in left.log()
 
 
+@pytest.mark.only("ros2")
+def test_a_service_of_another_type_is_told_for_what_it_is(graph: Any, pair: Pair, topic: str) -> None:
+    left, right = pair
+    right.serve(topic, "nothing", TRIGGER)
+    right.serve_action(topic + "/act", "nothing", "nav2_msgs/action/NavigateToPose")
+    # Shown to be found, by a client that fits.
+    assert right.call(topic, {}, timeout=20, type_name=TRIGGER) == {"success": False, "message": ""}
+    with pytest.raises(
+        CallFailed, match=f"{topic} is of type {TRIGGER}, not example_interfaces/srv/AddTwoInts"
+    ):
+        left.call(topic, {"a": 1, "b": 1}, timeout=20)
+    with pytest.raises(
+        CallFailed, match=f"{topic}/act is of type .*/action/NavigateToPose, not .*/action/Count"
+    ):
+        left.send_goal(topic, topic + "/act", {"target": 1}, timeout=20)
+
+
 def test_a_service_that_comes_late_is_used(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.begin_call(topic, topic, {"a": 1, "b": 2}, timeout=20)

@@ -70,7 +70,7 @@ def action_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
 
 def _mismatch(node: Ros2Node, what: str, name: str, service: str, type_name: str, ending: str) -> str | None:
     ours = node.schema.graph_type(type_name) + ending
-    told = dict(node.rcl.get_service_names_and_types()).get(service, [])
+    told = _offered_types(node, service)
     if not told or ours in told:
         return None
     theirs = told[0].removesuffix(ending)
@@ -82,6 +82,14 @@ def _mismatch(node: Ros2Node, what: str, name: str, service: str, type_name: str
             f"install ros-<distribution>-{package}"
         )
     return text
+
+
+def _offered_types(node: Ros2Node, name: str) -> list[str]:
+    """The types of a service as its servers have them; what rcl tells by names counts clients too, and so ourselves."""
+    told = node.rcl.get_publishers_info_by_topic(f"rr{name}Reply", no_mangle=True)
+    # On DDS they are called like nav2_msgs::action::dds_::NavigateToPose_SendGoal_Response_.
+    plain = {info.topic_type.replace("::dds_::", "::").replace("::", "/") for info in told}
+    return sorted(type_name.removesuffix("_Response_") for type_name in plain)
 
 
 def contents(node: Ros2Node) -> GraphContents:

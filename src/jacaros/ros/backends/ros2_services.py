@@ -147,6 +147,9 @@ class Ros2Client:
         deadline = None if rest is None else clock.elapsed + rest
         if not self.ready:
             self._acquainted = False
+            # One of another type is never ready for us.
+            if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
+                raise CallFailed(mismatch)
             raise ServiceUnavailable(f"nobody offers service {self.name}")
         if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
