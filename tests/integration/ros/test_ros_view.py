@@ -1,0 +1,34 @@
+"""A run on a real graph is recorded with the map and the robot that the graph tells of."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from processes import Agents, WorldProcess
+
+from jacaros.inspector import Recording
+
+
+def test_a_recording_has_the_map_and_the_robot(
+    world: WorldProcess, run_agents: Callable[..., Agents], tmp_path: Path
+) -> None:
+    record, replay = tmp_path / "run.jsonl", tmp_path / "run.html"
+    agents = run_agents("patrol.asl", "--record", str(record), "--replay", str(replay))
+
+    def has_seen_it_drive() -> bool:
+        if not record.exists() or not record.stat().st_size:
+            return False
+        seen = Recording.read(record)
+        places = {frame.robots[0][:2] for frame in seen.frames if frame.robots}
+        return seen.world.get("bounds") == [-1, -1, 4, 2] and len(places) > 5
+
+    agents.until(has_seen_it_drive, "the robot's way is recorded")
+    agents.stop()
+    truth = world.close()
+    recording = Recording.read(record)
+    assert recording.robots == ["robot"]
+    x, y, _, battery, *_ = recording.frames[-1].robots[0]
+    assert min(math.hypot(x - sample.x, y - sample.y) for sample in truth.path()) < 0.3
+    assert 0 < battery <= 75
+    assert replay.read_text(encoding="utf-8").startswith("<!doctype html>")
