@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from processes import Agents, WorldProcess
 
 from jacaros.inspector import Recording

@@ -28,7 +28,7 @@ from jacaros.ros.backends.ros2_node import Member, Ros2Node
 from jacaros.ros.backends.ros2_parameters import OtherParameters, OwnParameters, ParameterNews
 from jacaros.ros.backends.ros2_services import Ros2Client, Ros2Service
 from jacaros.ros.backends.ros2_topics import Ros2Publisher, Ros2Subscription
-from jacaros.ros.errors import CallTimedOut, UnknownInterface
+from jacaros.ros.errors import CallFailed, CallTimedOut, UnknownInterface
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.names import action_type, message_type, service_type
@@ -136,6 +136,8 @@ class Ros2Backend(Ros2Node):
             return await within(self.clock, seen, timeout)
         except TimeoutError:
             raise CallTimedOut(f"rclpy did not tell within {timeout:g} s what is in the graph") from None
+        except ros2_graph.RCLError as problem:  # a node that went while it was looked at
+            raise CallFailed(f"rclpy cannot tell what is in the graph: {problem}") from None
 
     def _keep(self, member: M) -> M:
         self.members.append(member)
