@@ -1,6 +1,6 @@
 """A map of braille dots: two by four dots in every character cell."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 _DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
@@ -36,20 +36,25 @@ class BrailleMap:
         column, row = self.dot_of(x, y)
         return column // 2, row // 4
 
+    def cells_between(self, ax: float, ay: float, bx: float, by: float) -> set[tuple[int, int]]:
+        """The character cells of a straight line."""
+        return {(column // 2, row // 4) for column, row in self._dots_between(ax, ay, bx, by)}
+
     def point(self, x: float, y: float) -> None:
         """Set the dot for a point."""
         self._set(*self.dot_of(x, y))
 
     def line(self, ax: float, ay: float, bx: float, by: float) -> None:
         """Set the dots of a straight line."""
+        for column, row in self._dots_between(ax, ay, bx, by):
+            self._set(column, row)
+
+    def _dots_between(self, ax: float, ay: float, bx: float, by: float) -> Iterator[tuple[int, int]]:
         (first_column, first_row), (last_column, last_row) = self.dot_of(ax, ay), self.dot_of(bx, by)
         across, down = last_column - first_column, last_row - first_row
         steps = max(abs(across), abs(down), 1)
         for step in range(steps + 1):
-            self._set(
-                first_column + round(across * step / steps),
-                first_row + round(down * step / steps),
-            )
+            yield first_column + round(across * step / steps), first_row + round(down * step / steps)
 
     def _set(self, column: int, row: int) -> None:
         if 0 <= column < self.columns * 2 and 0 <= row < self.rows * 4:

@@ -16,7 +16,8 @@ _STYLE = """
   .floor{fill:#fdfcf9;stroke:#dedbd2} .grid{stroke:#eceae2} .wall{stroke:#3c434b;fill:none} .box{fill:#e6e2d8}
   .room{fill:#77746a;font:500 13px system-ui,sans-serif}
   .name{fill:#23282e;font:600 12px system-ui,sans-serif}
-  .dock{fill:#f2c14e} .bolt{fill:#7a5b0c} .robot{fill:#fff;stroke:#1f6f8b} .heading{fill:#1f6f8b}
+  .door{stroke:#b7791f;stroke-width:4} .dock{fill:#f2c14e} .bolt{fill:#7a5b0c}
+  .robot{fill:#fff;stroke:#1f6f8b} .heading{fill:#1f6f8b}
   @media (prefers-color-scheme: dark) {
     .floor{fill:#1f242a;stroke:#313840} .grid{stroke:#272d34} .wall{stroke:#b9c0c8} .box{fill:#2d343c}
     .room{fill:#8b95a0} .name{fill:#e7e9ec} .dock{fill:#d9a93a} .bolt{fill:#2b2108}
@@ -45,7 +46,12 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
         *_docks(sheet, recording.world),
         *_walls(sheet, recording.world),
     ]
-    parts += [*_paths(sheet, recording), *_room_names(sheet, recording), *_robots(sheet, recording)]
+    parts += [
+        *_closed_doors(sheet, recording),
+        *_paths(sheet, recording),
+        *_room_names(sheet, recording),
+        *_robots(sheet, recording),
+    ]
     title = html.escape(str(recording.world.get("name", "")))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {sheet.height}" width="{width}" '
@@ -106,6 +112,18 @@ def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
         yield f'<circle class="dock" cx="{x}" cy="{y}" r="{round(size * 0.62, 1)}"/>'
         bolt = "M.1-.42L-.24 .08L-.02 .08L-.1 .42L.24-.08L.02-.08Z"
         yield f'<path class="bolt" transform="translate({x} {y}) scale({size})" d="{bolt}"/>'
+
+
+def _closed_doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+    """The doors that are closed at the end."""
+    doors = {door["name"]: door for door in recording.world.get("doors", ())}
+    moves = {
+        data["door"]: kind for _, kind, data in recording.events if kind in ("door_opened", "door_closed")
+    }
+    for name, door in doors.items():
+        if moves.get(name, "door_opened" if door["open"] else "") != "door_opened":
+            ax, ay, bx, by = door["segment"]
+            yield f'<path class="door" d="M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}"/>'
 
 
 def _walls(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:

@@ -44,6 +44,7 @@ def payload(recording: Recording) -> dict[str, Any]:
         "boxes": [],
         "rooms": [],
         "docks": [],
+        "doors": [],
         "robots": [],
     }
     world.update(recording.world)

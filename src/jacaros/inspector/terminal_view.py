@@ -27,6 +27,7 @@ LINE_PERIOD = 5.0
 _ARROWS = "→↗↑↖←↙↓↘"
 _COLOURS = ("cyan", "magenta", "green", "yellow", "blue", "red")
 _PRINTS = 5
+_DOOR = ("▒", "bold yellow")
 _OPEN = ("pursued", "resumed", "suspended")
 
 
@@ -44,6 +45,7 @@ class TerminalView:
         wall: Callable[[], float] = time.monotonic,
     ) -> None:
         self._drawing: Mapping[str, Any] = {}
+        self._open: dict[str, bool] = {}
         self._console = console if console is not None else Console(stderr=True)
         self._wall = wall
         self._live: Live | None = None
@@ -67,6 +69,7 @@ class TerminalView:
     def world(self, drawing: Mapping[str, Any]) -> None:
         """The world; when it is another one than before, the path so far is lost."""
         self._drawing = drawing
+        self._open = {door["name"]: door["open"] for door in drawing.get("doors", ())}
         self._size = (0, 0)
 
     def frame(self, t: float, robots: Sequence[RobotView]) -> None:
@@ -91,7 +94,9 @@ class TerminalView:
             self._console.print(Text(f"[{agent}] {text}"), soft_wrap=True)
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Something that happened; goals are shown."""
+        """Something that happened; goals and doors are shown."""
+        if kind in ("door_opened", "door_closed"):
+            self._open[data["door"]] = kind == "door_opened"
         if kind != "goal":
             return
         key = (str(data.get("agent", "")), str(data.get("goal", "")))
@@ -183,8 +188,11 @@ class TerminalView:
         self._trail = BrailleMap(self._drawing["bounds"], max(20, size[0] - 2), rows)
 
     def _marks(self, shown: BrailleMap) -> dict[tuple[int, int], tuple[str, str]]:
-        """Characters that stand in place of dots: docks, and robots over them."""
+        """Characters that stand in place of dots: doors that are closed, docks, and robots over them."""
         marks = {}
+        for door in self._drawing.get("doors", ()):
+            if not self._open[door["name"]]:
+                marks.update(dict.fromkeys(shown.cells_between(*door["segment"]), _DOOR))
         for dock in self._drawing["docks"]:
             marks[shown.cell_of(dock["pose"][0], dock["pose"][1])] = ("◎", "bold yellow")
         for index, robot in enumerate(self._robots):

@@ -4,6 +4,7 @@ A world file (`jacaros.sim.world_file`) is read into these; the running `jacaros
 them, and viewers draw them.
 """
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -17,6 +18,14 @@ class Segment(NamedTuple):
     ay: float
     bx: float
     by: float
+
+    def distance(self, x: float, y: float) -> float:
+        """Metres from a point to the nearest one of it."""
+        dx, dy = self.bx - self.ax, self.by - self.ay
+        place = ((x - self.ax) * dx + (y - self.ay) * dy) / (dx * dx + dy * dy)
+        place = 0.0 if place < 0.0 else 1.0 if place > 1.0 else place
+        ex, ey = x - (self.ax + place * dx), y - (self.ay + place * dy)
+        return math.sqrt(ex * ex + ey * ey)
 
 
 class Rectangle(NamedTuple):
@@ -64,6 +73,15 @@ class Dock:
     name: str
     pose: Pose
     radius: float = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class Door:
+    """A piece of wall that is there while the door is closed; ``open`` says how it is at first."""
+
+    name: str
+    segment: Segment
+    open: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +172,7 @@ class RobotDescription:
 
 @dataclass(frozen=True, slots=True)
 class WorldDescription:
-    """A whole world.  ``segments`` are all walls, those of ``boxes`` (solid furniture) included."""
+    """A whole world.  ``segments`` are all walls, those of ``boxes`` (solid furniture) included and ``doors`` not."""
 
     name: str = "empty"
     bounds: Rectangle = DEFAULT_BOUNDS
@@ -162,6 +180,7 @@ class WorldDescription:
     boxes: tuple[Rectangle, ...] = ()
     rooms: tuple[Room, ...] = ()
     docks: tuple[Dock, ...] = ()
+    doors: tuple[Door, ...] = ()
     robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
     seed: int = 0
 
@@ -175,6 +194,9 @@ class WorldDescription:
             "rooms": [{"name": room.name, "area": list(room.area)} for room in self.rooms],
             "docks": [
                 {"name": dock.name, "pose": list(dock.pose), "radius": dock.radius} for dock in self.docks
+            ],
+            "doors": [
+                {"name": door.name, "segment": list(door.segment), "open": door.open} for door in self.doors
             ],
             "robots": [
                 {"name": robot.name, "pose": list(robot.pose), "radius": robot.radius}

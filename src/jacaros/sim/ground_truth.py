@@ -25,7 +25,7 @@ class Event(NamedTuple):
     Kinds, with what their data hold: ``docked`` and ``undocked`` (dock), ``charging``, ``charged``,
     ``battery_empty`` and ``battery`` at each whole percent (level), ``bump`` against a wall (side),
     ``collision`` (with, side), ``command_timeout`` and ``bad_command`` (speed, turn_rate), ``task`` (task as
-    text, room).
+    text, room).  Of no robot (``""``): ``door_opened`` and ``door_closed`` (door), in the middle of the door.
     """
 
     time: float

@@ -4,6 +4,7 @@ import math
 
 from jacaros.clock import Clock, Timer
 from jacaros.ros.backend import Backend
+from jacaros.sim.door_server import DoorServer
 from jacaros.sim.map_server import MapServer
 from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.robot import RobotNavigation
@@ -26,6 +27,7 @@ class SimNode:
         self.time = WorldTime(world, clock)
         self.robots: list[RobotNode] = []
         self.navigation: list[RobotNavigation] = []
+        self.doors: list[DoorServer] = []
         self._map: MapServer | None = None
         self._grid: Grid | None = None
         self._timer: Timer | None = None
@@ -46,6 +48,7 @@ class SimNode:
         ]
         prefixes = [robot.prefix for robot in self.robots]
         self._map = MapServer(self.backend, prefixes, self.grid, self.time.now)
+        self.doors = [DoorServer(self.time, door, self.backend) for door in self.world.doors]
         self._ticks = 0
         self._wait_for_tick()
 
@@ -72,6 +75,8 @@ class SimNode:
         self.time.catch_up()
         for robot in self.robots:
             robot.publish()
+        for door in self.doors:
+            door.publish()
         if self._map is not None:
             self._map.publish()
 
@@ -89,6 +94,8 @@ class SimNode:
             navigation.close()
         for robot in self.robots:
             robot.close()
+        for door in self.doors:
+            door.close()
         if self._map is not None:
             self._map.close()
-        self.robots, self.navigation, self._map = [], [], None
+        self.robots, self.navigation, self.doors, self._map = [], [], [], None

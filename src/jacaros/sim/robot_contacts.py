@@ -115,7 +115,7 @@ class RobotContacts:
         for dock in world.docks:
             dx, dy = dock.pose.x - robot.x, dock.pose.y - robot.y
             if dx * dx + dy * dy <= _DOCK_SEEN_FROM * _DOCK_SEEN_FROM and not hidden(
-                world.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
+                self._time.world.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
             ):
                 return True
         return False

@@ -30,6 +30,10 @@ class Laser:
         self._with_numpy = len(segments) > FEW_WALLS if with_numpy is None else with_numpy
         self._arrays: Any = None
 
+    def look_at(self, segments: Sequence[Segment]) -> None:
+        """See other walls from now on."""
+        self._segments, self._arrays = segments, None
+
     def scan(self, x: float, y: float, yaw: float, others: Iterable[Circle] = ()) -> list[float]:
         """Ranges (metres) of the swept field, counter-clockwise; ``inf`` where nothing is within reach."""
         ranges = self._walls(x, y, yaw)

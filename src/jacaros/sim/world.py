@@ -20,6 +20,8 @@ from jacaros.sim.world_file import load_world, read_world
 STEP = 0.02
 """Length of a step in seconds: 50 Hz."""
 SAMPLES_PER_SECOND = 10
+DOOR_ROOM = 0.25
+"""Metres that a robot must be off a door that is to be closed."""
 
 
 class World:
@@ -29,6 +31,8 @@ class World:
         description: what it was made from.
         time: seconds since it began.
         robots: the robots by name, in the order of the file.
+        doors: whether the doors, by name, are open.
+        segments: all walls, and the doors that are closed.
     """
 
     def __init__(self, description: WorldDescription, seed: int | None = None) -> None:
@@ -39,10 +43,9 @@ class World:
             robot.name: Robot(robot, self.description.seed, self._note) for robot in description.robots
         }
         self._row = tuple(self.robots.values())
-        self._walls = WallIndex(
-            description.segments, max((robot.radius for robot in description.robots), default=0.17)
-        )
         self._lasers: dict[str, Laser] = {}
+        self.doors = {door.name: door.open for door in description.doors}
+        self._put_up_walls()
         self._truth = GroundTruth(self.robots, description.drawing())
         self._charge_shown = {robot.name: (False, math.ceil(robot.battery.level)) for robot in self._row}
         self._next_sample = 0.0
@@ -98,6 +101,40 @@ class World:
         robot = self.robot(name)
         self._note(robot, "task", {"task": text, "room": self.room_at(robot.x, robot.y)})
 
+    def _put_up_walls(self) -> None:
+        closed = tuple(door.segment for door in self.description.doors if not self.doors[door.name])
+        self.segments = self.description.segments + closed
+        radius = max((robot.radius for robot in self.description.robots), default=0.17)
+        self._walls = WallIndex(self.segments, radius)
+        for laser in self._lasers.values():
+            laser.look_at(self.segments)
+
+    def move_door(self, name: str, opened: bool) -> str | None:
+        """Open or close a door.
+
+        Returns:
+            Why it cannot be closed: a robot is in it, or almost; None when it is done.
+
+        Raises:
+            UsageError: there is no such door.
+        """
+        door = next((door for door in self.description.doors if door.name == name), None)
+        if door is None:
+            raise UsageError(f"world '{self.description.name}' has no door '{name}'")
+        if self.doors[name] == opened:
+            return None
+        if not opened:
+            for robot in self._row:
+                if door.segment.distance(robot.x, robot.y) < robot.description.radius + DOOR_ROOM:
+                    return f"{robot.name} is in the way"
+        self.doors[name] = opened
+        self._put_up_walls()
+        ax, ay, bx, by = door.segment
+        kind = "door_opened" if opened else "door_closed"
+        middle = (0.5 * (ax + bx), 0.5 * (ay + by))
+        self._truth.record_event(Event(self.time, "", kind, *middle, 0.0, {"door": name}))
+        return None
+
     def scan(self, name: str) -> list[float]:
         """The ranges (metres) that a robot's laser measures now."""
         robot = self.robot(name)
@@ -109,7 +146,7 @@ class World:
         if name not in self._lasers:
             settings = self.robot(name).description.laser
             seed = f"{self.description.seed}/{name}/laser"
-            self._lasers[name] = Laser(settings, self.description.segments, seed)
+            self._lasers[name] = Laser(settings, self.segments, seed)
         return self._lasers[name]
 
     def step(self, dt: float = STEP) -> None:

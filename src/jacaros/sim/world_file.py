@@ -16,22 +16,26 @@ radians.  Every key but ``robots`` may be left out; what a robot may say is in `
       kitchen: {from: [1, 1], to: [3, 3]}
     docks:
       - {name: dock, x: 1, y: 1, yaw_degrees: 0, radius: 0.25}
+    doors:
+      - {name: kitchen, segment: [[1, 0], [1, 1]], open: false}
     robots:
       - name: turtlebot
         pose: {x: 0, y: 0, yaw_degrees: 0}
 """
 
 import itertools
+import re
 from pathlib import Path
 
-from jacaros.sim.description import Dock, Rectangle, Room, Segment, WorldDescription
+from jacaros.sim.description import Dock, Door, Rectangle, Room, Segment, WorldDescription
 from jacaros.sim.errors import Problem, WorldError
 from jacaros.sim.robot_file import read_pose, read_robot
 from jacaros.yaml_nodes import Node, read_document
 from jacaros.yaml_syntax import read_text
 
 _WORLDS = Path(__file__).parent / "worlds"
-_KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "robots")
+_KEYS = ("name", "size", "bounds", "border", "seed", "walls", "rooms", "docks", "doors", "robots")
+_DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def shipped_worlds() -> list[str]:
@@ -101,6 +105,7 @@ def _world(document: Node) -> WorldDescription:
         boxes=tuple(boxes),
         rooms=_rooms(entries.get("rooms")),
         docks=_docks(entries.get("docks")),
+        doors=_doors(entries.get("doors")),
         robots=tuple(read_robot(robot) for robot in robots),
         seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
     )
@@ -144,16 +149,22 @@ def _wall(node: Node, segments: list[Segment], boxes: list[Rectangle]) -> None:
         boxes.append(box)
         segments.extend(box.edges())
         return
-    mistakes = len(node.problems)
+    closed = "closed" in entries and entries["closed"].truth()
+    _straight(shape, segments, kinds[0] == "polyline", closed)
+
+
+def _straight(shape: Node, segments: list[Segment], several: bool = False, closed: bool = False) -> None:
+    """Read the points of a segment, or of *several* in a row, and add what is between them."""
+    mistakes = len(shape.problems)
     points = [point.pair() for point in shape.sequence()]
-    if len(node.problems) > mistakes:
+    if len(shape.problems) > mistakes:
         return
-    if len(points) < 2 or (kinds[0] == "segment" and len(points) > 2):
+    if len(points) < 2 or (not several and len(points) > 2):
         shape.wrong(
             f"{shape.what} has {len(points)} points", "a segment has two points, a polyline two or more"
         )
         return
-    if "closed" in entries and entries["closed"].truth():
+    if closed:
         points.append(points[0])
     for (ax, ay), (bx, by) in itertools.pairwise(points):
         if (ax, ay) == (bx, by):
@@ -180,6 +191,27 @@ def _docks(node: Node | None) -> tuple[Dock, ...]:
         radius = entries["radius"].number(0.01) if "radius" in entries else 0.25
         docks.append(Dock(name, read_pose(entries), radius))
     return tuple(docks)
+
+
+def _doors(node: Node | None) -> tuple[Door, ...]:
+    if node is None:
+        return ()
+    doors: list[Door] = []
+    for item in node.sequence():
+        entries = item.mapping("name", "segment", "open", required=("name", "segment"))
+        if len(entries.keys() & {"name", "segment"}) < 2:
+            continue
+        name, opened = entries["name"].text(), "open" in entries and entries["open"].truth()
+        if not _DOOR_NAME.fullmatch(name):
+            entries["name"].wrong(
+                f"'{name}' cannot be part of a ROS name", "use letters, digits and _ for a door's name"
+            )
+        if any(door.name == name for door in doors):
+            entries["name"].wrong(f"there is a door '{name}' already", "give it another name")
+        pieces: list[Segment] = []
+        _straight(entries["segment"], pieces)
+        doors.extend(Door(name, piece, opened) for piece in pieces)
+    return tuple(doors)
 
 
 def _check_robots(node: Node, items: list[Node]) -> None:

@@ -80,7 +80,7 @@ class Docking:
         for dock in self.navigator.docks():
             apart = distance((robot.x, robot.y), (dock.pose.x, dock.pose.y))
             if apart <= SEEN_FROM and not hidden(
-                self.navigator.time.world.description.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
+                self.navigator.time.world.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
             ):
                 seen.append((apart, dock))
         return min(seen, key=lambda pair: pair[0])[1] if seen else None

@@ -79,7 +79,8 @@ class NavigationServers:
             self._simple.cancel()
 
     def _forget_obstacles(self, request: Any) -> Mapping[str, Any]:
-        """Nothing is to be done: what these robots see is looked at anew for every way."""
+        """Forget the doors that were closed; other robots are looked at anew for every way."""
+        self.navigator.sight.forget()
         return {}
 
     def _hear(self, topic: str) -> None:

@@ -9,7 +9,7 @@ from jacaros.sim.navigation.driver import STOP, Command, Driver, Pace
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.navigation.planner import Circle, Planner
-from jacaros.sim.navigation.sight import others_in_sight
+from jacaros.sim.navigation.sight import Sight
 from jacaros.sim.navigation.wheels import PERIOD, Hold, Wheels
 from jacaros.sim.robot import Robot
 from jacaros.sim.trigonometry import wrap
@@ -41,6 +41,7 @@ class Navigator:
         self.time, self.robot, self.localisation, self.wheels = time, robot, localisation, wheels
         settings = robot.description.navigation
         self.pace = Pace.within(robot.description.limits, settings.speed)
+        self.sight = Sight(time.world, robot)
         self._make_planner = make_planner
         self._planner: Planner | None = None
 
@@ -58,8 +59,9 @@ class Navigator:
         return self.localisation.pose()
 
     def others(self, pose: Placement) -> list[Circle]:
-        """The other robots in sight."""
-        return others_in_sight(self.time.world, self.robot, pose)
+        """What the map does not have: other robots in sight, and doors that are closed."""
+        doors = self.sight.closed_doors(pose).values()
+        return [*self.sight.robots(pose), *(circle for door in doors for circle in door)]
 
     def free_at(self, pose: Placement, forward: float, others: Sequence[Circle]) -> bool:
         """Whether there is room for the robot *forward* metres ahead (negative: behind)."""
@@ -110,7 +112,7 @@ class Navigator:
         return there > here and self.free_of_robots(pose, reach)
 
     def free_of_robots(self, pose: Placement, forward: float) -> bool:
-        """Whether no robot stands *forward* metres ahead, or it is further off there than here."""
+        """Whether no robot or door is *forward* metres ahead, or it is further off there than here."""
         point, here = pose.point(forward, 0.0), (pose.x, pose.y)
         radius = self.robot.description.radius
         return all(

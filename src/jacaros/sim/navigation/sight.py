@@ -1,34 +1,78 @@
-"""What a robot sees of the other robots with its laser."""
+"""What a robot sees with its laser: other robots, and doors."""
 
+import math
 from collections.abc import Iterable
 
-from jacaros.sim.description import Segment
-from jacaros.sim.navigation.placement import Placement
+from jacaros.sim.description import Door, Segment
+from jacaros.sim.navigation.placement import Placement, Point, distance
 from jacaros.sim.navigation.planner import Circle
 from jacaros.sim.robot import Robot
 from jacaros.sim.world import World
 
 RANGE = 3.0
-"""Metres up to which a robot cares for others."""
+"""Metres up to which a robot cares for others, and for doors."""
+_LEAF = -0.03
+"""Radius of the circles that a closed door is taken for: it is kept off from like a wall, not like a robot."""
+_BETWEEN = 0.1
+"""Metres between the middles of those circles, at most."""
 
 
-def others_in_sight(world: World, robot: Robot, believed: Placement) -> list[Circle]:
-    """The robots that no wall hides, on the map of a robot that believes to be at *believed*.
+class Sight:
+    """What a robot sees, on the map where it believes to be.  A robot without a laser sees nothing.
 
-    A robot without a laser sees nothing.
+    Args:
+        world: the world.
+        robot: who looks.
     """
-    if len(world.robots) < 2 or not robot.description.laser.enabled:
-        return []
-    reach = min(RANGE, robot.description.laser.range_max)
-    true = Placement.at(robot.x, robot.y, robot.yaw)
-    seen = []
-    for other in world.robots.values():
-        dx, dy = other.x - robot.x, other.y - robot.y
-        if other is robot or dx * dx + dy * dy > reach * reach:
-            continue
-        if not hidden(world.description.segments, robot.x, robot.y, other.x, other.y):
-            seen.append((*believed.point(*true.local(other.x, other.y)), other.description.radius))
-    return seen
+
+    def __init__(self, world: World, robot: Robot) -> None:
+        self._world, self._robot = world, robot
+        laser = robot.description.laser
+        self._reach = min(RANGE, laser.range_max) if laser.enabled else 0.0
+        self._closed: set[str] = set()
+
+    def robots(self, believed: Placement) -> list[Circle]:
+        """The robots that no wall hides."""
+        if len(self._world.robots) < 2 or self._reach <= 0.0:
+            return []
+        true, seen = self._true(), []
+        for other in self._world.robots.values():
+            if other is not self._robot and self._sees(other.x, other.y, self._world.segments):
+                seen.append((*believed.point(*true.local(other.x, other.y)), other.description.radius))
+        return seen
+
+    def closed_doors(self, believed: Placement) -> dict[str, list[Circle]]:
+        """The doors that were closed when the robot saw them last, each as a row of circles."""
+        doors = self._world.description.doors
+        if not doors:
+            return {}
+        for door in doors:
+            if any(self._sees(*point, self._world.description.segments) for point in _points(door)[1:-1]):
+                (self._closed.discard if self._world.doors[door.name] else self._closed.add)(door.name)
+        true = self._true()
+        return {
+            door.name: [(*believed.point(*true.local(*point)), _LEAF) for point in _points(door)]
+            for door in doors
+            if door.name in self._closed
+        }
+
+    def forget(self) -> None:
+        """Forget the doors that were closed."""
+        self._closed.clear()
+
+    def _true(self) -> Placement:
+        return Placement.at(self._robot.x, self._robot.y, self._robot.yaw)
+
+    def _sees(self, x: float, y: float, walls: Iterable[Segment]) -> bool:
+        dx, dy = x - self._robot.x, y - self._robot.y
+        near = dx * dx + dy * dy <= self._reach * self._reach
+        return near and not hidden(walls, self._robot.x, self._robot.y, x, y)
+
+
+def _points(door: Door) -> list[Point]:
+    ax, ay, bx, by = door.segment
+    pieces = max(2, math.ceil(distance((ax, ay), (bx, by)) / _BETWEEN))
+    return [(ax + (bx - ax) * n / pieces, ay + (by - ay) * n / pieces) for n in range(pieces + 1)]
 
 
 def hidden(walls: Iterable[Segment], ax: float, ay: float, bx: float, by: float) -> bool:

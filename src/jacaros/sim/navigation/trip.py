@@ -241,6 +241,11 @@ class Trip:
     def _give_up(self) -> None:
         here = told((self._pose.x, self._pose.y))
         radius = self.navigator.robot.description.radius
+        for name, door in self.navigator.sight.closed_doors(self._pose).items():
+            if in_the_way(self._route, door, radius, self._route.remaining):
+                raise NavigationFailure(
+                    NO_VALID_PATH, f"the door '{name}' is closed, and there is no way round"
+                )
         for x, y, other in self._others:
             if in_the_way(self._route, [(x, y, other)], radius, self._route.remaining):
                 raise NavigationFailure(
