@@ -50,6 +50,7 @@ class Conversion:
         prefix: with which the constants begin that ``name`` means.
         names: atoms for values.
         unit: the unit for the agent, for the manual; empty when none is said.
+        knows_message_unit: the mapping says in which unit messages have it.
         line: of units, scale and offset; None when the number stays as it is.
         digits: decimals; None: as many as there are.
     """
@@ -60,6 +61,7 @@ class Conversion:
     line: Line | None = None
     digits: int | None = None
     unit: str = ""
+    knows_message_unit: bool = False
 
 
 AS_IT_IS = Conversion()

@@ -147,7 +147,9 @@ class _Maker:
         if view.distance is not None:
             far = self._number(view.distance, view)
             return lambda whole, part, i: (0.0, 0.0) if far(whole, part, i) <= view.metres else None
-        across, along = (self._number(path, view) for path in view.at[:2])
+        if len(view.at) != 2:  # told by the reader
+            return lambda whole, part, i: None
+        across, along = (self._number(path, view) for path in view.at)
         return lambda whole, part, i: (across(whole, part, i), along(whole, part, i))
 
     def _number(self, path: Path, view: RangeOfView) -> Callable[[Any, Any, int], float]:

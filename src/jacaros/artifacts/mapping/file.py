@@ -109,7 +109,12 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
         return {}
     if not isinstance(document.value, dict) or "artifacts" not in document.value:
         return {path.stem: _artifact(path.stem, Place(1, 1), document, path.parent)}
-    entries = document.mapping("artifacts", "interfaces", anchors=True)
+    entries = document.mapping("artifacts", *_KEYS, anchors=True)
+    for name, _ in document.entries():
+        if name.value in _KEYS and name.value != "interfaces":
+            name.wrong(
+                f"'{name.value}' stands beside 'artifacts'", "indent it, below the name of an artifact"
+            )
     shared = _interfaces(entries["interfaces"], path.parent) if "interfaces" in entries else ()
     found = {}
     for name, node in entries["artifacts"].entries():
@@ -171,7 +176,7 @@ def _pairs(entries: dict[str, Node], key: str) -> Iterator[tuple[Node, Node]]:
 def _variants(entries: dict[str, Node]) -> Iterator[tuple[Node, Node]]:
     """Names and values of operations; a list has several of one name."""
     for name, node in _pairs(entries, "operations"):
-        if not isinstance(node.value, list):
+        if not isinstance(node.value, list) or not any(isinstance(item, dict) for item in node.value):
             yield name, node
             continue
         for item in node.sequence():
@@ -181,11 +186,12 @@ def _variants(entries: dict[str, Node]) -> Iterator[tuple[Node, Node]]:
 def _connected(node: Node) -> bool | float:
     if isinstance(node.value, bool):
         return node.value
-    seconds = node.number(default=1.0)
-    if seconds <= 0.0:
-        node.wrong("'connected' must be true, false, or a number of seconds above zero")
-        return True
-    return seconds
+    value = node.value
+    if isinstance(value, int | float) and 0.0 < value < float("inf"):
+        return float(value)
+    cure = "write true" if str(value).lower() in ("yes", "on") else "write true, or a number such as 2"
+    node.wrong("'connected' must be true, false, or a number of seconds above zero", cure)
+    return True
 
 
 def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:

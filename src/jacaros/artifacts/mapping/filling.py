@@ -7,6 +7,7 @@ from typing import Any
 from jacaros.artifacts.mapping.declared import Conversion, OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.handle import MessageHandle
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
+from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.taking import QUATERNION, owner_of
@@ -111,7 +112,14 @@ def _gaps(values: Sequence[ValuePart]) -> list[Problem]:
         for depth, step in enumerate(part.target.steps):
             if isinstance(step, int):
                 numbers.setdefault(part.target.steps[:depth], set()).add(step)
+    whole = {part.target.steps: part for part in values}
     for part in values:
+        above = (whole.get(part.target.steps[:depth]) for depth in range(1, len(part.target.steps)))
+        for other in filter(None, above):
+            told = (
+                f"'{part.target.text}' is in '{other.target.text}', which stands in line {other.place.line}"
+            )
+            found.append(part.place.problem(told, "leave one of them out"))
         for depth, step in enumerate(part.target.steps):
             if isinstance(step, int) and not 0 <= step < len(numbers[part.target.steps[:depth]]):
                 found.append(
@@ -135,6 +143,7 @@ def _give(
     if part.source is Source.ELEMENTS:
         return _each(part, leaf, interfaces, problems, adapt)
     _check(part, leaf)
+    check_unit(part.conversion, part.target, root, interfaces)
     convert = _converter(part.conversion, leaf, owner, last, interfaces)
     path = part.target.text
     if part.source is Source.NOW:

@@ -2,6 +2,14 @@
 
 from collections.abc import Mapping
 
+from jacaros.artifacts.mapping.declared import Conversion
+from jacaros.artifacts.mapping.interfaces import Interfaces
+from jacaros.artifacts.mapping.paths import Path, WrongPath
+from jacaros.artifacts.mapping.read_fields import ANGLES
+from jacaros.artifacts.mapping.units import UNITS
+from jacaros.ros.fields import FieldType
+from jacaros.ros.message import TIMES
+
 _LASER = "sensor_msgs/msg/LaserScan"
 _BATTERY = "sensor_msgs/msg/BatteryState"
 _RANGE = "sensor_msgs/msg/Range"
@@ -50,3 +58,47 @@ _UNITS: Mapping[str, Mapping[str, str]] = {
 def unit_of(type_name: str, field: str) -> str:
     """The unit of a field; empty where there is none, or it is not known."""
     return _UNITS.get(type_name, {}).get(field, "")
+
+
+def unit_at(path: Path, root: FieldType, interfaces: Interfaces) -> str:
+    """The unit of what stands at a path that leads somewhere; a vector's parts have that of the vector."""
+    here, unit = root, ""
+    for step in path.steps:
+        if isinstance(step, str) and step.startswith("."):
+            unit = unit_of(here.base, step[1:]) or unit
+            here = interfaces.fields(here.base)[step[1:]]
+        else:
+            here = FieldType(here.base)
+    return "s" if here.base in TIMES else unit
+
+
+_KINDS = {
+    "m": "length",
+    "rad": "angle",
+    "rad/s": "angle",
+    "m/s": "speed",
+    "s": "time",
+    "°C": "temperature",
+    "0 to 1": "share",
+}
+"""Kinds of those units of messages that mappings convert."""
+
+
+def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: Interfaces) -> None:
+    """Refuse a unit that the value of a message cannot have.
+
+    Raises:
+        WrongPath: the message has it in a unit of another kind.
+    """
+    if not conversion.unit or conversion.knows_message_unit or conversion.kind in ANGLES:
+        return
+    there = unit_at(path, root, interfaces)
+    if there == conversion.unit:
+        raise WrongPath(f"messages have {path.text} in {there} already", "leave 'unit' out")
+    kind, wanted = _KINDS.get(there), UNITS[conversion.unit].kind
+    if kind is not None and kind != wanted:
+        listed = ", ".join(name for name, each in UNITS.items() if each.kind == kind)
+        raise WrongPath(
+            f"messages have {path.text} in {there}, and {conversion.unit} is a unit of {wanted}",
+            f"units of {kind} are {listed}; or say what messages have: message_unit: ...",
+        )

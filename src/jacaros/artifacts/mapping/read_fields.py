@@ -56,6 +56,12 @@ def read_field(node: Node) -> FieldPart:
     if not isinstance(node.value, dict):
         path = path_of(node, "write a path, or a mapping such as {path: pose.orientation, as: yaw}")
         return FieldPart(path, place, name=_name(path))
+    if node.value and not any(key in FIELD for key in node.value):
+        node.wrong(
+            f"{node.what} has no 'path', and '{next(iter(node.value))}' is no key",
+            "fields are a list of paths, or of mappings such as {path: pose.position.x, name: x}",
+        )
+        return FieldPart(WHOLE, place)
     entries = node.mapping(*FIELD, required=("path",))
     path = path_of(entries["path"]) if "path" in entries else WHOLE
     band = entries.get("dead_band")
@@ -92,6 +98,7 @@ def read_conversion(entries: dict[str, Node]) -> Conversion:
         _line(entries, kind),
         digits.whole(0, 0) if digits is not None else None,
         str(entries["unit"].value) if "unit" in entries else "",
+        "message_unit" in entries,
     )
 
 

@@ -16,6 +16,8 @@ RESERVED = ("true", "false", "not", "div", "mod", "if", "else", "elif", "for", "
 
 _BELIEF = re.compile(r"[a-z][A-Za-z0-9_]*")
 _ROS = re.compile(r"[~/]?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+_GLUED = re.compile(r"([a-z_]+):(\S+)")
+_TYPE = re.compile(r"[a-z]\w*/(msg/)?[A-Z]\w*")
 _NAMESPACE = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?")
 _READERS = {"msg": message_type, "srv": service_type, "action": action_type}
 _EXAMPLES = {
@@ -47,7 +49,9 @@ def ros_name(node: Node) -> Written:
     """The name of a topic, service, action or node."""
     value = node.value
     if not isinstance(value, str) or not _ROS.fullmatch(value):
-        node.wrong(f"{shown(value)} is no ROS name", "write it like cmd_vel or /robot/cmd_vel")
+        glued = _GLUED.fullmatch(value) if isinstance(value, str) else None
+        cure = f"write a space behind the colon: {glued[1]}: {glued[2]}" if glued else ""
+        node.wrong(f"{shown(value)} is no ROS name", cure or "write it like cmd_vel or /robot/cmd_vel")
         return Written("unnamed", place_of(node))
     return Written(str(value), place_of(node))
 
@@ -65,12 +69,37 @@ def namespace(node: Node) -> str:
 
 def type_written(node: Node, kind: str) -> Written | None:
     """A type in full form; *kind* is ``msg``, ``srv`` or ``action``.  None after a mistake."""
-    example = _EXAMPLES[kind]
-    try:
-        full = _READERS[kind](node.value) if isinstance(node.value, str) else None
-    except NameInvalid:
-        full = None
-    if full is None or full.split("/")[1] != kind:
-        node.wrong(f"{shown(node.value)} is no type of this kind", f"write it like {example}")
+    full = _full_type(node.value, kind)
+    if full is None:
+        node.wrong(*_wrong_type(node.value, kind))
         return None
     return Written(full, place_of(node))
+
+
+def _full_type(value: object, kind: str) -> str | None:
+    try:
+        full = _READERS[kind](value) if isinstance(value, str) else None
+    except NameInvalid:
+        return None
+    return full if full is not None and full.split("/")[1] == kind else None
+
+
+_OF = {"msg": "messages", "srv": "a service", "action": "an action"}
+
+
+def _wrong_type(value: object, kind: str) -> tuple[str, str]:
+    """What is wrong with a type, and what to write."""
+    for other, of in _OF.items():
+        if other != kind and isinstance(value, str) and value.count("/") == 2 and _full_type(value, other):
+            return (
+                f"{value} is the type of {of}, not of {_OF[kind]}",
+                f"here a type is like {_EXAMPLES[kind]}",
+            )
+    slashed = value.replace(".", "/").replace("::", "/") if isinstance(value, str) else ""
+    near = slashed if slashed and _full_type(slashed, kind) else f"it like {_EXAMPLES[kind]}"
+    return f"{shown(value)} is no type of {_OF[kind]}", f"write {near}"
+
+
+def is_type(value: object) -> bool:
+    """Whether a value is written like the type of messages, and like no topic that anybody has."""
+    return isinstance(value, str) and _TYPE.fullmatch(value) is not None

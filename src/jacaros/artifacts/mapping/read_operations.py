@@ -3,7 +3,7 @@
 import dataclasses
 import difflib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from jacaros.artifacts.mapping.declared import (
@@ -16,11 +16,11 @@ from jacaros.artifacts.mapping.declared import (
 )
 from jacaros.artifacts.mapping.paths import WHOLE
 from jacaros.artifacts.mapping.read_fields import path_of, place_of, read_fields
-from jacaros.artifacts.mapping.read_names import belief_name, ros_name, type_written
+from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, ros_name, type_written
 from jacaros.artifacts.mapping.read_qos import read_qos
-from jacaros.artifacts.mapping.read_topics import read_feedback
+from jacaros.artifacts.mapping.read_topics import is_misplaced, read_feedback
 from jacaros.artifacts.mapping.read_values import constant, read_values, whole
-from jacaros.yaml_nodes import Node
+from jacaros.yaml_nodes import Node, Problem
 
 _COMMON = ("parameters", "description")
 KEYS: dict[str, tuple[str, ...]] = {
@@ -33,6 +33,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "read": (),
 }
 """What goes with each kind of operation."""
+_ALL_KEYS = tuple(dict.fromkeys((*_COMMON, *(key for keys in KEYS.values() for key in keys))))
 
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 CALL_TIMEOUT = 10.0
@@ -44,6 +45,8 @@ Reader = Callable[[OperationPart, dict[str, Node]], OperationPart]
 def read_operation(name: Node, node: Node) -> OperationPart:
     """One operation."""
     part = OperationPart(belief_name(name), place_of(name), OperationKind.REFRESH)
+    if is_misplaced(name, node, _ALL_KEYS, "an operation"):
+        return dataclasses.replace(part, name=UNNAMED)
     kinds = [kind for kind in KEYS if isinstance(node.value, dict) and kind in node.value]
     if len(kinds) != 1:
         found = f"has {' and '.join(kinds)}" if kinds else "does not say what it does"
@@ -61,7 +64,26 @@ def read_operation(name: Node, node: Node) -> OperationPart:
         parameters=_parameters(entries["parameters"]) if "parameters" in entries else (),
         description=entries["description"].text() if "description" in entries else "",
     )
-    return _READERS[kind](part, entries)
+    part = _READERS[kind](part, entries)
+    node.problems += _forgotten(part)
+    return part
+
+
+def _forgotten(part: OperationPart) -> Iterator[Problem]:
+    """Constants that are called like a parameter of which no use is made."""
+    ends = () if part.at_end is None else part.at_end
+    spell = () if part.duration is None else (part.duration,)
+    values = [*part.values, *(each for other in part.other_values for each in other), *ends, *spell]
+    used = {
+        part.parameters[each.parameter]
+        for each in values
+        if each.source in (Source.PARAMETER, Source.ELEMENTS) and each.parameter < len(part.parameters)
+    }
+    for each in values:
+        if each.source is Source.CONSTANT and each.value in part.parameters and each.value not in used:
+            yield each.place.problem(
+                f"'{each.value}' is a text here, not the parameter", f"write ${each.value}"
+            )
 
 
 def _keys(node: Node) -> list[str]:

@@ -9,14 +9,19 @@ from jacaros.yaml_nodes import Node
 PROFILES = {"sensor_data": SENSOR_DATA, "default": DEFAULT_QOS, "latched": LATCHED}
 
 
+_PARTS = {
+    **{each: f"write qos: {{reliability: {each}}}" for each in ("reliable", "best_effort")},
+    **{each: f"write qos: {{durability: {each}}}" for each in ("volatile", "transient_local")},
+}
+"""What to write for a part of a quality of service that stands alone."""
+
+
 def read_qos(node: Node) -> QoS:
     """A quality of service; the default one after a mistake."""
     if not isinstance(node.value, dict):
         if node.value not in PROFILES:
-            node.wrong(
-                f"there is no QoS profile {shown(node.value)}",
-                f"write {', '.join(PROFILES)}, or {{reliability: ..., durability: ..., depth: ..., deadline: ...}}",
-            )
+            listed = f"write {', '.join(PROFILES)}, or {{reliability: ..., durability: ..., depth: ..., deadline: ...}}"
+            node.wrong(f"there is no QoS profile {shown(node.value)}", _PARTS.get(str(node.value), listed))
         return PROFILES.get(node.value, DEFAULT_QOS)
     entries = node.mapping("reliability", "durability", "depth", "deadline")
     usual = DEFAULT_QOS

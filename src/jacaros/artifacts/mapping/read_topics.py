@@ -13,7 +13,7 @@ from jacaros.artifacts.mapping.declared import (
 )
 from jacaros.artifacts.mapping.paths import WHOLE
 from jacaros.artifacts.mapping.read_fields import path_of, place_of, read_field, read_fields, shown
-from jacaros.artifacts.mapping.read_names import belief_name, ros_name, type_written
+from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, is_type, ros_name, type_written
 from jacaros.artifacts.mapping.read_qos import read_qos
 from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.env.values import Atom
@@ -33,6 +33,8 @@ PLACES = ("x", "y", "z", "roll", "pitch", "yaw", "stamp")
 def read_property(name: Node, node: Node) -> TopicPart:
     """One property from a topic."""
     place = place_of(name)
+    if is_misplaced(name, node, PROPERTY, "a property"):
+        return TopicPart(UNNAMED, place, Written("unnamed", place))
     if isinstance(node.value, str):
         return TopicPart(belief_name(name), place, ros_name(node))
     entries = node.mapping(*PROPERTY, required=("topic",))
@@ -51,6 +53,8 @@ def read_property(name: Node, node: Node) -> TopicPart:
 
 def read_signal(name: Node, node: Node) -> TopicPart:
     """One signal."""
+    if is_misplaced(name, node, SIGNAL, "a signal"):
+        return TopicPart(UNNAMED, place_of(name), Written("unnamed", place_of(name)), signal=True)
     if isinstance(node.value, str):
         return TopicPart(belief_name(name), place_of(name), ros_name(node), signal=True)
     entries = node.mapping(*SIGNAL, required=("topic",))
@@ -64,6 +68,18 @@ def read_signal(name: Node, node: Node) -> TopicPart:
         when_changed=changed is not None and changed.truth(),
         signal=True,
     )
+
+
+def is_misplaced(name: Node, node: Node, keys: tuple[str, ...], what: str) -> bool:
+    """Whether a key of a property (*what*) stands where the name of a property is wanted, which is told."""
+    if name.value not in keys or isinstance(node.value, dict):
+        return False
+    if isinstance(node.value, str) and not is_type(node.value):
+        return False  # a property may be called so, and this be its topic
+    name.wrong(
+        f"'{name.value}' stands here like the name of {what}", "indent it, below that to which it belongs"
+    )
+    return True
 
 
 def read_feedback(name: Node, node: Node) -> TopicPart:
@@ -140,7 +156,9 @@ def read_policy(
 def _positive(node: Node) -> float:
     value = node.number(default=1.0)
     if value <= 0.0:
-        node.wrong(f"{node.what} is {value:g}, but must be above zero")
+        node.wrong(
+            f"{node.what} is {value:g}, but must be above zero", f"leave {node.what} out, or write a figure"
+        )
         return 1.0
     return value
 
@@ -201,6 +219,8 @@ def plain_constant(node: Node) -> object:
 def _view(node: Node, each: bool) -> RangeOfView:
     entries = node.mapping("metres", "distance", "at", "from", required=("metres",))
     place = place_of(node)
+    if not isinstance(node.value, dict):
+        return RangeOfView(1.0, place)  # told already
     if "distance" in entries and ("at" in entries or "from" in entries):
         node.wrong("'distance' and 'at' say the same thing", "leave one of them out")
     if "distance" not in entries and "at" not in entries:

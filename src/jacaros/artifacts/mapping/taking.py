@@ -9,6 +9,7 @@ from typing import Any
 from jacaros.artifacts.mapping.declared import Conversion, FieldPart
 from jacaros.artifacts.mapping.handle import MessageHandle
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
+from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import Path, WrongPath, follow, getter
 from jacaros.artifacts.mapping.read_fields import ANGLES, LISTS
 from jacaros.env.values import Atom, Structure
@@ -53,6 +54,7 @@ def taker(field: FieldPart, message: FieldType, element: FieldType | None, inter
     from_message = element is None or field.path.of_message
     root = message if element is None or field.path.of_message else element
     leaf = follow(field.path, root, interfaces.fields)
+    check_unit(field.conversion, field.path, root, interfaces)
     get = getter(field.path)
     values = _values(field, leaf, root, message, interfaces)
     path = field.path.text

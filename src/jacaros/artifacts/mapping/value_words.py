@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from jacaros.artifacts.mapping.declared import Conversion, FieldPart, Source, ValuePart
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
-from jacaros.artifacts.mapping.message_units import unit_of
+from jacaros.artifacts.mapping.message_units import unit_at
 from jacaros.artifacts.mapping.paths import Path, WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.taking import owner_of
@@ -87,7 +87,8 @@ def _converted(
         return "atom"
     if kind == "count":
         return "whole number"
-    unit = "radians" if kind in ANGLES else _unit(path, root, interfaces)
+    unit = "radians" if kind in ANGLES else unit_at(path, root, interfaces)
+    unit = _UNIT_WORDS.get(unit, unit)
     return _kind(leaf.base, conversion, "number" if kind in (*ANGLES, "mean") else "", unit)
 
 
@@ -128,15 +129,3 @@ def _shown_unit(conversion: Conversion, unit: str) -> str:
 def _names(names: Sequence[str]) -> str:
     more = ", ..." if len(names) > _FEW else ""
     return f"one of {', '.join(names[:_FEW])}{more}"
-
-
-def _unit(path: Path, root: FieldType, interfaces: Interfaces) -> str:
-    """The unit of what stands at a path; a vector's parts have that of the vector."""
-    here, unit = root, ""
-    for step in path.steps:
-        if isinstance(step, str) and step.startswith("."):
-            unit = unit_of(here.base, step[1:]) or unit
-            here = interfaces.fields(here.base)[step[1:]]
-        else:
-            here = FieldType(here.base)
-    return _UNIT_WORDS.get(unit, unit)

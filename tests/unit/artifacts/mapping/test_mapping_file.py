@@ -94,11 +94,71 @@ WRONG = {
     "namespace": ("namespace: 'a b'", "1:12: 'a b' is no ROS namespace | write it like r1 or fleet/r1"),
     "type name": (
         "properties: {a: {topic: t, type: Odometry}}",
-        "1:34: 'Odometry' is no type of this kind | write it like nav_msgs/msg/Odometry",
+        "1:34: 'Odometry' is no type of messages | write it like nav_msgs/msg/Odometry",
     ),
     "service type for a topic": (
         "properties: {a: {topic: t, type: std_srvs/srv/Trigger}}",
-        "1:34: 'std_srvs/srv/Trigger' is no type of this kind | write it like nav_msgs/msg/Odometry",
+        "1:34: std_srvs/srv/Trigger is the type of a service, not of messages | here a type is like nav_msgs/msg/Odometry",
+    ),
+    "message type for an action": (
+        "operations: {a: {action: t, type: nav_msgs/msg/Odometry}}",
+        "1:35: nav_msgs/msg/Odometry is the type of messages, not of an action | here a type is like nav2_msgs/action/",
+    ),
+    "type with dots": (
+        "properties: {a: {topic: t, type: nav_msgs.msg.Odometry}}",
+        "1:34: 'nav_msgs.msg.Odometry' is no type of messages | write nav_msgs/msg/Odometry",
+    ),
+    "type like in C++": (
+        "properties: {a: {topic: t, type: 'nav_msgs::msg::Odometry'}}",
+        "1:34: 'nav_msgs::msg::Odometry' is no type of messages | write nav_msgs/msg/Odometry",
+    ),
+    "type beside its property": (
+        "properties:\n  odom:\n    topic: odom\n  type: nav_msgs/msg/Odometry\n",
+        "4:3: 'type' stands here like the name of a property | indent it, below that to which it belongs",
+    ),
+    "rate beside its property": (
+        "properties:\n  odom:\n    topic: odom\n  rate: 5\n",
+        "4:3: 'rate' stands here like the name of a property | indent it",
+    ),
+    "fields beside their signal": (
+        "signals:\n  bump:\n    topic: bump\n  fields: [data]\n",
+        "4:3: 'fields' stands here like the name of a signal | indent it",
+    ),
+    "parameters beside their operation": (
+        "operations:\n  go:\n    publish: t\n  parameters: [x]\n",
+        "4:3: 'parameters' stands here like the name of an operation | indent it",
+    ),
+    "colon without a space": (
+        "properties:\n  a:\n    topic:odom\n",
+        "3:5: 'topic:odom' is no ROS name | write a space behind the colon: topic: odom",
+    ),
+    "fields as a mapping": (
+        "properties: {a: {topic: t, fields: {x: pose.x, y: pose.y}}}",
+        "1:36: 'fields' has no 'path', and 'x' is no key | fields are a list of paths, or of mappings such as",
+    ),
+    "part of a quality of service alone": (
+        "properties: {a: {topic: t, qos: reliable}}",
+        "1:33: there is no QoS profile 'reliable' | write qos: {reliability: reliable}",
+    ),
+    "rate of zero": (
+        "properties: {a: {topic: t, rate: 0}}",
+        "1:34: 'rate' is 0, but must be above zero | leave 'rate' out, or write a figure",
+    ),
+    "connected is yes": (
+        "connected: yes\nproperties: {a: t}",
+        "1:12: 'connected' must be true, false, or a number of seconds above zero | write true",
+    ),
+    "range of view is a number": (
+        "properties: {a: {topic: t, range_of_view: 3}}",
+        "1:43: 'range_of_view' must be a mapping of keys to values | keys: metres, distance, at, from",
+    ),
+    "properties beside artifacts": (
+        "artifacts: {a: {}}\nproperties: {b: t}",
+        "2:1: 'properties' stands beside 'artifacts' | indent it, below the name of an artifact",
+    ),
+    "parameter without a dollar": (
+        "operations: {say: {parameters: [words], publish: t, fields: {data: words}}}",
+        "1:68: 'words' is a text here, not the parameter | write $words",
     ),
     "path": (
         "properties: {a: {topic: t, fields: ['pose..x']}}",
@@ -281,6 +341,17 @@ def test_a_mistake_is_told_with_place_and_cure(name: str) -> None:
     text, expected = WRONG[name]
     found = told(text)
     assert any(each.startswith(expected) for each in found), found
+
+
+def test_properties_may_be_called_like_keys() -> None:
+    parts = properties("  mode: mode\n  rate: {topic: rate}").artifacts["m"].properties
+    assert [part.name for part in parts] == ["mode", "rate"]
+
+
+def test_a_constant_may_be_called_like_a_parameter_that_is_used() -> None:
+    read_mapping(
+        "operations: {go: {parameters: [map], publish: t, fields: {header.frame_id: map, data: $map}}}\n"
+    )
 
 
 def test_all_mistakes_are_told_at_once_in_the_order_of_the_lines() -> None:

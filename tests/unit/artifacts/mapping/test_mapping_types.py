@@ -32,6 +32,34 @@ WRONG = {
             "Its fields: position (geometry_msgs/msg/Point), orientation (geometry_msgs/msg/Quaternion)"
         ),
     ),
+    "unit of another kind": (
+        ODOMETRY.format("fields: [{path: pose.pose.position.x, unit: degrees}]"),
+        "1:66: messages have pose.pose.position.x in m, and degrees is a unit of angle | units of length are metres, ",
+    ),
+    "unit of a list": (
+        "properties: {a: {topic: t, type: sensor_msgs/msg/LaserScan, fields: [{path: ranges, as: min, unit: percent}]}}",
+        "1:70: messages have ranges in m, and percent is a unit of share",
+    ),
+    "unit of a stamp": (
+        ODOMETRY.format("fields: [{path: header.stamp, unit: metres}]"),
+        "1:66: messages have header.stamp in s, and metres is a unit of length",
+    ),
+    "degrees already": (
+        "properties: {a: {topic: t, type: sensor_msgs/msg/NavSatFix, fields: [{path: latitude, unit: degrees}]}}",
+        "1:70: messages have latitude in degrees already | leave 'unit' out",
+    ),
+    "unit of a velocity": (
+        TWIST.format("fields: {linear.x: {value: $v, unit: degrees}}"),
+        "1:98: messages have linear.x in m/s, and degrees is a unit of angle | units of speed are metres_per_second, ",
+    ),
+    "field said twice": (
+        TWIST.format("fields: {linear: [1, 2, 3], linear.x: $v}"),
+        "1:117: 'linear.x' is in 'linear', which stands in line 1 | leave one of them out",
+    ),
+    "range of view of a wrong position": (
+        ODOMETRY.format("range_of_view: {metres: 3, at: [pose.x, pose.y]}"),
+        "1:72: 'pose.x': geometry_msgs/msg/PoseWithCovariance has no field 'x'",
+    ),
     "frame without a header": (
         "properties: {a: {topic: t, type: std_msgs/msg/String, frame: odom}}",
         "1:62: 'frame' is for messages with a header, and std_msgs/msg/String has none | leave it out",
@@ -188,3 +216,8 @@ def test_types_that_only_the_robot_knows_are_told_as_such() -> None:
     [found] = told("properties: {a: {topic: t, type: acme_msgs/msg/Gripper}}")
     assert "the type acme_msgs/msg/Gripper is not known here" in found
     assert "interface_paths" in found
+
+
+def test_a_unit_that_messages_do_not_usually_have_is_said() -> None:
+    text = ODOMETRY.format("fields: [{path: pose.pose.position.x, unit: degrees, message_unit: radians}]")
+    check_mapping(read_mapping(text), stored_interfaces())

@@ -63,7 +63,7 @@ def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
         ),
         ("geometry_msgs/msg/Point", {"x": 1.5}, "{path: x, unit: centimetres}", (150.0,)),
         ("geometry_msgs/msg/Point", {"x": 1500}, "{path: x, unit: metres, message_unit: millimetres}", (1.5,)),
-        ("geometry_msgs/msg/Point", {"x": 10}, "{path: x, unit: kilometres_per_hour}", (36.0,)),
+        ("geometry_msgs/msg/Vector3", {"x": 10}, "{path: x, unit: kilometres_per_hour}", (36.0,)),
         ("geometry_msgs/msg/Point", {"x": 2}, "{path: x, scale: 3, offset: 1}", (7.0,)),
         (BATTERY, {"power_supply_status": 1}, "{path: power_supply_status, as: name}", (Atom("charging"),)),
         (BATTERY, {"power_supply_status": 99}, "{path: power_supply_status, as: name}", (99,)),
