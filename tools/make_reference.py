@@ -56,6 +56,8 @@ Robot artifacts do not believe all that they are sent. They tell of a bad messag
 | `out_of_order(S)` | its stamp is S seconds older than that of a message before | dropped |
 | `clock_jumped(S)` | all stamps are S seconds older than before: the sender's clock was set back | used |
 | `stamp_off(S)` | its stamp is S seconds (10 or more) off our clock, minus: in the past | used |
+| `late(S)` | it came S seconds (0.5 or more) later after its stamp than others before | used, but not for driving |
+| `out_of_range(What)` | a number cannot be true, such as a negative charge | dropped |
 
 A motion stops the robot at once when odometry is no number any more, and fails with `no_odometry(S)` if that lasts, or if
 odometry goes on in another frame: there, its goal is another place. A beam of a laser without an echo is no bad message,

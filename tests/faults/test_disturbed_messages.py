@@ -33,12 +33,36 @@ def test_a_robot_arrives_over_a_bad_line(topic: str, fate: Fate) -> None:
     assert abs(lab.place[0]) <= 0.05
 
 
-def test_odometry_that_is_late_by_long_makes_a_robot_overshoot_and_give_up() -> None:
-    """Nobody can tell a late message from another clock: the bound is what a robot drives in that time."""
-    lab = in_lab("driving.asl", lambda lab: lab.at(1, lambda: lab.graph.disturb("/odom", delayed(1.0))))
-    assert any(line.startswith("action_failed blocked") for line in lab.lines)
-    assert max(moment.x for moment in lab.moments) < 2.0 + 1.0 * 0.65
+def late(seconds: float, begin: float, end: float) -> Callable[[Lab], None]:
+    def faults(lab: Lab) -> None:
+        lab.at(begin, lambda: lab.at(end, lab.graph.disturb("/odom", delayed(seconds))))
+
+    return faults
+
+
+def test_a_robot_does_not_drive_by_odometry_that_has_become_late() -> None:
+    lab = in_lab("driving.asl", late(1.0, 1, 12))
+    told = [line.split("(")[0] for line in lab.lines if not line.startswith("bad /odom out_of_order")]
+    assert told == [
+        "connected /odom",
+        "lost /odom",
+        "connected /odom",
+        *["bad /odom late"] * 2,
+        "action_failed no_odometry",
+        "bad /odom late",
+        "at 2 0",
+        "at 0 0",
+    ]
+    assert lab.stands(2.6, 12.0)
+    assert "came 0.999 s later after its stamp than others before" in lab.errors[0]
+    assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
+
+
+def test_odometry_that_is_a_little_late_makes_a_robot_overshoot_a_little() -> None:
+    lab = in_lab("driving.asl", late(0.3, 1, 60))
+    assert max(moment.x for moment in lab.moments) < 2.0 + 0.3 * 0.65
     assert lab.safe
+    assert lab.errors == []
 
 
 def lost(topic: str, begin: float, end: float) -> Callable[[Lab], None]:

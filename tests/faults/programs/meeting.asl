@@ -12,9 +12,13 @@
 
 +pose(X, _, _) : X >= 1 & not stopped
   <- +stopped;
-     .print("seen at ", X);
+     ?thoughts(N);
+     .print("seen at ", X, " after ", N, " thoughts");
      abortMoving.
 
-+pose(X, _, _)
-  <- for (.range(I, 1, 2000)) { _Y = I };
-     -+thought(X).
+// What it thinks on the way takes longer than a message does.
++pose(X, _, _) : X >= 0.9 & not stopped & thoughts(N)
+  <- -+thoughts(N + 1);
+     for (.range(I, 1, 20000)) { _Y = I }.
+
+thoughts(0).

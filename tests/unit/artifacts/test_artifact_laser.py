@@ -21,7 +21,15 @@ def test_five_ranges_are_spread_from_the_first_beam_to_the_last() -> None:
 
 
 def test_no_echo_is_the_greatest_range() -> None:
-    assert sampled([math.inf, math.nan, 1.0, 9.0, -math.inf], 8.0) == (8, 8, 1, 8, 8)
+    assert sampled([math.inf, math.nan, 1.0, 9.0, 8.0], 8.0) == (8, 8, 1, 8, 8)
+
+
+def test_an_echo_too_near_to_be_measured_is_the_least_range() -> None:
+    """REP 117: minus infinity; taken for no echo at all, an obstacle would seem to be far away."""
+    ranges = [-math.inf, 1.0, math.inf, 1.0, -math.inf]
+    assert sampled(ranges, 8.0, 0.12) == (0.12, 1, 8, 1, 0.12)
+    for unknown in (math.nan, math.inf, -1.0, 9.0):
+        assert sampled(ranges, 8.0, unknown) == (0, 1, 8, 1, 0)
 
 
 def test_scans_of_any_size_are_shown() -> None:

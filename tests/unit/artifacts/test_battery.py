@@ -251,3 +251,35 @@ def test_a_battery_of_unknown_charge_is_not_shown() -> None:
         assert watcher.holds("diagnostics") == [(MEDIUM,)]
 
     in_lab(body, None)
+
+
+def test_a_charge_that_cannot_be_is_told_and_not_shown() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSimBattery, option("source", "robot"))
+        watcher = lab.watch(artifact)
+        tell = charge(lab.backend, "/battery_state")
+        for share in (0.5, -1.0, -0.01, 0.4):
+            tell(share, "DISCHARGING")
+            await lab.sleep(0.1)
+        assert watcher.values("battery") == [(50,), (40,)]
+        assert [(name, *map(str, told)) for name, told in watcher.signals] == [
+            ("bad_message", "/battery_state", 'out_of_range("percentage")')
+        ]
+
+    in_lab(body, None)
+
+
+def test_a_driver_that_counts_in_percent_is_understood() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtSimBattery, option("source", "robot"))
+        watcher = lab.watch(artifact)
+        tell = charge(lab.backend, "/battery_state")
+        for percent in (98.2, 55.0, 19.6, 1.0):
+            tell(percent, "DISCHARGING")
+            await lab.sleep(0.1)
+        assert watcher.values("battery") == [(98,), (55,), (20,), (1,)]
+        assert watcher.values("diagnostics")[-1] == (LOW,)
+        assert len(lab.logged) == 1
+        assert "taken for percent" in lab.logged[0]
+
+    in_lab(body, None)

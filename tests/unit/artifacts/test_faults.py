@@ -7,11 +7,13 @@ import pytest
 from robot_lab import STANDSTILL, Lab, Watcher, in_lab
 
 from jacaros.artifacts.ros.battery import ArtSimBattery
-from jacaros.artifacts.ros.faults import FAR, SILENCE, Faults
+from jacaros.artifacts.ros.faults import SILENCE, Faults
 from jacaros.artifacts.ros.laser import ArtBaseScan
 from jacaros.artifacts.ros.odometry import ArtOdometry
+from jacaros.artifacts.ros.stamps import FAR, Stamps
 from jacaros.artifacts.ros.tutorial import ArtTutorial
 from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.clock import VirtualClock
 from jacaros.env import Atom, Structure
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -121,6 +123,53 @@ def test_stragglers_between_good_messages_are_no_jump() -> None:
         assert watcher.values("odom") == [(x, 0, 0) for x in range(9)]
 
     in_lab(body, None)
+
+
+def judged(*messages: tuple[float, float]) -> tuple[list[str], list[float]]:
+    """Judge the stamps of messages that arrive at some times; what was told, and how late each was."""
+    told: list[str] = []
+    late: list[float] = []
+    clock = VirtualClock()
+    stamps = Stamps(Faults("/odom", lambda why, text: told.append(str(why))), clock)
+    for arrival, stamp in messages:
+        clock._move_to(arrival)
+        stamps.accept(stamp, clock.now())
+        late.append(round(stamps.late, 3))
+    return [each for each in told if not each.startswith("stamp_off")], late
+
+
+def test_messages_that_come_later_after_their_stamps_than_others_are_late() -> None:
+    other_clock = 5000.0
+    good = [(n * 0.1, other_clock + n * 0.1) for n in range(10)]
+    held_up = [(2.0 + n * 0.1, other_clock + 1.0 + n * 0.1) for n in range(3)]
+    good_again = [(2.5, other_clock + 2.5)]
+    told, late = judged(*good, *held_up, *good_again)
+    assert told == ["late(0.999)"]
+    assert late == [0.0] * 10 + [pytest.approx(1.0, abs=0.01)] * 3 + [0.0]
+
+
+def test_the_first_message_may_be_an_old_one() -> None:
+    assert judged((0, 100), (0.1, 105), (0.2, 105.1)) == ([], [0.0, 0.0, 0.0])
+
+
+def test_a_clock_that_was_set_back_makes_nothing_late() -> None:
+    before = [(n * 0.1, 100 + n * 0.1) for n in range(20)]
+    for back in (0.7, 30.0):
+        after = [(n * 0.1, 100 - back + n * 0.1) for n in range(20, 60)]
+        told, late = judged(*before, *after)
+        assert not any(each.startswith("late") for each in told)
+        assert set(late) == {0.0}
+
+
+def test_clocks_that_part_slowly_make_nothing_late() -> None:
+    hours = [(n * 1.0, 100 + n * 0.9995) for n in range(7200)]
+    told, late = judged(*hours)
+    assert told == []
+    assert max(late) == 0.0
+
+
+def test_a_stamp_that_stands_still_tells_nothing() -> None:
+    assert judged(*[(float(n), 100.0) for n in range(10)]) == ([], [0.0] * 10)
 
 
 def test_a_stamp_far_off_our_clock_is_used_and_told() -> None:

@@ -18,6 +18,9 @@ FULL, MEDIUM, LOW = 100, 50, 20
 CHARGE_STEP, CHARGE_PERIOD = 10, 0.5
 """A timer battery gains so many percent, each so many seconds, as in the thesis."""
 
+MORE_THAN_FULL = 1.5
+"""A driver that tells more than this counts in percent: the message type wants a share of 1, but not all obey."""
+
 UNKNOWN = -1
 """Percent before the robot told its battery."""
 
@@ -66,6 +69,7 @@ class ArtSimBattery(RosArtifact):
         self._charging = False
         self._draining = False
         self._share = math.inf
+        self._in_percent = False
         self._fed_at = -math.inf
         self._full_since = math.inf
         expire = self.options.get("expire")
@@ -142,22 +146,33 @@ class ArtSimBattery(RosArtifact):
         status = int(state.power_supply_status)
         charging = status == constant(state, "POWER_SUPPLY_STATUS_CHARGING")
         full = status == constant(state, "POWER_SUPPLY_STATUS_FULL")
-        share = float(state.percentage)
-        if not math.isfinite(share):
-            self._faulty.not_finite("percentage", share)
-            share = self._share
+        told = self._charge(float(state.percentage))
+        share = self._share if told is None else told
         # Many drivers know no status: there, a charge that rises tells of the current.
         if charging or full or share > self._share:
             self._fed_at = self.clock.elapsed
         self._share = share
-        if math.isfinite(float(state.percentage)):
-            level = FULL if full else min(FULL, max(0, round(100.0 * share)))
+        if told is not None:
+            level = FULL if full else min(FULL, round(100.0 * share))
             if level < FULL:
                 self._full_since = math.inf
             elif self._full_since == math.inf:
                 self._full_since = self.clock.elapsed
             self.start(self.show_battery, level, charging, cause=sample.cause)
             self._told.take((level,))
+
+    def _charge(self, told: float) -> float | None:
+        """The charge as a share of 1; None when the message tells none."""
+        if not math.isfinite(told):
+            self._faulty.not_finite("percentage", told)
+            return None
+        if told < 0.0:
+            self._faulty.out_of_range("percentage", told)
+            return None
+        if told > MORE_THAN_FULL and not self._in_percent:
+            self._in_percent = True
+            self.log(f"the robot tells a charge of {told:g}: it is taken for percent, though 1 is to be full")
+        return told / 100.0 if self._in_percent else told
 
     @internal_operation
     def show_battery(self, level: int, charging: bool) -> None:

@@ -10,28 +10,25 @@ wrong_frame(Frame)     it is given in another frame than the messages before, or
 out_of_order(S)        its stamp is S seconds older than that of a message before               dropped
 clock_jumped(S)        all stamps are now S seconds older than before: the clock was set back   used
 stamp_off(S)           its stamp is S seconds (10 or more) off our clock, minus: in the past    used
+out_of_range(What)     a number cannot be true, such as a negative charge; What is its field            dropped
+late(S)                it came S seconds (0.5 or more) later after its stamp than those before  used [1]_
 =====================  ======================================================================  ==============
+
+.. [1] Not for driving: a motion stands as if no odometry came.
 """
 
 import math
 from collections.abc import Callable
 from typing import Any
 
+from jacaros.artifacts.ros.stamps import Stamps
+from jacaros.clock import Clock
 from jacaros.env.values import Structure
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
 
 Tell = Callable[[Structure, str], None]
 """Takes the reason, and a text for people."""
-
-FAR = 10.0
-"""Seconds between a stamp and our clock that are worth a word; the clocks of two machines differ by less."""
-
-STRAGGLING = 1.0
-"""A message may be overtaken by so many seconds; of a clock that was set back by less, the stamps soon catch up."""
-
-IN_A_ROW = 3
-"""So many stamps one after the other that are still older are no stragglers: the clock of the sender was set back."""
 
 SILENCE = 5.0
 """Seconds without a good message after which one in another frame is taken: its sender was started anew."""
@@ -73,6 +70,10 @@ class Faults:
         """Note that a message was dropped because of a number."""
         self.add(Structure("not_finite", (what,)), f"{what} is {number}; the message is dropped")
 
+    def out_of_range(self, what: str, number: float) -> None:
+        """Note that a message was dropped because of a number that cannot be true."""
+        self.add(Structure("out_of_range", (what,)), f"{what} is {number:g}; the message is dropped")
+
 
 class Header:
     """Judges the headers (``std_msgs/msg/Header``) of one topic's messages.
@@ -81,26 +82,31 @@ class Header:
 
     Args:
         faults: where bad ones are noted.
+        clock: measures how late messages are.
         frame: the only frame that is right; empty: that of the first message.
     """
 
-    def __init__(self, faults: Faults, frame: str = "") -> None:
+    def __init__(self, faults: Faults, clock: Clock, frame: str = "") -> None:
         self._faults = faults
         self._wanted = frame.strip("/")
         self._frame = self._wanted
-        self._newest = 0.0
-        self._stragglers: list[float] = []
         self._good_at = -math.inf
+        self._stamps = Stamps(faults, clock)
 
     @property
     def frame(self) -> str:
         """The frame in which messages are believed now; empty while it is not known."""
         return self._frame
 
+    @property
+    def late(self) -> float:
+        """By how many seconds the newest message was later than others before; 0 when it was not."""
+        return self._stamps.late
+
     def accepts(self, sample: Sample) -> bool:
         """Whether a message may be used; notes it when not."""
         header: Any = sample.message.header
-        good = self._is_in_frame(header.frame_id, sample.stamp) and self._is_in_order(
+        good = self._is_in_frame(header.frame_id, sample.stamp) and self._stamps.accept(
             to_seconds(header.stamp), sample.stamp
         )
         if good:
@@ -116,29 +122,4 @@ class Header:
             return True
         text = f"the frame is {frame}, not {self._frame}; the message is dropped"
         self._faults.add(Structure("wrong_frame", (frame,)), text)
-        return False
-
-    def _is_in_order(self, stamp: float, now: float) -> bool:
-        if stamp == 0.0:
-            return True
-        if abs(stamp - now) >= FAR:
-            off = round(stamp - now, 3)
-            text = f"the stamp is {off:g} s off our clock; do both follow the same clock (use_sim_time)?"
-            self._faults.add(Structure("stamp_off", (off,)), text)
-        if stamp >= self._newest:
-            self._newest = stamp
-            self._stragglers.clear()
-            return True
-        late = round(self._newest - stamp, 3)
-        if late < STRAGGLING or (self._stragglers and stamp < self._stragglers[-1]):
-            self._stragglers.clear()
-        if late >= STRAGGLING:
-            self._stragglers.append(stamp)
-        if len(self._stragglers) >= IN_A_ROW:
-            self._faults.add(Structure("clock_jumped", (late,)), f"the stamps jumped back by {late:g} s")
-            self._newest = stamp
-            self._stragglers.clear()
-            return True
-        text = f"the stamp is {late:g} s older than that of a message before; the message is dropped"
-        self._faults.add(Structure("out_of_order", (late,)), text)
         return False

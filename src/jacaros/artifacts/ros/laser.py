@@ -21,7 +21,7 @@ class ArtBaseScan(RosArtifact):
     """Shows five ranges of ``/scan``, evenly spread from the first beam to the last.
 
     The number of beams may be any.  A beam without an echo (NaN, infinite, or beyond the sensor's range) has
-    the sensor's greatest range.
+    the sensor's greatest range, one whose echo is too near to be measured (minus infinity, REP 117) the least.
 
     Options:
         mode, rate, dead_band, latest_only, expire: see `ReadingPolicy`.
@@ -43,7 +43,7 @@ class ArtBaseScan(RosArtifact):
             "laserrange", ReadingPolicy.from_options(self.options), *[0] * len(SHARES)
         )
         topic = str(self.options.get("topic", "scan"))
-        self._header = Header(self.faults_of(topic), str(self.options.get("frame", "")))
+        self._header = Header(self.faults_of(topic), self.clock, str(self.options.get("frame", "")))
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take, SENSOR_DATA)
 
     def _take(self, sample: Sample) -> None:
@@ -51,7 +51,7 @@ class ArtBaseScan(RosArtifact):
         longest = self.options.get("max", float(scan.range_max))
         assert isinstance(longest, float)
         if len(scan.ranges) and self._header.accepts(sample):
-            self._ranges.take(sampled(scan.ranges, longest), sample.cause)
+            self._ranges.take(sampled(scan.ranges, longest, scan.range_min), sample.cause)
 
     @operation(name="getCurrentBaseScan")
     async def get_current_base_scan(self) -> None:
@@ -69,9 +69,10 @@ class ArtScan(ArtBaseScan):
     """The same under the name that the thesis's architecture chapter uses."""
 
 
-def sampled(ranges: Sequence[float], longest: float) -> tuple[float, ...]:
-    """Five ranges, evenly spread over the scan; what is no range becomes *longest*."""
-    return tuple([_echo(float(ranges[place]), longest) for place in _places(len(ranges))])
+def sampled(ranges: Sequence[float], longest: float, shortest: float = 0.0) -> tuple[float, ...]:
+    """Five ranges, evenly spread over the scan; what is no range becomes *longest*, what is too near *shortest*."""
+    least = shortest if 0.0 <= shortest < longest else 0.0
+    return tuple([_echo(float(ranges[place]), longest, least) for place in _places(len(ranges))])
 
 
 @lru_cache(16)
@@ -80,5 +81,7 @@ def _places(beams: int) -> tuple[int, ...]:
     return tuple(round(share * (beams - 1)) for share in SHARES)
 
 
-def _echo(distance: float, longest: float) -> float:
-    return distance if -math.inf < distance < longest else longest
+def _echo(distance: float, longest: float, shortest: float) -> float:
+    if distance == -math.inf:
+        return shortest
+    return distance if distance < longest else longest

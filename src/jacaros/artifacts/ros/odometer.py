@@ -7,6 +7,7 @@ from typing import Any
 
 from jacaros.artifacts.ros.control import Pose, Velocity, heading_of
 from jacaros.artifacts.ros.faults import Faults, Header
+from jacaros.clock import Clock
 from jacaros.ros.backend import Sample
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -71,6 +72,7 @@ class Odometer:
 
     Args:
         faults: where bad messages are noted.
+        clock: measures how late messages are.
         on_reading: told of every good message.
         frame: see `Header`.
 
@@ -81,13 +83,17 @@ class Odometer:
     """
 
     def __init__(
-        self, faults: Faults, on_reading: Callable[[Odometry], None] | None = None, frame: str = ""
+        self,
+        faults: Faults,
+        clock: Clock,
+        on_reading: Callable[[Odometry], None] | None = None,
+        frame: str = "",
     ) -> None:
         self.newest: Odometry | None = None
         self.count = 0
         self.trusted = True
         self._faults = faults
-        self._header = Header(faults, frame)
+        self._header = Header(faults, clock, frame)
         self._on_reading = on_reading
 
     @property
@@ -116,5 +122,5 @@ class Odometer:
             self._on_reading(self.newest)
 
     def age(self, now: float) -> float | None:
-        """Seconds since the newest message came; None when none did."""
-        return None if self.newest is None else now - self.newest.sample.stamp
+        """Seconds since the newest message should have come; None when none did."""
+        return None if self.newest is None else now - self.newest.sample.stamp + self._header.late

@@ -43,7 +43,7 @@ class ArtOdometry(RosArtifact):
         self._position = self.reading("odom", policy, 0, 0, 0)
         self._pose = self.reading("pose", policy, 0, 0, 0)
         topic = str(self.options.get("topic", "odom"))
-        odometer = Odometer(self.faults_of(topic), self._take, str(self.options.get("frame", "")))
+        odometer = Odometer(self.faults_of(topic), self.clock, self._take, str(self.options.get("frame", "")))
         self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
 
     def _take(self, odometry: Odometry) -> None:

@@ -34,8 +34,8 @@ class RosArtifact(SensingArtifact):
 
     Signals:
         bad_message(Topic, Why): a message was wrong; told for the first, the tenth, the hundredth ... of a kind.  Why
-            is ``not_finite(What)``, ``wrong_frame(Frame)``, ``out_of_order(Seconds)``, ``clock_jumped(Seconds)`` or
-            ``stamp_off(Seconds)``.
+            is ``not_finite(What)``, ``out_of_range(What)``, ``wrong_frame(Frame)``, ``out_of_order(Seconds)``,
+            ``clock_jumped(Seconds)``, ``stamp_off(Seconds)`` or ``late(Seconds)``.
     """
 
     async def call(

@@ -78,7 +78,7 @@ class WheeledArtifact(RosArtifact):
         self._commands = self.publisher(str(self.options.get("command_topic", self.command_topic)), TWIST)
         topic = str(self.options.get("odometry_topic", "odom"))
         self.odometer = Odometer(
-            self.faults_of(topic), self.on_odometry, str(self.options.get("odometry_frame", ""))
+            self.faults_of(topic), self.clock, self.on_odometry, str(self.options.get("odometry_frame", ""))
         )
         self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
         self._over = False
