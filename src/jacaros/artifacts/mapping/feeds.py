@@ -12,6 +12,7 @@ from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.artifacts.ros.faults import Faults
 from jacaros.artifacts.ros.reading import Reading
 from jacaros.artifacts.ros.view import RangeOfView
+from jacaros.clock import Timer
 from jacaros.env.values import Structure
 from jacaros.ros.backend import Sample
 from jacaros.ros.errors import CapabilityMissing
@@ -81,7 +82,9 @@ class Feed:
         self._reading: Reading | None = None
         self._faults: Faults | None = None
         self._sent: dict[object, tuple[object, ...]] = {}
-        self._quiet_until = 0.0
+        self._held: tuple[list[Row], Cause | None] | None = None
+        self._pause: Timer | None = None
+        host.at_dispose(self._end_pause)
         if part.each is not None and not part.signal:
             host.elements[part.name] = Elements(host, part)
         elif not part.signal:
@@ -152,16 +155,28 @@ class Feed:
             self._reading.withdraw()
 
     def _signal(self, rows: list[Row], cause: Cause | None) -> None:
+        if self._pause is not None:
+            self._held = (rows, cause)  # the newest is not lost
+            return
         if self.part.when_changed:
             before, self._sent = self._sent, {row.key: row.values for row in rows}
             rows = [row for row in rows if before.get(row.key) != row.values]
-        now = self._host.clock.elapsed
-        rate = self.part.policy.rate
-        if not rows or (rate is not None and now < self._quiet_until):
+        if not rows:
             return
-        if rate is not None:
-            self._quiet_until = now + 1.0 / rate
+        if (rate := self.part.policy.rate) is not None:
+            self._pause = self._host.clock.call_later(1.0 / rate, self._go_on)
         self._host.start(self._host.send_signals, self.part.name, [row.values for row in rows], cause=cause)
+
+    def _go_on(self) -> None:
+        """The pause after a signal is over."""
+        self._pause = None
+        if self._held is not None:
+            held, self._held = self._held, None
+            self._signal(*held)
+
+    def _end_pause(self) -> None:
+        if self._pause is not None:
+            self._pause.cancel()
 
     def withdraw(self) -> None:
         """Have the property no more."""

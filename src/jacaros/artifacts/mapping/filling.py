@@ -10,7 +10,7 @@ from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
-from jacaros.artifacts.mapping.taking import QUATERNION, owner_of
+from jacaros.artifacts.mapping.taking import QUATERNION, check_names, owner_of
 from jacaros.env.values import Atom, Structure, text
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
@@ -211,6 +211,8 @@ def _constant(
 
 def _check(part: ValuePart, leaf: FieldType) -> None:
     kind, path = part.conversion.kind, part.target.text
+    if kind not in ANGLES:
+        check_names(part.conversion, path, leaf.base)
     if kind in ANGLES and (leaf.base != QUATERNION or leaf.array):
         cure = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
         raise WrongPath(f"'as: {kind}' gives a quaternion, and {path} is {leaf}", cure)

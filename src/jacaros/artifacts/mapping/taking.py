@@ -195,6 +195,8 @@ def _element(
 def _check_conversion(field: FieldPart, single: FieldType) -> None:
     """Refuse what does not fit the type."""
     conversion, path = field.conversion, field.path.text
+    if field.conversion.kind not in (*ANGLES, *LISTS):
+        check_names(conversion, path, single.base)
     kind = conversion.kind
     number = single.base in FLOATS or single.base in INTEGER_RANGES or single.base in TIMES
     if kind in ANGLES and single.base != QUATERNION:
@@ -210,6 +212,28 @@ def _check_conversion(field: FieldPart, single: FieldType) -> None:
                 )
     if field.otherwise is not None and single.base not in FLOATS and kind not in ANGLES:
         raise WrongPath(f"'otherwise' is for floating-point numbers, and {path} is {single}", "leave it out")
+
+
+def check_names(conversion: Conversion, path: str, base: str) -> None:
+    """Refuse names for values that the field cannot have.
+
+    Raises:
+        WrongPath: one of them.
+    """
+    wanted = _NAMED.get(base) or ((int,) if base in INTEGER_RANGES else None)
+    for value, name in conversion.names:
+        if wanted is not None and (
+            not isinstance(value, wanted) or isinstance(value, bool) != (base == "bool")
+        ):
+            cure = f"write names: {{true: {name}}}" if base == "bool" else f"write values of {base}"
+            raise WrongPath(f"'names' has {value!r}, and {path} is {base}", cure)
+
+
+_NAMED: dict[str, tuple[type, ...]] = {
+    "bool": (bool,),
+    "string": (str,),
+    **dict.fromkeys(FLOATS, (int, float)),
+}
 
 
 def converted(conversion: Conversion) -> Convert:

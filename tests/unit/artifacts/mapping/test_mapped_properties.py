@@ -291,8 +291,30 @@ def test_signals_at_most_so_often() -> None:
     text = f"signals: {{a: {{topic: p, type: {POINT}, fields: x, rate: 1}}}}"
 
     async def body(t: Talk) -> None:
-        await t.points(1, 2, 3, pause=0.6)
-        assert [arguments for _, arguments in t.watcher.signals] == [(1,), (3,)]
+        await t.points(1, 2, 3)
+        assert [arguments for _, arguments in t.watcher.signals] == [(1,)]
+        await t.lab.sleep(1.1)
+        assert [arguments for _, arguments in t.watcher.signals] == [(1,), (3,)], (
+            "the last of a burst is not lost"
+        )
+        await t.lab.sleep(3)
+        await t.points(4)
+        assert [arguments for _, arguments in t.watcher.signals] == [(1,), (3,), (4,)]
+
+    talk(text, body)
+
+
+def test_a_change_within_the_pause_of_signals_is_not_lost() -> None:
+    text = f"signals: {{a: {{topic: p, type: {POINT}, fields: x, rate: 1, when_changed: true}}}}"
+
+    async def body(t: Talk) -> None:
+        await t.points(1, 1, 0)
+        assert [arguments for _, arguments in t.watcher.signals] == [(1,)]
+        await t.lab.sleep(1.1)
+        assert [arguments for _, arguments in t.watcher.signals] == [(1,), (0,)]
+        await t.lab.sleep(2)
+        await t.points(0)
+        assert len(t.watcher.signals) == 2
 
     talk(text, body)
 

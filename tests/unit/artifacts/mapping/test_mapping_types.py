@@ -32,6 +32,18 @@ WRONG = {
             "Its fields: position (geometry_msgs/msg/Point), orientation (geometry_msgs/msg/Quaternion)"
         ),
     ),
+    "names of a bool": (
+        "properties: {a: {topic: t, type: std_msgs/msg/Bool, fields: [{path: data, names: {on: lit}}]}}",
+        "1:62: 'names' has 'on', and data is bool | write names: {true: lit}",
+    ),
+    "names of a number": (
+        "properties: {a: {topic: t, type: std_msgs/msg/Int32, fields: [{path: data, names: {a: b}}]}}",
+        "1:63: 'names' has 'a', and data is int32 | write values of int32",
+    ),
+    "names of a text": (
+        "operations: {a: {parameters: [x], publish: t, type: std_msgs/msg/String, fields: {data: {value: $x, names: {1: b}}}}}",
+        "1:89: 'names' has 1, and data is string | write values of string",
+    ),
     "unit of another kind": (
         ODOMETRY.format("fields: [{path: pose.pose.position.x, unit: degrees}]"),
         "1:66: messages have pose.pose.position.x in m, and degrees is a unit of angle | units of length are metres, ",
