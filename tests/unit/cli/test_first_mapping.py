@@ -8,7 +8,8 @@ from jacaros.artifacts.mapping.checking import check_mapping
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import StoredInterfaces
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
-from jacaros.ros.graph import Endpoint, TopicInfo
+from jacaros.cli.graph.usual import robots
+from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 
 DEFINITIONS = {
     "msg/Part": "uint8 IDLE=0\nuint8 BUSY=1\nstring name\nuint8 state\nfloat64[] weights\ngeometry_msgs/Point position\n",
@@ -84,7 +85,18 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
         ("builtin_interfaces/msg/Time", ["# t(Seconds): seconds", "{path: ., round: 2, name: seconds}"]),
         ("geometry_msgs/msg/WrenchStamped", ["t(ForceX, ForceY, ForceZ, TorqueX, TorqueY, TorqueZ)"]),
         ("geometry_msgs/msg/PoseArray", ["# t(N): how many poses there are"]),
-        ("tf2_msgs/msg/TFMessage", ["each: transforms", "t(ChildFrameId, X, Y, Z, Yaw)"]),
+        (
+            "tf2_msgs/msg/TFMessage",
+            [
+                "each: transforms",
+                "t(ChildFrameId, X, Y, Z, Yaw): child_frame_id, metres, metres, metres, degrees",
+            ],
+        ),
+        (
+            "kobuki_msgs/msg/BumperEvent",
+            ["signals:\n", "t(left, pressed)", "names: {0: released, 1: pressed}"],
+        ),
+        ("kobuki_msgs/msg/CliffEvent", ["signals:\n", "t(left, cliff)"]),
         ("sensor_msgs/msg/JointState", ['{path: "/position[i]", round: 3}']),
         ("sensor_msgs/msg/CompressedImage", ["as: object", "mode: on_demand", "refresh: t"]),
         ("irobot_create_msgs/msg/HazardDetectionVector", ["signals:\n", "when_changed: true"]),
@@ -131,6 +143,27 @@ def test_names_of_constants_are_given_and_results_are_rounded(types: StoredInter
     text = checked(types, calling(types, "t", "t", "odd_msgs/srv/Weigh"))
     assert "parameters: [names]" in text
     assert "# left as they are: offsets, picture" in text
+
+
+@pytest.mark.parametrize(
+    ("topics", "spaces"),
+    [
+        ({"/odom": "nav_msgs/msg/Odometry", "/cmd_vel_mux/input/navi": "geometry_msgs/msg/Twist"}, []),
+        ({"/odom": "nav_msgs/msg/Odometry", "/front/scan": "sensor_msgs/msg/LaserScan"}, []),
+        ({"/r1/cmd_vel": "geometry_msgs/msg/TwistStamped", "/r1/pose": "geometry_msgs/msg/Pose"}, ["r1"]),
+        (
+            {
+                "/scan": "sensor_msgs/msg/LaserScan",
+                "/a/b/odom": "nav_msgs/msg/Odometry",
+                "/a/b/cmd_vel": "geometry_msgs/msg/Twist",
+            },
+            ["a/b"],
+        ),
+        ({"/r1/odom": "nav_msgs/msg/Odometry", "/r2/scan": "sensor_msgs/msg/LaserScan"}, ["r1", "r2"]),
+    ],
+)
+def test_robots_are_told_from_parts_of_a_robot(topics: dict[str, str], spaces: list[str]) -> None:
+    assert robots(GraphContents({name: TopicInfo(name, (kind,)) for name, kind in topics.items()})) == spaces
 
 
 @pytest.mark.parametrize(

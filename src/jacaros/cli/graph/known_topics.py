@@ -78,6 +78,24 @@ def _hazards(name: str) -> Body:
     )
 
 
+def _kobuki_bumper(name: str) -> Body:
+    return (
+        "signals",
+        f"{name}(Where, State): such as {name}(left, pressed)",
+        ["fields:", f"  - {{path: bumper, {_SIDES}}}", "  - {path: state, names: {0: released, 1: pressed}}"],
+    )
+
+
+def _kobuki_cliff(name: str) -> Body:
+    return (
+        "signals",
+        f"{name}(Where, State): such as {name}(left, cliff)",
+        ["fields:", f"  - {{path: sensor, {_SIDES}}}", "  - {path: state, names: {0: floor, 1: cliff}}"],
+    )
+
+
+_SIDES = "names: {0: left, 1: center, 2: right}"
+
 KNOWN: Mapping[str, Callable[[str], Body]] = {
     "nav_msgs/msg/Odometry": _odometry,
     "sensor_msgs/msg/LaserScan": _laser,
@@ -85,4 +103,6 @@ KNOWN: Mapping[str, Callable[[str], Body]] = {
     "sensor_msgs/msg/JointState": _joints,
     "diagnostic_msgs/msg/DiagnosticArray": _diagnostics,
     "irobot_create_msgs/msg/HazardDetectionVector": _hazards,
+    "kobuki_msgs/msg/BumperEvent": _kobuki_bumper,
+    "kobuki_msgs/msg/CliffEvent": _kobuki_cliff,
 }

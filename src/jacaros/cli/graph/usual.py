@@ -6,8 +6,8 @@ from jacaros.cli.graph.kinds import Kind, Thing, all_things
 from jacaros.cli.graph.suggestions import TWISTS
 from jacaros.ros.graph import GraphContents
 
-_BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan", *TWISTS)
-"""Whoever has these is a robot, and their namespace is its own."""
+_BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan")
+"""Whoever has these, or hears ``cmd_vel``, is a robot, and their namespace is its own."""
 _SENSORS = (
     "nav_msgs/msg/Odometry",
     "sensor_msgs/msg/LaserScan",
@@ -88,11 +88,19 @@ def _is_usual(thing: Thing, contents: GraphContents) -> bool:
 
 
 def robots(contents: GraphContents) -> list[str]:
-    """The namespaces of robots, without slash in front, sorted; ``""`` is left out."""
-    spaces = {
-        name.rpartition("/")[0] for name, info in contents.topics.items() if set(info.types) & set(_BASE)
-    }
-    return sorted(space.strip("/") for space in spaces if space.strip("/"))
+    """The namespaces of robots, without slash in front, sorted; ``""`` is left out.
+
+    Beside a robot without a namespace, a namespace with one such topic is a part of that robot: a second laser, say.
+    """
+    found: dict[str, set[str]] = {}
+    for name, info in contents.topics.items():
+        space, _, last = name.strip("/").rpartition("/")
+        kinds = set(info.types) & set(_BASE) | (
+            {last} if last == "cmd_vel" and set(info.types) & set(TWISTS) else set()
+        )
+        if kinds:
+            found.setdefault(space, set()).update(kinds)
+    return sorted(space for space, kinds in found.items() if space and (len(kinds) > 1 or "" not in found))
 
 
 def robot_of(name: str, namespaces: list[str]) -> str:

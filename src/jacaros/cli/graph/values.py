@@ -125,7 +125,7 @@ def values_of(types: Interfaces, type_name: str) -> list[Value]:
     """The values of a message that agents want; lists and headers are left out.  Raises `UnknownInterface`."""
     if is_time(FieldType(type_name)):
         return [Value(".", "seconds", "", _UNITS["s"])]
-    return _with_own_names(list(_walk(types, type_name, "")))
+    return _with_own_names(list(_walk(types, type_name, "", "")))
 
 
 def lists_of(types: Interfaces, type_name: str) -> list[tuple[str, FieldType]]:
@@ -138,10 +138,11 @@ def list_of(path: str, kind: FieldType) -> Value:
     return Value(path, path.lower(), "", Unit("a list", 3 if kind.base in FLOATS else None))
 
 
-def _walk(types: Interfaces, type_name: str, path: str) -> Iterator[Value]:
+def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[Value]:
     chosen = _CHOSEN.get(type_name) or _IN_THE_PLANE.get(type_name)
     for name, kind in types.fields(type_name).items():
         here = f"{path}.{name}" if path else name
+        told = unit_of(type_name, name) or unit  # a vector's parts have that of the vector
         if kind.array or kind.base in (HEADER, _LAYOUT) or (chosen and name not in chosen):
             continue
         if kind.base == _QUATERNION:
@@ -152,20 +153,19 @@ def _walk(types: Interfaces, type_name: str, path: str) -> Iterator[Value]:
             elif name in _TURNS:
                 yield Value(f"{here}.z", "turn", "unit: degrees", _DEGREES_PER_SECOND)
             else:
-                yield from _walk(types, kind.base, here)
+                yield from _walk(types, kind.base, here, told)
         elif name not in _LEFT:
-            yield _single(types, type_name, name, kind, here)
+            yield _single(types, type_name, name, kind, here, told)
 
 
-def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path: str) -> Value:
-    """A field that is no message."""
+def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path: str, unit: str) -> Value:
+    """A field that is no message, and has a unit."""
     word = "yaw" if name == "theta" else name.lower()
     if is_time(kind):
         return Value(path, word, "", _UNITS["s"])
     if kind.base in FLOATS:
-        told = unit_of(type_name, name)
-        conversion = "unit: degrees" if told in ("rad", "rad/s") else ""
-        return Value(path, word, conversion, _UNITS.get(told, Unit(told, 3)))
+        conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
+        return Value(path, word, conversion, _UNITS.get(unit, Unit(unit, 3)))
     if kind.base in INTEGER_RANGES and _is_named(types, type_name, name, kind):
         return Value(path, word, "as: name")
     return Value(path, word)
