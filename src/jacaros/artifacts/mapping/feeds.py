@@ -11,11 +11,13 @@ from jacaros.artifacts.mapping.taking import Unshowable
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.artifacts.ros.faults import Faults
 from jacaros.artifacts.ros.reading import Reading
+from jacaros.artifacts.ros.stamps import Stamps
 from jacaros.artifacts.ros.view import RangeOfView
 from jacaros.clock import Timer
 from jacaros.env.values import Structure
 from jacaros.ros.backend import Sample
 from jacaros.ros.errors import CapabilityMissing
+from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import SENSOR_DATA, QoS
 from jacaros.trace import Cause
 from jacaros.yaml_nodes import Problem
@@ -38,6 +40,7 @@ class Topic:
         self.feeds = feeds
         self._host, self._written, self._type_name = host, written, type_name
         self._qos = qos if qos is not None else SENSOR_DATA
+        self._stamps: Stamps | None = None
 
     def begin(self, search: TypeSearch) -> None:
         """Listen, as soon as the type is known."""
@@ -56,6 +59,9 @@ class Topic:
         self.feeds = [feed for feed in self.feeds if feed.ready]
         if not self.feeds:
             return
+        if "header" in host.ros.fields(type_name) and any(feed.is_state for feed in self.feeds):
+            topic = host.ros.resolve(host.robot_topic(written.text))
+            self._stamps = Stamps(host.faults_at(topic), host.clock)
         tell = host.on_topic_event(written.text, written.place)
         try:
             host.subscription(written.text, type_name, self._take, self._qos, tell)
@@ -63,8 +69,14 @@ class Topic:
             host.fail(f"{host.mapping.where(written.place)}: {error}", "ros_error", host.name)
 
     def _take(self, sample: Sample) -> None:
+        old = self._stamps is not None and not self._stamps.accept(_stamp_of(sample.message), sample.stamp)
         for feed in self.feeds:
-            feed.take(sample)
+            if not (old and feed.is_state):
+                feed.take(sample)
+
+
+def _stamp_of(message: Any) -> float:
+    return to_seconds(message.header.stamp)
 
 
 class Feed:
@@ -106,6 +118,11 @@ class Feed:
         else:
             self._host.follow_property(view.origin.text, lambda values: _stand(made, values))
         return made
+
+    @property
+    def is_state(self) -> bool:
+        """Whether only the newest message counts: not for signals, nor where each message tells of some elements."""
+        return not self.part.signal and self.part.each is None
 
     @property
     def ready(self) -> bool:

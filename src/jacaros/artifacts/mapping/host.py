@@ -5,6 +5,7 @@ from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
 
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
 from jacaros.artifacts.mapping.extracting import Row
+from jacaros.artifacts.ros.faults import Faults
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
 from jacaros.clock import Clock
 from jacaros.env.execution import OperationExecution
@@ -69,6 +70,7 @@ class Host(Protocol):
         qos: QoS = ...,
         on_event: Callable[[TopicEvent], None] | None = ...,
     ) -> Subscription: ...
+    def faults_at(self, topic: str) -> Faults: ...
     def at_dispose(self, closing: Callable[[], None]) -> None: ...
 
     def reading_of(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading: ...

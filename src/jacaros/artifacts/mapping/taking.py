@@ -10,7 +10,7 @@ from jacaros.artifacts.mapping.declared import Conversion, FieldPart
 from jacaros.artifacts.mapping.handle import MessageHandle
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
-from jacaros.artifacts.mapping.paths import Path, WrongPath, follow, getter
+from jacaros.artifacts.mapping.paths import Path, WrongPath, follow, getter, read_path
 from jacaros.artifacts.mapping.read_fields import ANGLES, LISTS
 from jacaros.env.values import Atom, Structure
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
@@ -276,10 +276,11 @@ def _otherwise(
         if leaf.array or not (leaf.base in FLOATS or leaf.base in INTEGER_RANGES):
             raise WrongPath(f"'otherwise' is to be a number, and {otherwise.text} is {leaf}")
         get = getter(otherwise)
+        nearest = getter(_nearest(otherwise, message, interfaces))
         after = converted(dataclasses.replace(field.conversion, names=()))
 
         def from_message(value: float, whole: Any) -> object:
-            instead = float(get(whole, 0))
+            instead = float((nearest if value == -math.inf else get)(whole, 0))
             if not math.isfinite(instead):
                 raise Unshowable(
                     path, f"{path} is {value:g}, and so is {otherwise.text}", "write a figure for 'otherwise'"
@@ -289,6 +290,18 @@ def _otherwise(
         return from_message
     figure = int(otherwise) if otherwise.is_integer() and field.conversion.digits == 0 else otherwise
     return lambda value, whole: figure
+
+
+def _nearest(otherwise: Path, message: FieldType, interfaces: Interfaces) -> Path:
+    """What stands in for minus infinity: an echo too near to be measured (REP 117) is not one beyond ``range_max``."""
+    if not otherwise.text.endswith("range_max"):
+        return otherwise
+    nearest = read_path(otherwise.text.removesuffix("range_max") + "range_min")
+    try:
+        follow(nearest, message, interfaces.fields)
+    except WrongPath:
+        return otherwise
+    return nearest
 
 
 def _named(field: FieldPart, root: FieldType, interfaces: Interfaces) -> Convert:

@@ -554,3 +554,54 @@ def test_what_has_no_place_is_out_of_view() -> None:
         assert t.lab.logged == []
 
     talk(text, body)
+
+
+def test_a_property_does_not_go_back_in_time_and_signals_are_told_all_the_same() -> None:
+    text = """
+properties:
+  range: {topic: range, type: sensor_msgs/msg/Range, fields: [range]}
+signals:
+  ping: {topic: range, type: sensor_msgs/msg/Range, fields: [range]}
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        watcher = lab.watch(artifact)
+        publisher = lab.backend.publisher("range", "sensor_msgs/msg/Range")
+        now = lab.clock.now()
+        for value, stamp in (
+            (1.0, now),
+            (2.0, now + 0.2),
+            (3.0, now + 0.1),
+            (4.0, now + 0.2),
+            (5.0, now + 0.3),
+        ):
+            publisher.publish(publisher.message(range=value, header={"stamp": stamp}))
+            await lab.sleep(0.1)
+        assert watcher.values("range") == [(1.0,), (2.0,), (4.0,), (5.0,)]
+        signals = [(name, *map(str, values)) for name, values in watcher.signals]
+        assert [value for name, value, *_ in signals if name == "ping"] == ["1.0", "2.0", "3.0", "4.0", "5.0"]
+        assert [rest for name, *rest in signals if name == "bad_message"] == [["/range", "out_of_order(0.1)"]]
+
+    with_mapped(text, body)
+
+
+def test_an_echo_too_near_to_be_measured_is_not_one_beyond_the_range() -> None:
+    text = """
+properties:
+  ranges:
+    topic: scan
+    type: sensor_msgs/msg/LaserScan
+    fields: [{path: ranges, sample: 5, otherwise: range_max, round: 2}]
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        watcher = lab.watch(artifact)
+        publisher = lab.backend.publisher("scan", "sensor_msgs/msg/LaserScan")
+        inf = math.inf
+        publisher.publish(
+            publisher.message(ranges=[-inf, inf, 1.0, math.nan, -inf], range_min=0.12, range_max=8.0)
+        )
+        await settle()
+        assert watcher.values("ranges") == [(0.12, 8.0, 1.0, 8.0, 0.12)]
+
+    with_mapped(text, body)
