@@ -50,7 +50,9 @@ def test_all_waits_go_on_for_the_rest_of_their_time_and_the_robot_arrives() -> N
     ):
         assert seconds <= lab.when(line) <= seconds + 1.1, line
     bad = [line.split("(")[0] for line in lab.lines if line.startswith("bad")]
-    assert bad == ["bad /odom out_of_order"] * 2 + ["bad /odom clock_jumped"] * 2, "the wheels, and the mapping"
+    assert bad == ["bad /odom out_of_order"] * 2 + ["bad /odom clock_jumped"] * 2, (
+        "the wheels, and the mapping"
+    )
     assert (lab.place, lab.safe) == ((2, 0), True)
     told = [line for line in lab.errors if line.startswith("[ros] /clock jumped back by")]
     assert len(told) == 1
