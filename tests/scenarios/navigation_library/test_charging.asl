@@ -66,6 +66,14 @@ place(b, 2, 0, 0).
      !assert_did(undock, 1);
      .drop_desire(keep_charged(_)).
 
+@a_driver_that_counts_in_percent_itself_is_understood[test]
++!test_percent
+  <- +battery(9820, discharging);
+     !assert_true(percent_left(98.2));
+     !assert_false(battery_low);
+     -+battery(1990, discharging);
+     !assert_true(battery_low).
+
 @drives_to_its_place_before_the_dock[test]
 +!test_place
   <- !fakes;

@@ -16,8 +16,10 @@
 attempts_allowed(N) :- attempts(N).
 attempts_allowed(3) :- not attempts(_).
 
-percent_left(Percent) :- battery(Percent, _).
-percent_left(Percent) :- battery(Percent).
+percent_left(Percent) :- charge_told(Percent) & Percent <= 150.
+percent_left(Percent) :- charge_told(Told) & Told > 150 & Percent = Told / 100.  // a driver that counts in percent itself
+charge_told(Percent) :- battery(Percent, _).
+charge_told(Percent) :- battery(Percent).
 
 battery_low :- percent_left(Percent) & low_at(Least) & Percent <= Least.
 battery_low :- percent_left(Percent) & not low_at(_) & Percent <= 20.
