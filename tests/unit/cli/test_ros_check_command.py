@@ -184,3 +184,14 @@ def test_lists_of_places_are_filled(capsys: pytest.CaptureFixture[str], tmp_path
     run = ("run", str(program), "--mapping", file, "--world", "house", "--clock", "fast", "--for", "300")
     code, output, errors = outcome(capsys, *run)
     assert (code, output) == (0, "[go] there\n"), errors
+
+
+def test_frames_are_below_the_namespace_of_the_command_too(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "frames.yaml"
+    file.write_text("frames: {pose: {target: odom, source: base_footprint}}\n", encoding="utf-8")
+    arguments = ["ros", "check", str(file), "--world", "two_robots", "--namespace"]
+    assert call([*arguments, "robot_1"]) == 0
+    assert call([*arguments, "robot_7"]) == 1
+    assert "there is no frame robot_7/odom" in capsys.readouterr().out

@@ -7,7 +7,7 @@ from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.feeds import Feed, Topic
-from jacaros.artifacts.mapping.frames import FrameFeed
+from jacaros.artifacts.mapping.frames import FrameFeed, prefixed
 from jacaros.artifacts.mapping.host import Elements
 from jacaros.artifacts.mapping.manual import Documentation
 from jacaros.artifacts.mapping.node_parameters import NodeParameter
@@ -20,9 +20,6 @@ from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.env.artifact import internal_operation
 from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.yaml_nodes import Problem, shown
-
-GLOBAL_FRAMES = ("map", "earth", "world")
-"""Frames that robots share (REP 105)."""
 
 
 class MappedArtifact(RosArtifact):
@@ -97,9 +94,7 @@ class MappedArtifact(RosArtifact):
 
     def frame(self, name: str) -> str:
         """The name of a frame in the graph."""
-        if name.startswith("/") or name in GLOBAL_FRAMES or not name or not self.tf_prefix:
-            return name.lstrip("/")
-        return f"{self.tf_prefix}/{name}"
+        return prefixed(name, self.tf_prefix)
 
     def adapted(self, field: str, value: object) -> object:
         """A constant for the field of a message: names of frames get their prefix."""

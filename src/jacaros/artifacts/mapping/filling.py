@@ -10,6 +10,7 @@ from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
+from jacaros.artifacts.mapping.read_values import ALL_OF_IT
 from jacaros.artifacts.mapping.taking import QUATERNION, check_names, owner_of
 from jacaros.env.values import Atom, Structure, text
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
@@ -22,8 +23,6 @@ Fill = Callable[[Sequence[object], float], dict[str, Any]]
 
 Raises `WrongValue`.
 """
-
-ALL_OF_IT = -1
 
 
 class WrongValue(ValueError):

@@ -14,7 +14,6 @@ ALL = "*"
 HERE = "i"
 """Stands for the place of the current element, where there is one property for each."""
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
 _INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
 
@@ -148,8 +147,3 @@ def _expression(steps: tuple[Step, ...], value: str, depth: int) -> str:
         else:
             value = f"{value}[{step}]"
     return value
-
-
-def is_field_name(text: str) -> bool:
-    """Whether a text may be the name of a field."""
-    return _NAME.fullmatch(text) is not None

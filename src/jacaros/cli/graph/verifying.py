@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from jacaros.artifacts.mapping.artifact import GLOBAL_FRAMES
 from jacaros.artifacts.mapping.checking import check_topic, type_problems
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
@@ -14,6 +13,7 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
     Written,
 )
+from jacaros.artifacts.mapping.frames import prefixed
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.kinds import near_names
 from jacaros.cli.graph.listening import root
@@ -31,20 +31,24 @@ class Names:
     """The names of an artifact's things in the graph."""
 
     joined: Joined
-    namespace: str
-    tf_prefix: str
+    part: ArtifactPart
 
     def resolve(self, written: str) -> str:
         """The absolute name of a topic, service, action or node."""
-        if self.namespace and not written.startswith(("/", "~")):
-            written = f"{self.namespace}/{written}"
+        if self.part.namespace and not written.startswith(("/", "~")):
+            written = f"{self.part.namespace}/{written}"
         return self.joined.backend.resolve(written)
 
     def frame(self, written: str) -> str:
         """The name of a frame."""
-        if written.startswith("/") or written in GLOBAL_FRAMES or not self.tf_prefix:
-            return written.lstrip("/")
-        return f"{self.tf_prefix}/{written}"
+        return prefixed(written, self.tf_prefix)
+
+    @property
+    def tf_prefix(self) -> str:
+        """What stands before names of frames: unless the file says it, what stands before relative names."""
+        if self.part.tf_prefix is not None:
+            return self.part.tf_prefix
+        return self.resolve("frame").rpartition("/")[0].strip("/")
 
 
 async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]) -> list[Problem]:
@@ -55,8 +59,7 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
         part: an artifact of the file.
         frames: the frames that were heard.
     """
-    prefix = part.namespace if part.tf_prefix is None else part.tf_prefix
-    names = Names(joined, part.namespace, prefix)
+    names = Names(joined, part)
     for folder in part.interfaces:
         joined.backend.add_interfaces(folder)
     found = type_problems(part, joined.backend)
