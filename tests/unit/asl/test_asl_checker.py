@@ -79,6 +79,13 @@ def test_a_goal_without_a_plan_is_named_once_with_what_may_be_meant():
     ]
 
 
+def test_tests_need_no_plans_for_the_goals_that_all_tests_have():
+    assert messages("@t[test] +!t <- !assert_true(p); !fake_message(odom, text); !assert_tru(q).") == [
+        "no plan for !assert_tru/1"
+    ]
+    assert messages("+!t <- !assert_true(p).  !t.") == ["no plan for !assert_true/1"]
+
+
 def test_goals_in_another_namespace_are_other_goals():
     (warning,) = warnings("!m::g. +!g.")
     assert (warning.message, warning.hint) == ("no plan for !m::g/0", "did you mean !g?")

@@ -9,7 +9,7 @@ from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.feeds import Feed, Topic
 from jacaros.artifacts.mapping.frames import FrameFeed, prefixed
 from jacaros.artifacts.mapping.host import Elements
-from jacaros.artifacts.mapping.manual import Documentation
+from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.node_parameters import NodeParameter
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods
@@ -179,7 +179,7 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         "__module__": __name__,
         "mapping": mapping,
         "part": part,
-        **methods(part),
+        **methods(part, parameter_words),
     }
     return type(_class_name(name), (MappedArtifact,), members)
 

@@ -8,12 +8,16 @@ from jacaros.artifacts.mapping.declared import ArtifactPart, FieldPart, Operatio
 from jacaros.env.artifact import Out, operation
 
 
-def methods(part: ArtifactPart) -> dict[str, Callable[..., Any]]:
+Words = Callable[[ArtifactPart, OperationPart], dict[str, str]]
+"""Tells what the parameters of an operation take, for manuals."""
+
+
+def methods(part: ArtifactPart, words: Words) -> dict[str, Callable[..., Any]]:
     """The operations of an artifact, by names that no method of a class has."""
-    return {f"mapped {number}": _method(part, number) for number in range(len(part.operations))}
+    return {f"mapped {number}": _method(part, number, words) for number in range(len(part.operations))}
 
 
-def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
+def _method(artifact: ArtifactPart, number: int, words: Words) -> Callable[..., Any]:
     part = artifact.operations[number]
     inputs = len(part.parameters)
 
@@ -29,15 +33,8 @@ def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
     run.__annotations__ = dict.fromkeys(names[inputs:], Out)
     run.__qualname__ = run.__name__ = part.name
     run.__doc__ = description(part)
-    run.parameter_words = lambda: _words(artifact, part)  # type: ignore[attr-defined]  # for manuals
+    run.parameter_words = lambda: words(artifact, part)  # type: ignore[attr-defined]  # for manuals
     return operation(name=part.name, pausable=is_pausable(part))(run)
-
-
-def _words(artifact: ArtifactPart, part: OperationPart) -> dict[str, str]:
-    # Imported here: definitions of types are looked up only for those who ask for a manual.
-    from jacaros.artifacts.mapping.manual import parameter_words
-
-    return parameter_words(artifact, part)
 
 
 def is_pausable(part: OperationPart) -> bool:

@@ -1,6 +1,9 @@
 """Goals that are posted and that no plan is for."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from pathlib import Path
 from typing import Final
 
 from jacaros.asl import nodes
@@ -14,7 +17,8 @@ _Signature = tuple[str | nodes.Variable | None, str, int]
 def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Goals that are posted and that no plan (nor ``-!`` handler) is for.
 
-    Programs with plans for any goal (``+!G``) and programs that add plans are left alone.
+    Programs with plans for any goal (``+!G``) and programs that add plans are left alone; those with tests need no
+    plans for assertions.
     """
     handled: set[_Signature] = set()
     everywhere: set[tuple[str, int]] = set()
@@ -32,6 +36,8 @@ def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> I
             posted.append(node.goal)
         elif isinstance(node, nodes.InternalAction) and node.name in _ADDING_PLANS:
             return
+    if any(map(_is_test, program.plans)):
+        everywhere |= _goals_of_tests()
     reported: set[_Signature] = set()
     for goal in posted:
         signature = _signature(goal)
@@ -47,6 +53,26 @@ def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> I
             _meant_goal(signature, handled),
             "unknown-goal",
         )
+
+
+def _is_test(plan: nodes.Plan) -> bool:
+    annotations = plan.label.annotations if isinstance(plan.label, nodes.Literal) else None
+    items = annotations.items if annotations is not None else ()
+    return any(isinstance(each, nodes.Literal) and each.functor == "test" for each in items)
+
+
+_LIBRARY: Final = Path(__file__).parent.parent / "library"
+_HEAD: Final = re.compile(r"^[+]!(\w+)(?:\(([^)]*)\))?", re.MULTILINE)
+
+
+@cache
+def _goals_of_tests() -> frozenset[tuple[str, int]]:
+    """Names and numbers of arguments of the goals that `jacaros test` gives to every agent."""
+    texts = [
+        (_LIBRARY / f"{name}.asl").read_text(encoding="utf-8") for name in ("test_assert", "test_performance")
+    ]
+    heads = [head for text in texts for head in _HEAD.findall(text)]
+    return frozenset((name, arguments.count(",") + 1 if arguments else 0) for name, arguments in heads)
 
 
 def _signature(literal: nodes.Literal) -> _Signature:
