@@ -7,7 +7,6 @@ from typing import Any
 from jacaros.artifacts.mapping.declared import ArtifactPart, FieldPart, OperationKind, OperationPart
 from jacaros.env.artifact import Out, operation
 
-
 Words = Callable[[ArtifactPart, OperationPart], dict[str, str]]
 """Tells what the parameters of an operation take, for manuals."""
 
