@@ -41,8 +41,8 @@ WRONG = {
         "1:63: 'names' has 'a', and data is int32 | write values of int32",
     ),
     "names of a text": (
-        "operations: {a: {parameters: [x], publish: t, type: std_msgs/msg/String, fields: {data: {value: $x, names: {1: b}}}}}",
-        "1:89: 'names' has 1, and data is string | write values of string",
+        "operations: {a: {parameters: [x], publish: t, type: std_msgs/String, fields: {data: {value: $x, names: {1: b}}}}}",
+        "1:85: 'names' has 1, and data is string | write values of string",
     ),
     "unit of another kind": (
         ODOMETRY.format("fields: [{path: pose.pose.position.x, unit: degrees}]"),
