@@ -12,21 +12,25 @@ class Watched:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 100.0
         self.probes = 0
+        self.looks = 0
         self.told: list[bool] = []
         monkeypatch.setattr(ros2_signs.time, "monotonic", lambda: self.now)
-        self.signs = SignsOfLife(self._probed, self.told.append)
+        self.signs = SignsOfLife(self._probed, self.told.append, self._look)
         self.answering = True
         self.telling = False
 
     def _probed(self) -> None:
         self.probes += 1
 
-    def live(self, seconds: float, under_way: bool = True) -> None:
+    def _look(self) -> None:
+        self.looks += 1
+
+    def live(self, seconds: float, under_way: bool = True, waiting: bool = False) -> None:
         """Let time pass: the server answers what it is asked, or not."""
         for _ in range(round(seconds / 0.1)):
             self.now += 0.1
             asked = self.probes
-            self.signs.check(self.now, under_way)
+            self.signs.check(self.now, under_way, waiting)
             if self.answering and self.probes > asked:
                 self.signs.heard()
                 self.signs.probe_answered()
@@ -94,3 +98,51 @@ def test_another_server_is_judged_anew(watched: Watched) -> None:
     watched.answering = False
     watched.live(30.0)
     assert watched.told == []
+
+
+def test_a_silent_server_of_which_nothing_is_known_is_looked_for_with_fresh_eyes(watched: Watched) -> None:
+    watched.answering = False
+    watched.live(2.0)
+    assert (watched.looks, watched.told) == (1, [])
+    watched.signs.looked(found=False)
+    assert watched.told == [False]
+    watched.signs.looked(found=True)
+    assert watched.told == [False, True]
+
+
+def test_a_server_that_was_found_is_believed_for_a_while(watched: Watched) -> None:
+    watched.answering = False
+    watched.live(2.0)
+    watched.signs.looked(found=True)
+    watched.live(25.0)
+    assert (watched.looks, watched.told) == (1, [])
+    watched.live(25.0)
+    assert watched.looks == 2
+
+
+def test_a_sign_that_comes_during_the_look_outweighs_it(watched: Watched) -> None:
+    watched.answering = False
+    watched.live(2.0)
+    watched.signs.heard()
+    watched.signs.looked(found=False)
+    assert watched.told == []
+
+
+def test_a_server_that_answers_is_not_looked_for_before_it_is_silent(watched: Watched) -> None:
+    watched.live(20.0)
+    assert watched.looks == 0
+    watched.answering = False
+    watched.live(3.0)
+    assert (watched.looks, watched.told) == (1, [False])
+    watched.signs.looked(found=True)
+    assert watched.told == [False, True]
+
+
+def test_a_server_that_does_not_say_whether_it_accepts_is_looked_for(watched: Watched) -> None:
+    watched.answering = False
+    watched.live(0.9, under_way=False, waiting=True)
+    assert watched.looks == 0
+    watched.live(0.5, under_way=False, waiting=True)
+    assert (watched.looks, watched.probes) == (1, 0)
+    watched.signs.looked(found=False)
+    assert watched.told == [False]

@@ -22,7 +22,13 @@ from jacaros.ros.backends.ros2_actions import (
     id_message,
     new_goal_id,
 )
-from jacaros.ros.backends.ros2_graph import FEEDBACK, SEND_GOAL, action_mismatch, action_servers
+from jacaros.ros.backends.ros2_graph import (
+    FEEDBACK,
+    SEND_GOAL,
+    action_mismatch,
+    action_servers,
+    action_servers_in,
+)
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_quality import profile
 from jacaros.ros.backends.ros2_services import SETTLING
@@ -46,6 +52,7 @@ class _SentGoal:
     def __init__(self, identity: str, request: Any) -> None:
         self.identity = identity
         self.request = request
+        self.sent = False
         self.accepted = False
         self.repeated = False
         self.over = False
@@ -73,7 +80,7 @@ class Ros2GoalWire:
         self._mismatch: str | None = None
         self._compared = 0.0
         self._servers: frozenset[bytes] = frozenset()
-        self._signs = SignsOfLife(self._probe, self.sender.server_present)
+        self._signs = SignsOfLife(self._probe, self.sender.server_present, self._look_with_fresh_eyes)
         self._looking: Any = None
         self._unsent: list[str] = []
         self._sending: Any = None
@@ -262,7 +269,12 @@ class Ros2GoalWire:
             if goal.cancel_asked is not None and now > goal.cancel_asked + REPEATING:
                 self.cancel_goal(goal.identity)
         if self._there:
-            self._signs.check(now, any(goal.accepted and not goal.over for goal in self._goals.values()))
+            goals = self._goals.values()
+            self._signs.check(
+                now,
+                under_way=any(goal.accepted and not goal.over for goal in goals),
+                waiting=any(goal.sent and not goal.accepted for goal in goals),
+            )
 
     def _note_presence(self) -> None:
         rcl = self._node.rcl
@@ -328,12 +340,24 @@ class Ros2GoalWire:
     def _send(self, identity: str) -> None:
         goal = self._goals.get(identity)
         if goal is not None and self.sender.wants(identity):
+            goal.sent = True
             self._call(self._goal_client, goal.request, lambda answer: self._answered(identity, answer))
 
     def _probe(self) -> None:
         """Ask for something that every server answers at once: the result of a goal that nobody knows."""
         request = self._impl.GetResultService.Request(goal_id=id_message(new_goal_id()))
         self._call(self._result_client, request, lambda _: self._signs.probe_answered())
+
+    def _look_with_fresh_eyes(self) -> None:
+        suspects = action_servers(self._node, self.name)
+
+        def tell(missing: frozenset[bytes]) -> None:
+            # With several servers it is not known whose goals ours are.
+            if not self._closed and suspects == action_servers(self._node, self.name):
+                self._signs.looked(missing != suspects)
+
+        if suspects:
+            self._node.look_again(lambda rcl: action_servers_in(rcl, self.name), suspects, tell)
 
     # Between the threads:
 

@@ -133,13 +133,27 @@ def _is_shown(node: str) -> bool:
     return not node.rpartition("/")[2].startswith("_")
 
 
+def publishers_in(rcl: Any, topic: str, no_mangle: bool = False) -> frozenset[bytes]:
+    """The identities of those who publish a topic, as far as a node of rclpy knows."""
+    told = rcl.get_publishers_info_by_topic(topic, no_mangle=no_mangle)
+    return frozenset(bytes(info.endpoint_gid) for info in told)
+
+
+def action_servers_in(rcl: Any, name: str) -> frozenset[bytes]:
+    """The identities of those that offer an action, as far as a node of rclpy knows."""
+    return publishers_in(rcl, name + FEEDBACK)
+
+
 def action_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
     """The identities of those that offer an action: a server that was started anew has another."""
-    told = node.rcl.get_publishers_info_by_topic(name + FEEDBACK)
-    return frozenset(bytes(info.endpoint_gid) for info in told)
+    return action_servers_in(node.rcl, name)
+
+
+def service_servers_in(rcl: Any, name: str) -> frozenset[bytes]:
+    """The identities of those that offer a service, as far as a node of rclpy knows."""
+    return publishers_in(rcl, f"rr{name}Reply", no_mangle=True)
 
 
 def service_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
     """The identities of those that offer a service, where the middleware makes services of topics, as all on DDS do."""
-    told = node.rcl.get_publishers_info_by_topic(f"rr{name}Reply", no_mangle=True)
-    return frozenset(bytes(info.endpoint_gid) for info in told)
+    return service_servers_in(node.rcl, name)

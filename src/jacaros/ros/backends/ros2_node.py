@@ -1,4 +1,4 @@
-"""A node of rclpy: a context and an executor thread of our own, beside the loop.
+"""A node of rclpy: a context of our own, and beside the loop a thread for messages and one for all else.
 
 Domain, discovery range and the middleware below are ROS 2's own business: ``ROS_DOMAIN_ID``,
 ``ROS_AUTOMATIC_DISCOVERY_RANGE``, ``RMW_IMPLEMENTATION``.
@@ -18,9 +18,10 @@ os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
 import rclpy  # type: ignore[import-not-found]
 import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
-import rclpy.task  # type: ignore[import-not-found]
 
 from jacaros.ros.backends.ros2_output import leave_standard_output_alone
+from jacaros.ros.backends.ros2_receiving import Receiver
+from jacaros.ros.backends.ros2_second_look import Find, SecondLook
 from jacaros.ros.backends.ros2_types import RosidlSchema
 from jacaros.ros.backends.ros2_values import parameter
 from jacaros.ros.handoff import in_thread, post
@@ -30,7 +31,9 @@ from jacaros.ros.ros_clock import RosClock
 SENDING = 0.5
 """Seconds that closing waits for the last messages to be acknowledged; a dead receiver never does it."""
 STOPPING = 1.0
-"""Seconds that closing waits for the executor's thread."""
+"""Seconds that closing waits for each of rclpy's threads."""
+AFTER_FAULT = 0.05
+"""Seconds of rest after a fault: one that comes back at once must not take a whole core."""
 LINGERING = 0.5
 """Seconds that a closed thing stays in the graph when something that it sent may still be on its way."""
 
@@ -66,9 +69,12 @@ class Ros2Node(Node):
         self._context: Any = rclpy.Context()
         self._executor: Any = None
         self._thread: threading.Thread | None = None
-        self._stopped: Any = rclpy.task.Future()
+        self._stopped = threading.Event()
         self._ended = False
+        self._told = ""
         self.rcl: Any = None
+        self.receiver: Receiver
+        self._looks: list[SecondLook] = []
         self.members: list[Member] = []
 
     @property
@@ -117,6 +123,18 @@ class Ros2Node(Node):
         if member in self.members:
             self.members.remove(member)
 
+    def look_again(
+        self, find: Find, suspects: frozenset[bytes], tell: Callable[[frozenset[bytes]], None]
+    ) -> None:
+        """Find out who of the *suspects* is alive; see `SecondLook.ask`."""
+        if self._ended:
+            return
+        look = next((look for look in self._looks if look.fresh), None)
+        if look is None:
+            look = SecondLook(self.loop, self._domain_id, self._looks.remove)
+            self._looks.append(look)
+        look.ask(find, suspects, tell)
+
     def _join(self) -> None:
         leave_standard_output_alone()
         # Signals are ours: rclpy's handlers would end the context before the exit hooks have published.
@@ -133,18 +151,27 @@ class Ros2Node(Node):
         )
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.rcl)
+        self.receiver = Receiver(self._context, self._report, self._executor)
         self._thread = threading.Thread(target=self._spin, name="rclpy executor", daemon=True)
         self._thread.start()
 
     def _spin(self) -> None:
-        while self._context.ok() and not self._stopped.done():
+        while self._context.ok() and not self._stopped.is_set():
             try:
-                self._executor.spin_until_future_complete(self._stopped)
+                # Not `spin_until_future_complete`: on Jazzy it hangs something on the future with each turn.
+                self._executor.spin_once()
             except rclpy.executors.ExternalShutdownException:
                 return
             except Exception as problem:  # a fault in one callback must not make the node deaf
                 if self._context.ok():
-                    post(self.loop, self.log, f"rclpy: {type(problem).__name__}: {problem}")
+                    self._report(f"rclpy: {type(problem).__name__}: {problem}")
+                    time.sleep(AFTER_FAULT)
+
+    def _report(self, text: str) -> None:
+        """Log a fault, in any thread; a fault that comes back again and again is told once."""
+        if text != self._told:
+            self._told = text
+            post(self.loop, self.log, text)
 
     def _leave(self) -> None:
         """Wait until the last messages have arrived, then end rclpy before the interpreter ends."""
@@ -155,8 +182,11 @@ class Ros2Node(Node):
             with suppress(Exception):  # whatever is wrong with one, the others are to be heard
                 member.farewell(max(0.0, deadline - time.monotonic()))
         time.sleep(0.02)  # best-effort messages are acknowledged by nobody
+        for look in list(self._looks):
+            look.leave()
+        self.receiver.stop(STOPPING)
         # The executor's thread stops itself: shutting an executor down under a spinning thread is a race.
-        self._executor.create_task(self._stopped.set_result, None)
+        self._executor.create_task(self._stopped.set)
         if self._thread is not None:
             self._thread.join(STOPPING)
         self._ended = True

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.ros.backend import Handler
-from jacaros.ros.backends.ros2_graph import service_mismatch, service_servers
+from jacaros.ros.backends.ros2_graph import service_mismatch, service_servers, service_servers_in
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
@@ -25,6 +25,43 @@ SETTLING = 0.5
 
 COMPARING = 1.0
 """Seconds after which it is looked again who offers a service that is called."""
+
+
+DOUBTED, DOUBTED_AGAIN = 2.0, 30.0
+"""Seconds without an answer after which it is looked with fresh eyes whether the server lives, and then between looks."""
+
+
+class _AskedServers:
+    """Those who offered a service when it was called, and whether one of them is still there."""
+
+    def __init__(self, node: Ros2Node, name: str) -> None:
+        self._node = node
+        self._name = name
+        self._servers = service_servers(node, name)
+        self._dead: frozenset[bytes] = frozenset()
+        self._timer = node.loop.call_later(DOUBTED, self._doubt)
+
+    @property
+    def known(self) -> bool:
+        """Whether it is known who they are."""
+        return bool(self._servers)
+
+    @property
+    def there(self) -> bool:
+        """Whether one of them is there."""
+        return not self._servers.isdisjoint(service_servers(self._node, self._name) - self._dead)
+
+    def close(self) -> None:
+        """The call is over."""
+        self._timer.cancel()
+
+    def _doubt(self) -> None:
+        def tell(missing: frozenset[bytes]) -> None:
+            self._dead = missing
+
+        if self._servers:
+            self._node.look_again(lambda rcl: service_servers_in(rcl, self._name), self._servers, tell)
+        self._timer = self._node.loop.call_later(DOUBTED_AGAIN, self._doubt)
 
 
 class _Call:
@@ -167,17 +204,18 @@ class Ros2Client:
 
         call = self._client.call_async(message)
         call.add_done_callback(finished)
-        asked = service_servers(node, self.name)
+        asked = _AskedServers(node, self.name)
 
         def is_there() -> bool:
             if self._closed or node.ended:
                 return True  # then the call ends in another way
-            return not asked.isdisjoint(service_servers(node, self.name)) if asked else self.ready
+            return asked.there if asked.known else self.ready
 
         try:
             with ServerWatch(clock, self.name, answer, is_there):
                 return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         finally:
+            asked.close()
             self._client.remove_pending_request(call)
 
     def _is_new(self) -> bool:

@@ -7,24 +7,33 @@ SILENCE = 1.0
 """Seconds without a sign after which the server is asked for one, and for an answer to that."""
 GETTING_GOING = 0.3
 """Seconds that a goal is under way before it is tried whether the server answers meanwhile."""
+LOOKED = 30.0
+"""Seconds for which it is believed that a silent server is alive that was found in the graph with fresh eyes."""
 
 
 class SignsOfLife:
     """Watches over the server of an action while a goal is under way.
 
     Not every living server answers: one whose code blocks its only thread does not, until the goal is over.  So silence
-    counts only where a probe was answered in the middle of a goal, and not any more once it was misread.
+    counts only where a probe was answered in the middle of a goal, and not any more once it was misread.  Where it does
+    not count, and the server was never seen to answer yet, the graph is looked at with fresh eyes.
 
     Args:
         probe: asks the server for a sign; `probe_answered` tells of it.
         tell: is told that the server seems to be gone (False) and that it is not (True).
+        look: looks whether the server is in the graph that a newcomer finds; `looked` tells of it.
     """
 
-    def __init__(self, probe: Callable[[], None], tell: Callable[[bool], None]) -> None:
+    def __init__(
+        self, probe: Callable[[], None], tell: Callable[[bool], None], look: Callable[[], None] = lambda: None
+    ) -> None:
         self._probe = probe
         self._tell = tell
+        self._look = look
         self._heard = 0.0
         self._goal_began = 0.0
+        self._waiting_since: float | None = None
+        self._look_began: float | None = None
         self._probed: float | None = None
         self._answered: float | None = None
         self._answers = False
@@ -45,6 +54,15 @@ class SignsOfLife:
             self._answered = time.monotonic()
         self._probed = None
 
+    def looked(self, found: bool) -> None:
+        """The server was found by a newcomer, or not."""
+        if found:
+            if self._suspected:
+                self.heard()
+        elif self._look_began is not None and self._heard < self._look_began and not self._suspected:
+            self._suspected = True
+            self._tell(False)
+
     def goal_begins(self) -> None:
         """The server has accepted a goal."""
         self._goal_began = time.monotonic()
@@ -53,17 +71,33 @@ class SignsOfLife:
     def stranger(self) -> None:
         """Another server is there: what was learnt about the former does not count."""
         self._answers = self._misleading = self._suspected = False
-        self._probed = self._answered = None
+        self._probed = self._answered = self._look_began = None
 
     def rest(self) -> None:
         """No goal is under way."""
-        self._probed = self._answered = None
+        self._probed = self._answered = self._look_began = self._waiting_since = None
         self._suspected = False
 
-    def check(self, now: float, under_way: bool) -> None:
-        """Look whether the server is silent for too long; *under_way*: it is carrying out a goal."""
-        if not under_way or self._misleading:
-            return
+    def check(self, now: float, under_way: bool, waiting: bool = False) -> None:
+        """Look whether the server is silent for too long.
+
+        Args:
+            now: as of `time.monotonic`.
+            under_way: it is carrying out a goal.
+            waiting: it has not said yet whether it accepts a goal.
+        """
+        if not waiting:
+            self._waiting_since = None
+        elif self._waiting_since is None:
+            self._waiting_since = now
+        if under_way and not self._misleading:
+            self._check_answers(now)
+        if under_way and (self._misleading or not self._answers):
+            self._doubt(now, self._goal_began + GETTING_GOING)
+        elif self._waiting_since is not None:
+            self._doubt(now, self._waiting_since)
+
+    def _check_answers(self, now: float) -> None:
         if self._answered is not None and now > self._answered + GETTING_GOING:
             # The goal goes on after the answer, so the answer did not have to wait for its end.
             self._answers = True
@@ -77,7 +111,17 @@ class SignsOfLife:
                 if not self._suspected:
                     self._suspected = True
                     self._tell(False)
+                    self._look_anew(now)
                 self._ask(now)
+
+    def _doubt(self, now: float, since: float) -> None:
+        if now > max(self._heard, since) + SILENCE:
+            self._look_anew(now)
+
+    def _look_anew(self, now: float) -> None:
+        if self._look_began is None or now > self._look_began + LOOKED:
+            self._look_began = now
+            self._look()
 
     def _ask(self, now: float) -> None:
         self._probed = now

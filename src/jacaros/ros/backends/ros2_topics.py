@@ -1,5 +1,6 @@
 """Topics of ROS 2: publishers and subscriptions, and what a subscription learns besides messages."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,7 +12,7 @@ from rclpy.event_handler import (  # type: ignore[import-not-found]
 )
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
-from jacaros.ros.backends.ros2_graph import RCLError, endpoint, foreign_types, own_types
+from jacaros.ros.backends.ros2_graph import RCLError, endpoint, foreign_types, own_types, publishers_in
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_quality import profile
 from jacaros.ros.errors import RosError
@@ -19,10 +20,13 @@ from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS, incompatibility
 from jacaros.ros.serving import published_message
 
-COURTESY = 0.002
-"""Seconds that rclpy's executor lets the agents go first: it computes for long (in Python) before it waits again."""
 LOOKING = 2.0
 """Seconds between two looks at who publishes on a topic that is silent: ROS 2 tells of no other type by itself."""
+
+LIVELY = 2
+"""So many times messages must have come between two looks before silence is a reason to doubt that the publisher lives."""
+TRUSTED = 60.0
+"""Seconds for which it is not doubted again, when it was found alive."""
 
 
 @contextmanager
@@ -117,22 +121,35 @@ class Ros2Subscription:
         self._qos = qos
         self._callback = callback
         self._on_event = on_event
-        self._queue: Handoff[Any] = Handoff(node.loop, qos.depth, self._deliver, COURTESY)
+        self._queue: Handoff[Any] = Handoff(node.loop, qos.depth, self._deliver)
         self._silent = True
+        self._lively = 0
+        self._missing: frozenset[bytes] = frozenset()
+        self._trusted_until = 0.0
         self._deadline_missed = False
         self._told: set[str] = set()
         self._closed = False
         kind = node.factory.message_class(type_name)
         with _at_topic(node, topic, type_name):
             self._subscription: Any = node.rcl.create_subscription(
-                kind, topic, self._queue.put, profile(qos), event_callbacks=self._events()
+                kind,
+                topic,
+                self._queue.put,
+                profile(qos),
+                callback_group=node.receiver.group,
+                event_callbacks=self._events(),
             )
+        node.receiver.add(self._subscription, self._queue.put)
         self._timer = node.loop.call_later(LOOKING, self._look)
 
     @property
     def publisher_count(self) -> int:
         """How many publishers of the topic are known now."""
-        return 0 if self._closed else int(self._node.rcl.count_publishers(self.topic))
+        if self._closed:
+            return 0
+        if self._missing:
+            return len(publishers_in(self._node.rcl, self.topic) - self._missing)
+        return int(self._node.rcl.count_publishers(self.topic))
 
     def farewell(self, seconds: float) -> None:
         """Nothing is left to say."""
@@ -143,8 +160,11 @@ class Ros2Subscription:
         self._timer.cancel()
         if not self._closed:
             self._closed = True
-            self._node.retire(self._node.rcl.destroy_subscription, self._subscription)
+            self._node.receiver.remove(self._subscription, self._destroy)
             self._node.forget(self)
+
+    def _destroy(self) -> None:
+        self._node.retire(self._node.rcl.destroy_subscription, self._subscription)
 
     def _events(self) -> Any:
         def on_loop(action: Callable[[], None]) -> Callable[[Any], None]:
@@ -161,6 +181,7 @@ class Ros2Subscription:
 
     def _deliver(self, message: Any) -> None:
         self._silent = False
+        self._missing = frozenset()
         self._deadline_missed = False
         self._callback(self._node.sample(message, self.topic))
 
@@ -219,5 +240,21 @@ class Ros2Subscription:
                         f"topic {self.topic}: {who} publishes {other}, not {self._type_name}; "
                         f"write {other} here to receive it",
                     )
+        if self._silent and self._lively >= LIVELY and time.monotonic() > self._trusted_until:
+            self._doubt()
+        self._lively = 0 if self._silent else self._lively + 1
         self._silent = True
         self._timer = self._node.loop.call_later(LOOKING, self._look)
+
+    def _doubt(self) -> None:
+        """Messages came all the time and come no more: find out whether their publishers are still alive."""
+        suspects = publishers_in(self._node.rcl, self.topic)
+
+        def tell(missing: frozenset[bytes]) -> None:
+            if self._silent:
+                self._missing = missing
+            if not missing:
+                self._trusted_until = time.monotonic() + TRUSTED
+
+        if suspects:
+            self._node.look_again(lambda rcl: publishers_in(rcl, self.topic), suspects, tell)

@@ -1,0 +1,181 @@
+"""Taking messages: a thread with a wait set of our own, beside rclpy's executor.
+
+For each message rclpy's executor goes three times, in Python, through all that the node has: publishers' and subscriptions'
+events, services, clients.  Together with the change of threads that made an agent's reaction half as slow again as a bare
+callback.  Here a wait costs a few calls for each topic, and nothing else is looked at.
+"""
+
+import threading
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup  # type: ignore[import-not-found]
+from rclpy.guard_condition import GuardCondition  # type: ignore[import-not-found]
+from rclpy.impl.implementation_singleton import rclpy_implementation  # type: ignore[import-not-found]
+
+WaitSet = rclpy_implementation.WaitSet
+InvalidHandle = rclpy_implementation.InvalidHandle
+Take = Callable[[Any], None]
+
+
+class NotForExecutor(CallbackGroup):  # type: ignore[misc]
+    """A group of subscriptions that rclpy's executor leaves alone, unless they are given back to it."""
+
+    given_back = False
+
+    def add_entity(self, entity: Any) -> None:
+        """Nothing is to be noted; rclpy's groups never forget what was in them."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Whether the executor may wait for *entity*."""
+        return self.given_back
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Whether the executor may call the callback of *entity*; it has one thread and asks for one at a time."""
+        return self.given_back
+
+    def ending_execution(self, entity: Any) -> None:
+        """Nothing is to be noted."""
+
+
+def take_message(handle: Any, kind: Any) -> Any:
+    """Take a message of class *kind* with what is told about it; None when somebody else has taken it."""
+    return handle.take_message(kind, False)
+
+
+class Receiver:
+    """Takes the messages of subscriptions, which are made with the callback group `group`.
+
+    Args:
+        context: rclpy's context.
+        report: takes one line about a fault; called in the receiver's thread.
+        executor: rclpy's, for all else; it gets the subscriptions too when the receiver cannot go on.
+    """
+
+    def __init__(self, context: Any, report: Callable[[str], None], executor: Any) -> None:
+        self.group = NotForExecutor()
+        self._context = context
+        self._report = report
+        self._wake_executor = executor.wake
+        self._events = ReentrantCallbackGroup()
+        self._guard: Any = GuardCondition(None, None, context=context)
+        self._lock = threading.Lock()
+        self._takers: dict[Any, Take] = {}
+        self._leaving: list[Callable[[], None]] = []
+        self._changed = False
+        self._stopped = False
+        self._over = False
+        self._told: set[str] = set()
+        self._thread = threading.Thread(target=self._run, name="ros2 receiver", daemon=True)
+        self._thread.start()
+
+    def add(self, subscription: Any, take: Take) -> None:
+        """Have *take* called with each message of *subscription*, in the receiver's thread; it must not block.
+
+        Other news of the subscription (deadline, quality of service) is left to the executor.
+        """
+        for handler in subscription.event_handlers:
+            handler.callback_group = self._events
+        self._wake_executor()
+        with self._lock:
+            self._takers[subscription] = take
+            self._wake()
+
+    def remove(self, subscription: Any, then: Callable[[], None]) -> None:
+        """Let go of *subscription*, and call *then* when it is not waited for any more."""
+        with self._lock:
+            self._takers.pop(subscription, None)
+            waited_for = not self._over
+            if waited_for:
+                self._leaving.append(then)
+                self._wake()
+        if not waited_for:
+            then()
+
+    def stop(self, seconds: float) -> None:
+        """Take nothing more; wait at most *seconds* for the thread."""
+        with self._lock:
+            self._stopped = True
+            self._wake()
+        self._thread.join(seconds)
+
+    def _wake(self) -> None:
+        self._changed = True
+        if not self._over:
+            self._guard.trigger()
+
+    def _run(self) -> None:
+        try:
+            while not self._stopped:
+                self._receive_until_changed()
+        except Exception as problem:  # rclpy's inner side, which the wait set is, may be another one day
+            if not self._stopped and self._context.ok():
+                what = f"{type(problem).__name__}: {problem}"
+                self._report(
+                    f"waiting for messages the fast way failed, rclpy's executor does it now: {what}"
+                )
+                self.group.given_back = True
+                self._wake_executor()
+        with self._lock:
+            self._over = True
+            self._guard.destroy()
+        self._let_go()
+
+    def _let_go(self) -> None:
+        with self._lock:
+            leaving, self._leaving = self._leaving, []
+        for then in leaving:
+            then()
+
+    def _receive_until_changed(self) -> None:
+        with self._lock:
+            self._changed = False
+            takers = list(self._takers.items())
+        self._let_go()
+        with ExitStack() as held:
+            # What is held here is destroyed by others only after it was let go.
+            handles, sources = [], {}
+            for subscription, take in takers:
+                handle = subscription.handle
+                with suppress(InvalidHandle):  # gone with its node
+                    held.enter_context(handle)
+                    handles.append(handle)
+                    sources[handle.pointer] = (handle, subscription.msg_type, take)
+            held.enter_context(self._guard.handle)
+            held.enter_context(self._context.handle)
+            self._receive(handles, sources)
+
+    def _receive(self, handles: list[Any], sources: dict[int, tuple[Any, Any, Take]]) -> None:
+        wait_set: Any = WaitSet(len(handles), 1, 0, 0, 0, 0, self._context.handle)
+        guard = self._guard.handle
+
+        def arm() -> None:
+            wait_set.clear_entities()
+            for handle in handles:
+                wait_set.add_subscription(handle)
+            wait_set.add_guard_condition(guard)
+
+        arm()
+        while not self._changed:
+            wait_set.wait(-1)
+            ready = [sources[pointer] for pointer in wait_set.get_ready_entities("subscription")]
+            arrived = [
+                (take, found[0])
+                for handle, kind, take in ready
+                if (found := self._taken(handle, kind)) is not None
+            ]
+            # First all that is left to do here: once the loop is awake it shares the interpreter with this thread.
+            arm()
+            for take, message in arrived:
+                take(message)
+
+    def _taken(self, handle: Any, kind: Any) -> Any:
+        try:
+            return take_message(handle, kind)
+        except Exception as problem:  # one bad message must not make the node deaf
+            text = f"a message of type {kind.__name__} cannot be read: {type(problem).__name__}: {problem}"
+            if text not in self._told:
+                self._told.add(text)
+                self._report(text)
+            return None

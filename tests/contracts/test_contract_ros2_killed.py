@@ -1,0 +1,67 @@
+"""Contract on ROS 2: who was killed is missed long before the graph takes them off its list."""
+
+from typing import Any
+
+import pytest
+
+from jacaros.ros.errors import CallFailed, ServerLost
+
+Pair = tuple[Any, Any]
+pytestmark = pytest.mark.only("ros2")
+LONG = {"target": 1000, "period": 0.1}
+LOST = 60.0
+STRING = "std_msgs/msg/String"
+
+
+def test_a_server_that_is_killed_as_soon_as_it_has_accepted_is_lost(
+    graph: Any, pair: Pair, topic: str
+) -> None:
+    left, _ = pair
+    mortal = graph.peer("short_lived_server")
+    mortal.serve_action(topic)
+    left.send_goal(topic, topic, LONG, timeout=25)
+    left.begin_outcome(topic)
+    graph.kill(mortal)
+    graph.wait_until(lambda: left.outcome_known(topic), "the loss is noticed", LOST)
+    assert left.action_ready(topic), "the graph has noticed it first"
+    with pytest.raises(ServerLost, match=topic):
+        left.end_outcome(topic)
+
+
+def test_a_server_that_is_killed_before_it_has_accepted_is_lost(graph: Any, pair: Pair, topic: str) -> None:
+    left, _ = pair
+    mortal = graph.peer("never_accepting_server")
+    mortal.serve_action(topic)
+    graph.wait_until(lambda: left.action_ready(topic), "the action is found")
+    graph.kill(mortal)
+    left.begin_send(topic, topic, LONG)
+    with pytest.raises(ServerLost, match=topic):
+        left.end_send(topic)
+    assert left.action_ready(topic), "the graph has noticed it first"
+
+
+def test_a_call_of_a_service_that_is_killed_fails(graph: Any, pair: Pair, topic: str) -> None:
+    left, _ = pair
+    mortal = graph.peer("short_lived_service")
+    mortal.serve(topic, "never")
+    graph.wait_until(lambda: left.ready(topic), "the service is found")
+    left.begin_call(topic, topic, {"a": 1, "b": 1})
+    graph.wait_until(lambda: mortal.most_calls_at_once() == 1, "the call is under way")
+    graph.kill(mortal)
+    graph.wait_until(lambda: left.call_over(topic), "the loss is noticed", LOST)
+    assert left.ready(topic), "the graph has noticed it first"
+    with pytest.raises(CallFailed, match=topic):
+        left.end_call(topic)
+
+
+def test_a_publisher_that_is_killed_counts_no_more(graph: Any, pair: Pair, topic: str) -> None:
+    left, _ = pair
+    mortal = graph.peer("short_lived_publisher")
+    left.subscribe(topic, STRING)
+    mortal.advertise(topic, STRING)
+    mortal.keep_publishing(topic, {"data": "alive"}, 0.1)
+    graph.wait_until(lambda: len(left.received(topic)) > 80, "messages came for a while")
+    assert left.publisher_count(topic) == 1
+    graph.kill(mortal)
+    graph.wait_until(lambda: left.publisher_count(topic) == 0, "the loss is noticed", LOST)
+    assert left.contents()["topics"][topic]["publishers"], "the graph has noticed it first"

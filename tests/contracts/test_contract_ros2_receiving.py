@@ -1,0 +1,158 @@
+"""ROS 2 alone: how messages are taken beside rclpy's executor, within one process."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from presence import is_wanted, ros2_environment
+
+pytestmark = pytest.mark.ros2
+
+BEGIN = """
+import asyncio, sys
+from jacaros.clock import WallClock, run
+from jacaros.ros.backends import ros2_receiving
+from jacaros.ros.open import open_backend
+
+STRING = "std_msgs/msg/String"
+clock, told, heard = WallClock(), [], []
+
+async def until(condition):
+    for _ in range(3000):
+        if condition():
+            return
+        await clock.sleep(0.01)
+    sys.exit(f"not within 30 s; heard {heard}, told {told}")
+
+async def talk(publisher, text):
+    # Again and again: the first ones may be sent before the two know of each other.
+    for _ in range(3000):
+        publisher.publish({"data": text})
+        await clock.sleep(0.01)
+        if text in heard:
+            return
+    sys.exit(f"{text} not heard; heard {heard}, told {told}")
+
+async def main():
+    backend = open_backend("ros2", clock, "node", log=told.append)
+    await backend.start()
+    publisher = backend.publisher("/a", STRING)
+    hear = lambda sample: heard.append(sample.message.data)
+    try:
+        await test(backend, publisher, hear)
+    finally:
+        await backend.close()
+"""
+END = """
+run(main, clock)
+print("done")
+"""
+
+
+@pytest.fixture(autouse=True)
+def _ros2(request: pytest.FixtureRequest) -> None:
+    if not is_wanted("ros2", request.config):
+        pytest.skip("no ROS 2 here; see test_contract_presence")
+
+
+def passes(folder: Path, test: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", BEGIN + test + END],
+        env=os.environ | ros2_environment(folder),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "done\n"), done.stderr
+
+
+def test_a_message_that_cannot_be_read_is_told_once_and_the_next_is_heard(tmp_path: Path) -> None:
+    passes(
+        tmp_path,
+        """
+left, genuine = 3, ros2_receiving.take_message
+
+def unreadable(handle, kind):
+    global left
+    if left and genuine(handle, kind):
+        left -= 1
+        raise ValueError("no text")
+    return genuine(handle, kind)
+
+async def test(backend, publisher, hear):
+    ros2_receiving.take_message = unreadable
+    backend.subscription("/a", STRING, hear)
+    await talk(publisher, "a")
+    assert left == 0
+    assert told == ["a message of type String cannot be read: ValueError: no text"], told
+    assert not backend.receiver.group.given_back
+""",
+    )
+
+
+def test_rclpys_executor_takes_over_where_the_wait_set_is_another_one(tmp_path: Path) -> None:
+    passes(
+        tmp_path,
+        """
+async def test(backend, publisher, hear):
+    backend.subscription("/a", STRING, hear)
+    await talk(publisher, "a")
+
+    def changed(*_):
+        raise TypeError("incompatible function arguments")
+
+    ros2_receiving.WaitSet = changed
+    second = backend.subscription("/a", STRING, hear)
+    await until(lambda: told)
+    assert told == ["waiting for messages the fast way failed, rclpy's executor does it now: "
+                    "TypeError: incompatible function arguments"], told
+    await talk(publisher, "b")
+    second.close()
+    await talk(publisher, "c")
+    await until(lambda: len(list(backend.rcl.subscriptions)) == 1)
+""",
+    )
+
+
+def test_subscriptions_come_and_go_while_messages_arrive(tmp_path: Path) -> None:
+    passes(
+        tmp_path,
+        """
+async def test(backend, publisher, hear):
+    before = len(list(backend.rcl.subscriptions)), len(list(backend.rcl.waitables))
+    held = [backend.subscription("/a", STRING, lambda _: None) for _ in range(20)]
+    for number in range(200):
+        publisher.publish({"data": "x"})
+        held.pop(number % len(held)).close()
+        held.append(backend.subscription("/a", STRING, hear))
+        await asyncio.sleep(0)
+    await talk(publisher, "last")
+    for subscription in held:
+        subscription.close()
+        subscription.close()
+    await until(lambda: (len(list(backend.rcl.subscriptions)), len(list(backend.rcl.waitables))) == before)
+    backend.subscription("/a", STRING, hear)
+    await talk(publisher, "after all")
+    assert told == [], told
+""",
+    )
+
+
+def test_a_deadline_is_told_although_the_executor_does_not_take_the_messages(tmp_path: Path) -> None:
+    passes(
+        tmp_path,
+        """
+from jacaros.ros.qos import QoS
+
+async def test(backend, publisher, hear):
+    prompt, events = QoS(deadline=0.2), []
+    offering = backend.publisher("/prompt", STRING, prompt)
+    backend.subscription("/prompt", STRING, hear, prompt, events.append)
+    await talk(offering, "a")
+    await until(lambda: events)
+    assert events[0].trouble == "deadline_missed", events
+""",
+    )
