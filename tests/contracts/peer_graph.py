@@ -31,6 +31,9 @@ class GraphCommands:
         declaration = Declaration(default, accept=accept if only_even else None, **more)
         return self._backend.parameters(node).declare(name, declaration)
 
+    def withdraw(self, name: str, node: str | None = None) -> None:
+        self._backend.parameters(node).withdraw(name)
+
     def parameter_node(self, node: str | None = None) -> str:
         return self._backend.parameters(node).node
 

@@ -112,6 +112,42 @@ def test_declaring_is_for_where_parameters_are_declared(graph: Any, pair: Pair, 
         left.declare(name, 1, node=right.node_name())
 
 
+def test_a_declaration_is_taken_back(graph: Any, pair: Pair, name: str) -> None:
+    left, right = pair
+    if "declared parameters" not in left.capabilities():
+        with pytest.raises(CapabilityMissing, match="withdrawn"):
+            left.withdraw(name)
+        return
+    with pytest.raises(ParameterUnknown, match=name):
+        left.withdraw(name)
+    with pytest.raises(CapabilityMissing, match="itself"):
+        left.withdraw(name, node=right.node_name())
+    left.declare(name, 1, read_only=True)
+    left.declare(f"{name}_even", 2, only_even=True)
+    for each in (name, f"{name}_even"):
+        left.withdraw(each)
+        with pytest.raises(ParameterUnknown, match=each):
+            right.get_parameter(each, left.node_name(), timeout=20)
+    assert left.declare(name, "another type") == "another type"
+    assert left.declare(f"{name}_even", 3) == 3
+    right.set_parameter(f"{name}_even", 5, left.node_name(), timeout=20)
+
+
+def test_numbers_and_ranges_have_their_limits(graph: Any, pair: Pair, name: str) -> None:
+    left, _ = pair
+    if "declared parameters" not in left.capabilities():
+        return
+    for default in (2**63, [2**63]):
+        with pytest.raises(ParameterRefused, match="64 bits"):
+            left.declare(name, default)
+    assert left.declare(name, 1, minimum=-float("inf"), maximum=1e300) == 1
+    left.set_parameter(name, 2**63 - 1, timeout=20)
+    with pytest.raises(ParameterRefused, match="64 bits"):
+        left.set_parameter(name, -(2**63) - 1, timeout=20)
+    with pytest.raises(ParameterRefused):
+        left.set_parameter(name, [], timeout=20)
+
+
 def declaring(pair: Pair, name: str, default: Any, **more: Any) -> tuple[Any, str] | None:
     """Let the right peer declare a parameter; None, after a look at the refusal, where that cannot be."""
     left, right = pair

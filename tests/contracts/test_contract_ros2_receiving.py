@@ -156,3 +156,57 @@ async def test(backend, publisher, hear):
     assert events[0].trouble == "deadline_missed", events
 """,
     )
+
+
+def test_the_clock_that_rclpy_follows_does_not_keep_its_executor_busy(tmp_path: Path) -> None:
+    passes(
+        tmp_path,
+        """
+async def test(backend, publisher, hear):
+    robot = open_backend("ros2", clock, "simulated", log=told.append, parameters={"use_sim_time": True})
+    await robot.start()
+    time = backend.publisher("/clock", "rosgraph_msgs/msg/Clock")
+    for _ in range(3000):
+        time.publish({"clock": {"sec": 1234}})
+        await clock.sleep(0.01)
+        if robot.rcl.get_clock().now().nanoseconds == 1234 * 10**9:
+            break
+    else:
+        sys.exit("the clock is not followed")
+    assert [s.callback_group for s in robot.rcl.subscriptions] == [robot.receiver.group]
+    await robot.close()
+    assert told == [], told
+""",
+    )
+
+
+def test_requests_that_were_never_answered_are_forgotten_with_their_goal(tmp_path: Path) -> None:
+    passes(
+        tmp_path,
+        """
+from jacaros.ros.errors import CallTimedOut
+
+async def test(backend, publisher, hear):
+    other = open_backend("ros2", clock, "other", log=told.append)
+    await other.start()
+
+    async def wait_for_ever(goal):
+        await asyncio.Event().wait()
+
+    other.action_server("/count", "jacaros_interfaces/action/Count", wait_for_ever)
+    client = backend.action_client("/count", "jacaros_interfaces/action/Count")
+    before = len(backend.members), len(list(backend.rcl.clients))
+    for _ in range(20):
+        goal = await client.send({"target": 1}, timeout=20)
+        await goal.cancel(timeout=20)
+    goal = await client.send({"target": 1}, timeout=20)
+    assert client.wire._calls, "the result was asked for"
+    await goal.cancel(timeout=20)
+    await until(lambda: not client.busy)
+    assert not client.wire._calls
+    assert (len(backend.members), len(list(backend.rcl.clients))) == before
+    for one in (client.wire._goal_client, client.wire._cancel_client, client.wire._result_client):
+        await until(lambda: not one._pending_requests)
+    await other.close()
+""",
+    )

@@ -47,6 +47,14 @@ class Parameters(Protocol):
             ParameterRefused: it is declared already, or the default breaks the declaration.
         """
 
+    def withdraw(self, name: str) -> None:
+        """Take a declaration of our own node back, also that of a read-only parameter; it may be declared anew then.
+
+        Raises:
+            ParameterUnknown: our node has no such parameter.
+            CapabilityMissing: as `declare`.
+        """
+
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters, sorted; raises as `get`."""
 

@@ -8,6 +8,7 @@ from jacaros.ros.errors import ParameterRefused, ParameterUnknown
 from jacaros.ros.parameter import Declaration, ParameterValue
 
 _NAMES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "text", bytes: "bytes"}
+_WIDEST = 2**63
 
 
 class DeclaredParameters:
@@ -47,6 +48,11 @@ class DeclaredParameters:
         self._values[name] = value
         self._changed({name: value})
         return value
+
+    def withdraw(self, name: str) -> None:
+        """Take a declaration back; raises `ParameterUnknown`."""
+        self.get(name)
+        del self._declarations[name], self._values[name]
 
     def names(self) -> list[str]:
         """Names of all, sorted."""
@@ -114,6 +120,8 @@ def checked_value(value: Any) -> ParameterValue:
         return str.__str__(value)  # subclasses, such as atoms of the agents' language, become plain texts
     elif isinstance(value, bytes | bytearray):
         return bytes(value)
+    elif isinstance(value, int) and not -_WIDEST <= value < _WIDEST:
+        raise ParameterRefused(f"{value} is too large for a parameter, which has 64 bits")
     elif isinstance(value, bool | int) or (isinstance(value, float) and not math.isnan(value)):
         return value
     raise ParameterRefused(

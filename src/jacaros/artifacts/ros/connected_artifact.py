@@ -26,6 +26,7 @@ from jacaros.ros.backend import (
     TopicEvent,
 )
 from jacaros.ros.errors import RosError
+from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 
 
@@ -254,6 +255,18 @@ class ConnectedArtifact(Artifact):
     def at_dispose(self, closing: Callable[[], None]) -> None:
         """Have *closing* called when the artifact is disposed; the last given is called first."""
         self.__dict__.setdefault("_closings", []).append(closing)
+
+    def declared_parameter(self, name: str, declaration: Declaration) -> ParameterValue:
+        """Declare a parameter of our node until the artifact is disposed, and give its value.
+
+        Raises:
+            CapabilityMissing: parameters are not declared here (ROS 1, rosbridge).
+            ParameterRefused: it is declared already, or the default breaks the declaration.
+        """
+        parameters = self.ros.parameters()
+        value = parameters.declare(name, declaration)
+        self.at_dispose(partial(parameters.withdraw, name))
+        return value
 
     def kept(self, connection: C) -> C:
         """Have *connection* closed with the artifact, and give it back."""

@@ -19,11 +19,13 @@ class MemoryParameters:
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Declare a parameter of our own node."""
-        if self.node != self._asker.node_name:
-            raise CapabilityMissing(
-                f"only {self.node} itself can declare its parameters; {self._asker.node_name} can get and set them"
-            )
+        self._require_own()
         return self._asker.declared.declare(name, declaration)
+
+    def withdraw(self, name: str) -> None:
+        """Take a declaration of our own node back."""
+        self._require_own()
+        self._asker.declared.withdraw(name)
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
@@ -41,6 +43,12 @@ class MemoryParameters:
     def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
         """Have *callback* called with what changed."""
         return self._asker.graph.listen_to_parameters(self.node, callback)
+
+    def _require_own(self) -> None:
+        if self.node != self._asker.node_name:
+            raise CapabilityMissing(
+                f"only {self.node} itself can declare its parameters; {self._asker.node_name} can get and set them"
+            )
 
     async def _store(self, timeout: float | None) -> DeclaredParameters:
         if self.node == self._asker.node_name:

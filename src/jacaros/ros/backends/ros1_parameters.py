@@ -53,6 +53,10 @@ class Ros1Parameters:
             "value; read it with `get`, and set it where nobody has"
         )
 
+    def withdraw(self, name: str) -> NoReturn:
+        """Refuse: nothing is declared here."""
+        raise CapabilityMissing(f"parameter {name} cannot be withdrawn: on ROS 1 nothing is declared")
+
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the parameters below the node, sorted."""
         everything = await self._ask(timeout, "getParamNames")

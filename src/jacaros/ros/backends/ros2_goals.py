@@ -82,6 +82,7 @@ class Ros2GoalWire:
         self._servers: frozenset[bytes] = frozenset()
         self._signs = SignsOfLife(self._probe, self.sender.server_present, self._look_with_fresh_eyes)
         self._looking: Any = None
+        self._calls: dict[Any, Any] = {}
         self._unsent: list[str] = []
         self._sending: Any = None
         self._closed = False
@@ -147,6 +148,7 @@ class Ros2GoalWire:
         self._goals.pop(identity, None)
         if not self._goals:
             self._signs.rest()
+            self._forget_calls()
 
     def close(self) -> None:
         """Leave, when what was sent last has arrived."""
@@ -363,10 +365,19 @@ class Ros2GoalWire:
 
     def _call(self, client: Any, request: Any, take: Callable[[Any], None]) -> None:
         def finished(future: Any) -> None:
+            self._calls.pop(future, None)
             if future.exception() is None and future.result() is not None:
                 self._post(self._take_answer, take, future.result())
 
-        client.call_async(request).add_done_callback(finished)
+        call = client.call_async(request)
+        self._calls[call] = client
+        call.add_done_callback(finished)
+
+    def _forget_calls(self) -> None:
+        """Wait for answers no more: those of a server that has died would be waited for without end."""
+        while self._calls:
+            call, client = self._calls.popitem()
+            client.remove_pending_request(call)
 
     def _take_answer(self, take: Callable[[Any], None], answer: Any) -> None:
         self._signs.heard()

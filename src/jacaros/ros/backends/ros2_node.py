@@ -152,8 +152,15 @@ class Ros2Node(Node):
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.rcl)
         self.receiver = Receiver(self._context, self._report, self._executor)
+        self._take_clock()
         self._thread = threading.Thread(target=self._spin, name="rclpy executor", daemon=True)
         self._thread.start()
+
+    def _take_clock(self) -> None:
+        """Take the messages of ``/clock`` that rclpy follows (`use_sim_time`); simulators may send a thousand a second."""
+        for subscription in self.rcl.subscriptions:
+            subscription.callback_group = self.receiver.group
+            self.receiver.add(subscription, subscription.callback)
 
     def _spin(self) -> None:
         while self._context.ok() and not self._stopped.is_set():

@@ -109,8 +109,20 @@ class OwnParameters:
             raise ParameterRefused(f"parameter {name} of {self.node}: {problem}") from None
         return self._value(made)
 
+    def withdraw(self, name: str) -> None:
+        """Take a declaration back."""
+        rcl = self._node.rcl
+        if not rcl.has_parameter(name):
+            raise ParameterUnknown(self._unknown(name))
+        rcl.describe_parameter(name).read_only = False  # that is meant for others, rclpy means everybody
+        rcl.undeclare_parameter(name)
+        self._judges.pop(name, None)
+
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
+        return self._names()
+
+    def _names(self) -> list[str]:
         return sorted(self._node.rcl.list_parameters([], 0).names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
@@ -118,14 +130,14 @@ class OwnParameters:
         try:
             return self._value(self._node.rcl.get_parameter(name))
         except ParameterNotDeclaredException:
-            raise await self._unknown(name) from None
+            raise ParameterUnknown(self._unknown(name)) from None
 
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
         """Change a parameter."""
         try:
             before = self._node.rcl.get_parameter(name)
         except ParameterNotDeclaredException:
-            raise await self._unknown(name) from None
+            raise ParameterUnknown(self._unknown(name)) from None
         [result] = self._node.rcl.set_parameters([parameter(name, value, before.type_)])
         if not result.successful:
             raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {result.reason}")
@@ -140,10 +152,8 @@ class OwnParameters:
         )
         return value
 
-    async def _unknown(self, name: str) -> ParameterUnknown:
-        return ParameterUnknown(
-            f"node {self.node} has no parameter {name}; it has {', '.join(await self.names())}"
-        )
+    def _unknown(self, name: str) -> str:
+        return f"node {self.node} has no parameter {name}; it has {', '.join(self._names())}"
 
     def _judge(self, changes: list[Any]) -> Any:
         """Called by rclpy, on whatever thread the change comes from."""
@@ -183,9 +193,11 @@ class OtherParameters:
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Only the node itself can do that."""
-        raise CapabilityMissing(
-            f"only {self.node} itself can declare its parameters; {self._node.node_name} can get and set them"
-        )
+        raise self._not_ours()
+
+    def withdraw(self, name: str) -> None:
+        """Only the node itself can do that."""
+        raise self._not_ours()
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
@@ -222,6 +234,11 @@ class OtherParameters:
         """Have *callback* called with what changed."""
         return self._news.listen(self.node, callback)
 
+    def _not_ours(self) -> CapabilityMissing:
+        return CapabilityMissing(
+            f"only {self.node} itself can declare its parameters; {self._node.node_name} can get and set them"
+        )
+
     async def _type(self, name: str, timeout: float | None) -> int:
         """The number of a parameter's type; 0 for one that is not there."""
         answer = await self._call("GetParameterTypes", {"names": [name]}, timeout)
@@ -245,8 +262,8 @@ def _descriptor(default: Any, declaration: Declaration) -> Any:
     if default.type_ in (Parameter.Type.INTEGER, Parameter.Type.INTEGER_ARRAY):
         told.integer_range = [
             IntegerRange(
-                from_value=-_LARGEST if low is None else math.ceil(low),
-                to_value=_LARGEST if high is None else math.floor(high),
+                from_value=-_LARGEST if low is None or low <= -_LARGEST else math.ceil(low),
+                to_value=_LARGEST if high is None or high >= _LARGEST else math.floor(high),
             )
         ]
     else:

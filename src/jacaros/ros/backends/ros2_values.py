@@ -19,6 +19,8 @@ _LIST_KINDS: dict[type, Any] = {
     float: Parameter.Type.DOUBLE_ARRAY,
     str: Parameter.Type.STRING_ARRAY,
 }
+_ARRAYS = {*_LIST_KINDS.values(), Parameter.Type.BYTE_ARRAY}
+_WIDEST = 2**63
 
 
 def parameter(name: str, value: Any, kind: Any = None) -> Any:
@@ -35,12 +37,18 @@ def parameter(name: str, value: Any, kind: Any = None) -> Any:
     if isinstance(value, list | tuple):
         elements = list(value)
         if not elements:
-            return Parameter(name, kind or Parameter.Type.STRING_ARRAY, [])
+            return Parameter(name, kind if kind in _ARRAYS else Parameter.Type.STRING_ARRAY, [])
+        if any(isinstance(element, int) and not -_WIDEST <= element < _WIDEST for element in elements):
+            raise ParameterRefused(
+                f"parameter {name}: {value!r} is too large for a parameter, which has 64 bits"
+            )
         kinds = {_LIST_KINDS.get(type(element)) for element in elements}
         if len(kinds) == 1 and (kind := kinds.pop()) is not None:
             return Parameter(name, kind, elements)
     elif isinstance(value, bytes | bytearray):
         return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in value])
+    elif isinstance(value, int) and not -_WIDEST <= value < _WIDEST:
+        raise ParameterRefused(f"parameter {name}: {value} is too large for a parameter, which has 64 bits")
     else:
         for python, kind in _KINDS.items():  # bool is an int, and comes first
             if isinstance(value, python):

@@ -28,6 +28,10 @@ class BridgeParameters:
         """Always raises `CapabilityMissing`: over a bridge we are no node whose parameters others could see."""
         self._missing(f"parameter {name} cannot be declared")
 
+    def withdraw(self, name: str) -> None:
+        """Always raises `CapabilityMissing`, as `declare`."""
+        self._missing(f"parameter {name} cannot be withdrawn")
+
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters, sorted."""
         self._require_known()
