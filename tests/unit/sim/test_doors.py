@@ -100,6 +100,15 @@ def test_the_way_fails_at_a_closed_door_and_not_when_it_is_open() -> None:
     assert bumps(in_world(TWO_ROOMS, body).world) == []
 
 
+def test_a_goal_right_behind_a_closed_door_fails_for_the_door() -> None:
+    async def body(lab: Lab) -> None:
+        assert (await lab.go(-0.3, 0)).status == GoalStatus.SUCCEEDED
+        failed = await lab.go(0.02, 0)
+        assert (failed.result.error_code, "'kitchen' is closed" in failed.result.error_msg) == (208, True)
+
+    assert bumps(in_world(TWO_ROOMS, body).world) == []
+
+
 def test_a_door_that_is_opened_in_time_is_waited_for() -> None:
     async def body(lab: Lab) -> None:
         handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(1, 0))

@@ -66,6 +66,7 @@ class Route:
         return ax + share * (bx - ax), ay + share * (by - ay)
 
     def samples(self, ahead: float, step: float = 0.1) -> list[Point]:
-        """Points of the next *ahead* metres of the way."""
+        """Points of the next *ahead* metres of the way, its end among them if it is so near."""
         count = math.floor(min(ahead, self.remaining) / step)
-        return [self.point(self.done + index * step) for index in range(count + 1)]
+        points = [self.point(self.done + index * step) for index in range(count + 1)]
+        return [*points, self.points[-1]] if ahead >= self.remaining else points

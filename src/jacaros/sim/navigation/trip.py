@@ -35,6 +35,7 @@ _BACK = 0.2
 _LEAST_ALLOWANCE = 30.0
 _LATER = 1.3
 _FEEDBACK_EVERY = 2
+_STILL = 0.15
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +93,7 @@ class Trip:
         )
         self._recoveries = self._in_a_row = self._cycles = 0
         self._stuck_at: Point = (math.inf, math.inf)
+        self._hopeless: list[Circle] | None = None
         self._mark = self._pose
         self._marked = self._planned = self._began
         self._look()
@@ -184,10 +186,15 @@ class Trip:
     def _plan_again(self) -> None:
         """Find a way round whoever stands there; without one the old way stays."""
         self._planned = self._clock.now()
+        # To find that there is none takes longest; it need not be found again while the same things stand there.
+        if self._hopeless is not None and _stand_still(self._hopeless, self._others):
+            return
         try:
             way = self._way(self._others)
         except NavigationFailure:
+            self._hopeless = self._others
             return
+        self._hopeless = None
         self._drive_along(way)
 
     def _way(self, others: Sequence[Circle]) -> list[Point]:
@@ -253,3 +260,10 @@ class Trip:
                     f"another robot stands in the way at {told((x, y))}, and there is no way round",
                 )
         raise NavigationFailure(FAILED_TO_MAKE_PROGRESS, f"the robot does not get any further at {here}")
+
+
+def _stand_still(before: Sequence[Circle], now: Sequence[Circle]) -> bool:
+    """Whether the same things stand where they stood, as far as a robot can tell."""
+    return len(before) == len(now) and all(
+        distance((ax, ay), (bx, by)) < _STILL for (ax, ay, _), (bx, by, _) in zip(before, now, strict=True)
+    )
