@@ -135,7 +135,9 @@ class TerminalView:
             + (f" {robot.battery:.0f} %" if robot.battery != UNKNOWN else "")
             for robot in self._robots
         )
-        return Text(f"t {self._t:.1f} s  ×{self._factor:.0f}  {robots}{self._goal_text()}")
+        return Text(
+            f"t {self._t:.1f} s  ×{self._factor:.0f}  {robots}{''.join(f'  {row}' for row in self._pursued())}"
+        )
 
     def picture(self) -> Group:
         """The whole view."""
@@ -144,19 +146,19 @@ class TerminalView:
         # Where nothing is known of a world, goals and prints are worth a look all the same.
         rows = [head, self._map()] if self._drawing else [head]
         rows += [self._gauge(robot, i) for i, robot in enumerate(self._robots)]
-        if self._goals:
-            rows.append(Text(self._goal_text().strip(), style="dim"))
+        rows += [Text(row, style="dim", no_wrap=True, overflow="ellipsis") for row in self._pursued()]
         for agent, text in self._prints:
             rows.append(Text.assemble((f"[{agent}] ", "cyan"), text, no_wrap=True, overflow="ellipsis"))
         return Group(*rows)
 
-    def _goal_text(self) -> str:
-        several = len({agent for agent, _ in self._goals}) > 1
-        shown = [
-            (f"{agent}: " if several else "") + goal + (" (suspended)" if state == "suspended" else "")
-            for (agent, goal), state in self._goals.items()
-        ]
-        return f"  pursuing {', '.join(shown)}" if shown else ""
+    def _pursued(self) -> list[str]:
+        """What each agent pursues, the newest goal first: a row is cut off where the terminal ends."""
+        goals: dict[str, list[str]] = {}
+        for (agent, goal), state in self._goals.items():
+            goals.setdefault(agent, []).insert(0, goal + (" (suspended)" if state == "suspended" else ""))
+        if len(goals) == 1:
+            return [f"pursuing {', '.join(shown)}" for shown in goals.values()]
+        return [f"{agent} pursues {', '.join(shown)}" for agent, shown in sorted(goals.items())]
 
     def _map(self) -> Text:
         self._fit()
@@ -183,7 +185,7 @@ class TerminalView:
             return
         self._size = size
         robots = max(1, len(self._drawing["robots"]))
-        rows = max(6, min(32, size[1] - robots - _PRINTS - 4))
+        rows = max(6, min(32, size[1] - 2 * robots - _PRINTS - 3))
         self._walls = draw_world(self._drawing, max(20, size[0] - 2), rows)
         self._trail = BrailleMap(self._drawing["bounds"], max(20, size[0] - 2), rows)
 

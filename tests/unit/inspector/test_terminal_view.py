@@ -121,6 +121,23 @@ def test_without_a_world_there_are_goals_and_prints() -> None:
     assert rendered(view).splitlines()[1:] == ["pursuing !go", "[a] on the way"]
 
 
+def test_each_agent_has_a_row_of_goals_the_newest_first() -> None:
+    view = TerminalView(Console(file=io.StringIO(), force_terminal=True, width=40), Wall())
+    for agent in ("b", "a"):
+        for goal in (
+            "!patrol([north,east,south,west],100)",
+            "!watch_over(storehouse,by_night)",
+            "!visit(north)",
+        ):
+            view.event(0.0, "goal", {"agent": agent, "goal": goal, "state": "pursued"})
+    view.frame(1.0, [])
+    view.close()
+    assert rendered(view).splitlines()[1:] == [
+        "a pursues !visit(north), !watch_over(storehouse,by_night), !patrol([north,east,…",
+        "b pursues !visit(north), !watch_over(storehouse,by_night), !patrol([north,east,…",
+    ]
+
+
 def test_two_robots_have_a_gauge_each() -> None:
     view, _, _, _ = view_of("two_robots")
     view.frame(
