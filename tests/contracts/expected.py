@@ -9,7 +9,10 @@ CAPABILITIES = {
     "ros1": COMMON | {"registration", "parameter events"},
     "ros2": COMMON - {"service errors"}
     | {"qos", "declared parameters", "parameter events", "deadlines", "qos in the graph"},
-    **dict.fromkeys(BRIDGED, COMMON - {"service errors"}),
+    **{
+        kind: (COMMON - {"service errors"}) | ({"parameter events"} if "ros2" in kind else set())
+        for kind in BRIDGED
+    },
 }
 # There the peer that is asked is a node of the graph itself.
 CAPABILITIES["rosbridge-ros2-right"] = CAPABILITIES["memory"]

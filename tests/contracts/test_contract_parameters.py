@@ -239,6 +239,7 @@ def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
     assert len(left.parameter_changes(name)) == before
 
 
+@pytest.mark.needs("own parameters")
 def test_only_the_changes_of_the_node_are_told(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     if "parameter events" not in left.capabilities():

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 DEFAULT_TIMEOUT = 5.0
 """Seconds of a call without ``timeout`` (the server's parameter ``default_call_service_timeout``)."""
+PARAMETER_EVENTS = "/parameter_events"
 STATUS_SUFFIX = "/_action/status"
 ACTION_OPERATIONS = (
     *("send_action_goal", "cancel_action_goal", "advertise_action", "unadvertise_action"),
@@ -45,6 +46,7 @@ class Connection:
         self._publishers: dict[str, tuple[str, Any, set[str]]] = {}
         self._subscriptions: dict[str, tuple[str, Any, set[str]]] = {}
         self._statuses: set[str] = set()
+        self._hears_of_parameters = False
         self._services: dict[str, AdvertisedService] = {}
         self._actions: dict[str, AdvertisedAction] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -119,6 +121,9 @@ class Connection:
             self._statuses.add(topic.removesuffix(STATUS_SUFFIX))
             self.tell_status(topic.removesuffix(STATUS_SUFFIX))
             return
+        if topic == PARAMETER_EVENTS:
+            self._hears_of_parameters = True
+            return
         self._require_type(topic, kind, self._subscriptions)
         _, old, numbers = self._subscriptions.pop(topic, (kind, None, set()))
         if old is not None:  # a second subscription of a client sees what is latched, as a new one
@@ -128,7 +133,8 @@ class Connection:
             values = to_json(self.bridge.node, kind, sample.message, self.bridge.ros1)
             self.send({"op": "publish", "topic": topic, "msg": values})
 
-        latched = self.bridge.is_latched(topic)
+        given = message.get("qos") or {}
+        latched = given.get("durability") == "transient_local" or self.bridge.is_latched(topic)
         qos = QoS(
             "best_effort", "transient_local" if latched else "volatile", message.get("queue_length") or 100
         )
@@ -157,6 +163,11 @@ class Connection:
             written = f"with type {short(kind)} but it is already established with type {short(str(known))}"
             raise Refused(f"Tried to register topic {topic} {written}")
         self.bridge.node.factory.fields(kind)
+
+    def tell_parameters(self, event: dict[str, Any]) -> None:
+        """Send a message of ``/parameter_events``, if the client wants it."""
+        if self._hears_of_parameters:
+            self.send({"op": "publish", "topic": PARAMETER_EVENTS, "msg": event})
 
     def tell_status(self, action: str) -> None:
         """Send what the status topic of an action shows, if the client wants it."""
@@ -187,6 +198,8 @@ class Connection:
         bridge, arguments = self.bridge, message.get("args") or {}
         if name.startswith("/rosapi/"):
             return await bridge.rosapi.call(name, arguments)
+        if not bridge.ros1 and (values := await bridge.parameters.call(name, arguments)) is not None:
+            return values
         kind = (await bridge.node.contents()).services.get(name)
         if kind is None:
             raise CallFailed(f"Service {name} does not exist")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from conversion import short
+from parameters import ParameterServices
 
 from jacaros.ros.errors import CallFailed, JacarosError, ParameterError
 from jacaros.ros.fields import FieldType
@@ -34,6 +35,7 @@ class RosApi:
     def __init__(self, node: Node, ros1: bool, under_way: Sequence[str] = ()) -> None:
         self._node = node
         self._under_way = under_way
+        self._parameters = ParameterServices(node)
         self._ros1 = ros1
         self.master: dict[str, Any] = {}
         self.running = True
@@ -77,6 +79,8 @@ class RosApi:
     async def _topics(self) -> dict[str, Any]:
         topics = (await self._contents()).topics
         found = {name: self._written(info.types[0]) for name, info in topics.items()}
+        if not self._ros1:
+            found["/parameter_events"] = "rcl_interfaces/msg/ParameterEvent"
         found["/rosout"] = "rosgraph_msgs/Log" if self._ros1 else "rcl_interfaces/msg/Log"
         return {"topics": list(found), "types": list(found.values())}
 
@@ -100,7 +104,10 @@ class RosApi:
         return {"type": self._written(info.types[0]) if info else ""}
 
     async def _service_type(self, service: str) -> dict[str, Any]:
-        return {"type": self._written((await self._contents()).services.get(service, ""))}
+        found = (await self._contents()).services.get(service, "")
+        if not found and not self._ros1:
+            found = await self._parameters.type_of(service)
+        return {"type": self._written(found)}
 
     async def _action_servers(self) -> dict[str, Any]:
         contents = await self._contents()

@@ -15,7 +15,7 @@ import sys
 import tempfile
 import threading
 from collections import deque
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "contracts"))
 from autobahn.asyncio.websocket import WebSocketServerFactory, WebSocketServerProtocol
 from connection import Connection
 from goals import SentGoals
+from parameters import ParameterServices
 from peer import Peer
 from rosapi import RosApi, write_ros1_types
 
@@ -81,10 +82,11 @@ class Bridge:
         self.talkative = talkative
         self.knows_actions = knows_actions and not ros1
         self.frozen = False
-        self.graph = MemoryGraph()
+        self.graph = _Graph(self)
         settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=folders)
         self.node = MemoryBackend(settings, self.graph)
         self.goals = SentGoals(self)
+        self.parameters = ParameterServices(self.node)
         self.rosapi = RosApi(self.node, ros1, self.goals.under_way)
         self.connections: dict[Connection, Socket] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -132,6 +134,18 @@ class Bridge:
         """Whether all publishers keep their messages for late subscriptions."""
         publishers = self.graph.topic(topic).publishers
         return bool(publishers) and all(each.qos.durability == "transient_local" for each in publishers)
+
+
+class _Graph(MemoryGraph):
+    def __init__(self, bridge: Bridge) -> None:
+        super().__init__()
+        self._bridge = bridge
+
+    def parameters_changed(self, node: str, changed: Mapping[str, Any]) -> None:
+        super().parameters_changed(node, changed)
+        if not self._bridge.ros1:
+            for connection in list(self._bridge.connections):
+                connection.tell_parameters(self._bridge.parameters.event(node, changed))
 
 
 async def obey(bridge: Bridge, command: dict[str, Any], peers: dict[str, Peer]) -> Any:

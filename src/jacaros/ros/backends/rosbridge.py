@@ -19,6 +19,7 @@ from jacaros.ros.action import ActionPolicy, Execute
 from jacaros.ros.backend import (
     ACTIONS,
     DEFAULT_POLICY,
+    PARAMETER_EVENTS,
     PARAMETERS,
     SERVICES,
     TOPICS,
@@ -33,6 +34,7 @@ from jacaros.ros.backends.rosbridge_graph import look
 from jacaros.ros.backends.rosbridge_link import Link
 from jacaros.ros.backends.rosbridge_members import Members
 from jacaros.ros.backends.rosbridge_messages import Translator
+from jacaros.ros.backends.rosbridge_parameter_services import ParameterNews
 from jacaros.ros.backends.rosbridge_parameters import BridgeParameters
 from jacaros.ros.backends.rosbridge_requests import Done, Requests
 from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
@@ -73,8 +75,6 @@ class RosbridgeBackend(Node):
     """
 
     name = "rosbridge"
-    # Failed handlers are told of by those services of ROS 1 alone that are not served over a bridge.
-    capabilities = frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, PARAMETERS})
 
     def __init__(self, settings: NodeSettings, url: str | None = None) -> None:
         self.url = _checked(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL)
@@ -85,6 +85,7 @@ class RosbridgeBackend(Node):
         self.translator = Translator(self._schema)
         self.members = Members(self)
         self.goals: dict[str, Any] = {}
+        self._news = ParameterNews(self)
         self.attached = False
         self._services: dict[str, BridgeService] = {}
         self._action_servers: dict[str, BridgeActionServer] = {}
@@ -98,6 +99,13 @@ class RosbridgeBackend(Node):
     def ros_version(self) -> int:  # type: ignore[override]
         """Of the robot; 2 until the first connection."""
         return self.translator.ros_version
+
+    @property
+    def capabilities(self) -> frozenset[str]:  # type: ignore[override]
+        """What can be done with the robot's ROS."""
+        # Failed handlers are told of by those services of ROS 1 alone that are not served over a bridge.
+        news = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
+        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, PARAMETERS, *news})
 
     async def start(self) -> None:
         """Connect, or say that the server is awaited and go on trying in the background."""
@@ -186,7 +194,7 @@ class RosbridgeBackend(Node):
 
     def parameters(self, node: str | None = None) -> BridgeParameters:
         """Give the parameters of a node; our own can be used on ROS 1 alone, where the master keeps them."""
-        return BridgeParameters(self, self.node_name if node is None else self.resolve(node))
+        return BridgeParameters(self, self.node_name if node is None else self.resolve(node), self._news)
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
         """Look at the graph."""

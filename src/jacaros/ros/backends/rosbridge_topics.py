@@ -80,12 +80,7 @@ class BridgePublisher:
             "queue_size": qos.depth,
         }
         if self._node.ros_version == 2:
-            operation["qos"] = {
-                "history": "keep_last",
-                "depth": qos.depth,
-                "reliability": qos.reliability,
-                "durability": qos.durability,
-            }
+            operation["qos"] = _quality(qos)
         self._node.send(operation)
         self._node.members.admission.expect(self)
         for message in self._kept:
@@ -146,16 +141,18 @@ class TopicFeed:
 
     def join(self) -> None:
         """Subscribe at a server that does not know us yet."""
-        # Without qos: the server then chooses what goes with all publishers that it sees.
-        self._node.send(
-            {
-                "op": "subscribe",
-                "id": self.number,
-                "topic": self.topic,
-                "type": self.written_type(),
-                "queue_length": self._depth,
-            }
-        )
+        operation = {
+            "op": "subscribe",
+            "id": self.number,
+            "topic": self.topic,
+            "type": self.written_type(),
+            "queue_length": self._depth,
+        }
+        # Without qos the server chooses what goes with all publishers that it sees.  But if there are none yet, it does not
+        # get what they will have said before it knows them.
+        if self._node.ros_version == 2 and any(sink.latched for sink in self._sinks):
+            operation["qos"] = _quality(QoS(durability="transient_local", depth=self._depth))
+        self._node.send(operation)
         self._node.members.admission.expect(self)
 
     def lost(self) -> None:
@@ -242,3 +239,12 @@ class BridgeSubscription:
             self.trouble(f"topic {self.topic}: a message is no {self._type_name}: {problem}")
         else:
             self._callback(self._node.sample(message, self.topic))
+
+
+def _quality(qos: QoS) -> dict[str, Any]:
+    return {
+        "history": "keep_last",
+        "depth": qos.depth,
+        "reliability": qos.reliability,
+        "durability": qos.durability,
+    }

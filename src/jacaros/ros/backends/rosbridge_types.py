@@ -30,6 +30,13 @@ _ROS1_ONLY = {
     "string function\nuint32 line\nstring[] topics\n"
 }
 """Definitions of ROS 1 that we need ourselves."""
+_PARAMETER_SERVICES = {
+    "rcl_interfaces/srv/GetParameters": "string[] names\n---\nParameterValue[] values\n",
+    "rcl_interfaces/srv/GetParameterTypes": "string[] names\n---\nuint8[] types\n",
+    "rcl_interfaces/srv/SetParameters": "Parameter[] parameters\n---\nSetParametersResult[] results\n",
+    "rcl_interfaces/srv/ListParameters": "string[] prefixes\nuint64 depth\n---\nListParametersResult result\n",
+}
+"""Services of ROS 2's nodes that we call ourselves."""
 _ACTIONLIB = {
     "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{action}_Goal goal\n",
     "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Result result\n",
@@ -63,8 +70,9 @@ class BridgeSchema(RosbagsSchema):
         try:
             return super()._definition(type_name, what, ending)
         except UnknownInterface as unknown:
-            if type_name in _ROS1_ONLY:
-                return _ROS1_ONLY[type_name]
+            for ours in (_ROS1_ONLY, _PARAMETER_SERVICES):
+                if type_name in ours:
+                    return ours[type_name]
             if type_name in self._told:  # part of a type that the server has told
                 return self._told[type_name]
             reason = self._describe()
