@@ -210,15 +210,64 @@ def test_a_big_message_goes_both_ways(bridged: BehindBridge) -> None:
 
 def test_numbers_that_json_cannot_write_arrive_as_nan(bridged: BehindBridge) -> None:
     robot, client = bridged.peer("robot"), bridged.peer("client")
+    robot.advertise("/scan", "sensor_msgs/msg/JointState")
+    client.subscribe("/scan", "sensor_msgs/msg/JointState")
+    bridged.wait_until(lambda: robot.subscription_count("/scan") == 1, "the topic is joined")
+    robot.publish("/scan", {"header": {"frame_id": "x"}, "position": [1.5, float("inf"), float("nan")]})
+    bridged.wait_until(lambda: client.received("/scan"), "the message arrives")
+    [state] = client.received("/scan")
+    assert state["position"][0] == 1.5
+    assert [value != value for value in state["position"]] == [False, True, True]
+
+
+def test_scans_arrive_packed_with_numbers_as_they_are(bridged: BehindBridge) -> None:
+    robot, client = bridged.peer("robot"), bridged.peer("client")
     robot.advertise("/scan", "sensor_msgs/msg/LaserScan")
     client.subscribe("/scan", "sensor_msgs/msg/LaserScan")
     bridged.wait_until(lambda: robot.subscription_count("/scan") == 1, "the topic is joined")
     robot.publish("/scan", {"ranges": [1.5, float("inf"), float("nan")], "range_max": float("inf")})
     bridged.wait_until(lambda: client.received("/scan"), "the scan arrives")
     [scan] = client.received("/scan")
-    assert scan["ranges"][0] == 1.5
-    assert [value != value for value in scan["ranges"]] == [False, True, True]
-    assert scan["range_max"] != scan["range_max"]
+    assert scan["ranges"][:2] == [1.5, float("inf")]
+    assert scan["ranges"][2] != scan["ranges"][2]
+    assert scan["range_max"] == float("inf")
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields"),
+    [
+        ("nav_msgs/msg/OccupancyGrid", {"info": {"width": 3, "height": 1}, "data": [-1, 0, 100]}),
+        (
+            "sensor_msgs/msg/PointCloud2",
+            {"fields": [{"name": "x", "offset": 0, "datatype": 7, "count": 1}], "data": [0, 128, 255]},
+        ),
+        ("std_msgs/msg/UInt16MultiArray", {"data": [0, 65535]}),
+        ("std_msgs/msg/Int64MultiArray", {"data": [-(2**63), 2**63 - 1]}),
+        ("std_msgs/msg/UInt64MultiArray", {"data": [2**64 - 1]}),
+        ("std_msgs/msg/Float64MultiArray", {"data": [0.1, -1e300]}),
+        ("std_msgs/msg/UInt64", {"data": 2**64 - 1}),
+        ("nav_msgs/msg/Odometry", {"pose": {"covariance": [0.5] * 36}}),
+        ("sensor_msgs/msg/JointState", {"name": ["a", "b"], "position": [0.5, 1.5]}),
+    ],
+)
+def test_arrays_of_all_sorts_arrive(robot_of_ros2: BehindBridge, kind: str, fields: dict[str, Any]) -> None:
+    robot, client = robot_of_ros2.peer("robot"), robot_of_ros2.peer("client")
+    robot.advertise("/a", kind)
+    client.subscribe("/a", kind)
+    robot_of_ros2.wait_until(lambda: robot.subscription_count("/a") == 1, "the topic is joined")
+    robot.publish("/a", fields)
+    robot_of_ros2.wait_until(lambda: client.received("/a"), "the message arrives")
+    [got] = client.received("/a")
+    assert _holds(got, fields), got
+
+
+def _holds(got: Any, wanted: Any) -> bool:
+    """Whether all that is wanted is there; messages may have further fields."""
+    if isinstance(wanted, dict):
+        return all(_holds(got[name], value) for name, value in wanted.items())
+    if isinstance(wanted, list):
+        return len(got) == len(wanted) and all(map(_holds, got, wanted))
+    return bool(got == wanted)
 
 
 def test_a_topic_of_another_type_is_told(bridged: BehindBridge) -> None:

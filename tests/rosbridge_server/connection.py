@@ -6,7 +6,8 @@ import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from conversion import Mismatch, from_json, short, to_json
+import cbor2
+from conversion import Mismatch, from_json, short, to_cbor, to_json
 from goals import AdvertisedAction
 
 from jacaros.errors import JacarosError
@@ -37,10 +38,10 @@ class Connection:
 
     Args:
         bridge: the server.
-        write: sends a frame.
+        write: sends a frame, binary or not.
     """
 
-    def __init__(self, bridge: "Bridge", write: Callable[[bytes], None]) -> None:
+    def __init__(self, bridge: "Bridge", write: Callable[[bytes, bool], None]) -> None:
         self.bridge = bridge
         self._write = write
         self._publishers: dict[str, tuple[str, Any, set[str]]] = {}
@@ -70,7 +71,12 @@ class Connection:
     def send(self, message: dict[str, Any]) -> None:
         """Send an operation to the client."""
         if self._alive:
-            self._write(json.dumps(message).encode())
+            self._write(json.dumps(message).encode(), False)
+
+    def send_packed(self, message: dict[str, Any]) -> None:
+        """Send an operation as CBOR."""
+        if self._alive:
+            self._write(cbor2.dumps(message), True)
 
     def status(self, level: str, text: str, number: str | None) -> None:
         """Say something, if the server is one that talks: rosbridge_suite keeps it for its own log."""
@@ -130,6 +136,10 @@ class Connection:
             old.close()
 
         def receive(sample: Sample) -> None:
+            if message.get("compression") == "cbor":
+                packed = to_cbor(self.bridge.node, kind, sample.message, self.bridge.ros1)
+                self.send_packed({"op": "publish", "topic": topic, "msg": packed})
+                return
             values = to_json(self.bridge.node, kind, sample.message, self.bridge.ros1)
             self.send({"op": "publish", "topic": topic, "msg": values})
 

@@ -67,9 +67,9 @@ class Socket(WebSocketServerProtocol):  # type: ignore[misc]
             self.factory.bridge.connections.pop(self.connection, None)
             self.connection.close()
 
-    def _write(self, frame: bytes) -> None:
+    def _write(self, frame: bytes, binary: bool) -> None:
         if not self.factory.bridge.frozen and self.state == self.STATE_OPEN:
-            self.sendMessage(frame)
+            self.sendMessage(frame, binary)
 
 
 class Bridge:

@@ -87,6 +87,8 @@ class RosbridgeBackend(Node):
         self.goals: dict[str, Any] = {}
         self._news = ParameterNews(self)
         self.attached = False
+        self.packs = False
+        """Whether the server can write CBOR; of ROS 2, the first ones lost messages over it."""
         self._services: dict[str, BridgeService] = {}
         self._action_servers: dict[str, BridgeActionServer] = {}
         self._greeting: asyncio.Task[None] | None = None
@@ -307,12 +309,16 @@ class RosbridgeBackend(Node):
     async def _find_version(self) -> int:
         for _ in range(GREETINGS):
             try:
-                return int((await self._rosapi("get_ros_version", {}, FETCHING))["version"])
+                version = int((await self._rosapi("get_ros_version", {}, FETCHING))["version"])
+                self.packs = True
+                return version
             except (ServiceUnavailable, CallTimedOut, KeyError):
                 pass
             try:
                 types = (await self._rosapi("topics", {}, FETCHING))["types"]
-                return 2 if any("/msg/" in kind for kind in types) else 1
+                version = 2 if any("/msg/" in kind for kind in types) else 1
+                self.packs = version == 1
+                return version
             except (ServiceUnavailable, CallTimedOut, KeyError):
                 await self.clock.sleep(GREETING_PAUSE)
         self.log(

@@ -15,6 +15,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+import cbor2
 from roslibpy.comm.comm_asyncio import (  # type: ignore[import-untyped]
     AsyncioRosBridgeClientFactory,
     AsyncioRosBridgeProtocol,
@@ -36,7 +37,7 @@ class _Protocol(AsyncioRosBridgeProtocol):  # type: ignore[misc]
     factory: "_Factory"
 
     def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
-        self.factory.link.received(payload)
+        self.factory.link.received(payload, isBinary)
 
     def backlog(self) -> int:
         """Bytes that wait for the network."""
@@ -144,12 +145,12 @@ class Link:
         factory.manager.loop.call_soon_threadsafe(self._close_when_sent, protocol, seconds)
         self._idle.wait(seconds + 0.5)
 
-    def received(self, payload: bytes) -> None:
-        """Take a frame of the server; on roslibpy's thread."""
+    def received(self, payload: bytes, binary: bool) -> None:
+        """Take a frame of the server, JSON or, in binary ones, CBOR; on roslibpy's thread."""
         try:
-            message = json.loads(payload)
+            message = cbor2.loads(payload) if binary else json.loads(payload)
             operation = message["op"]
-        except (ValueError, TypeError, KeyError):
+        except (ValueError, TypeError, KeyError, RecursionError, EOFError, cbor2.CBORDecodeError):
             self._on_problem(f"the rosbridge server sent something that is no operation: {payload[:80]!r}")
             return
         if isinstance(operation, str):

@@ -35,10 +35,10 @@ class Members:
         if member in self._members:
             self._members.remove(member)
 
-    def feed(self, topic: str, written_type: Callable[[], str]) -> TopicFeed:
+    def feed(self, topic: str, written_type: Callable[[], str], packed: Callable[[], bool]) -> TopicFeed:
         """The one subscription of *topic* at the server, made at its first use."""
         if topic not in self._feeds:
-            self._feeds[topic] = TopicFeed(self._node, topic, written_type)
+            self._feeds[topic] = TopicFeed(self._node, topic, written_type, packed)
         return self._feeds[topic]
 
     def known_feed(self, topic: str) -> TopicFeed | None:

@@ -6,10 +6,12 @@ The notation is that of ``rosbridge_library.internal.message_conversion``: array
 """
 
 import base64
+import binascii
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from jacaros.ros.backends.rosbridge_packing import unpacked, worth_packing
 from jacaros.ros.fields import DURATION, FLOATS, TIME, FieldType
 from jacaros.ros.typestore import RosbagsSchema
 from jacaros.ros.values import zeros
@@ -38,6 +40,7 @@ class Translator:
         self._schema = schema
         self._encoders: dict[str, Encoder] = {}
         self._decoders: dict[str, Decoder] = {}
+        self._packed: dict[str, bool] = {}
         self._version = 2
 
     @property
@@ -50,6 +53,13 @@ class Translator:
         if version != self._version:
             self._version = version
             self._encoders.clear()
+
+    def packs(self, type_name: str) -> bool:
+        """Whether messages of a type are to come as CBOR."""
+        packed = self._packed.get(type_name)
+        if packed is None:
+            packed = self._packed[type_name] = worth_packing(self._schema, type_name)
+        return packed
 
     def encode(self, type_name: str, message: Any) -> Any:
         """Give *message* as a JSON value."""
@@ -193,14 +203,19 @@ def _sequence(values: Any) -> list[Any]:
 
 
 def _numbers(field: FieldType) -> Decoder:
-    """Reads an array of numbers: a list, or octets in base64."""
+    """Reads an array of numbers: a list, octets in base64, or what CBOR makes of it."""
 
     def decode(values: Any) -> Any:
         import numpy  # here: many systems have no array at all
 
         dtype = zeros(field, 0).dtype
+        packed = unpacked(values)
+        if packed is not None:
+            return packed.astype(dtype)
+        if isinstance(values, bytes) and dtype.itemsize == 1:
+            return numpy.frombuffer(values, dtype=dtype).copy()
         if isinstance(values, str) and dtype.itemsize == 1:
-            return numpy.frombuffer(base64.b64decode(values, validate=True), dtype=dtype).copy()
+            return numpy.frombuffer(binascii.a2b_base64(values, strict_mode=True), dtype=dtype).copy()
         numbers = _sequence(values)
         if field.base in FLOATS:
             numbers = [math.nan if number is None else number for number in numbers]

@@ -96,7 +96,7 @@ class Membership(Protocol):
     def drop(self, member: Member) -> None:
         """Forget a member that was closed."""
 
-    def feed(self, topic: str, written_type: Callable[[], str]) -> Feed:
+    def feed(self, topic: str, written_type: Callable[[], str], packed: Callable[[], bool]) -> Feed:
         """The one subscription of *topic* at the server, made at its first use."""
 
     def drop_feed(self, feed: Any) -> None:
@@ -112,6 +112,7 @@ class BridgeNode(Protocol):
     exit_hooks: ExitHooks
     connected: bool
     attached: bool
+    packs: bool
     requests: Requests
     translator: Translator
     goals: dict[str, Any]

@@ -108,8 +108,15 @@ class TopicFeed:
     see of a latched topic is kept here.
     """
 
-    def __init__(self, node: BridgeNode, topic: str, written_type: Callable[[], str]) -> None:
+    def __init__(
+        self,
+        node: BridgeNode,
+        topic: str,
+        written_type: Callable[[], str],
+        packed: Callable[[], bool],
+    ) -> None:
         self.topic = topic
+        self._packed = packed
         self.written_type = written_type
         self.number = node.members.number("subscribe", topic)
         self._node = node
@@ -148,6 +155,8 @@ class TopicFeed:
             "type": self.written_type(),
             "queue_length": self._depth,
         }
+        if self._packed():
+            operation["compression"] = "cbor"
         # Without qos the server chooses what goes with all publishers that it sees.  But if there are none yet, it does not
         # get what they will have said before it knows them.
         if self._node.ros_version == 2 and any(sink.latched for sink in self._sinks):
@@ -204,7 +213,11 @@ class BridgeSubscription:
         self.queue: Queue = (
             Handoff(node.loop, qos.depth, self._deliver) if queue is None else queue(self._deliver)
         )
-        self._feed = node.members.feed(topic, lambda: node.written_type(type_name))
+        self._feed = node.members.feed(
+            topic,
+            lambda: node.written_type(type_name),
+            lambda: node.packs and node.translator.packs(type_name),
+        )
         self._feed.add(self)
         self._closed = False
 
