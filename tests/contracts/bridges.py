@@ -22,6 +22,7 @@ BRIDGED = (
     "rosbridge-ros2-right",
 )
 """Kinds of graphs behind a bridge: whose ROS the server speaks, and which peer alone uses it; without one all do."""
+STRING = "std_msgs/msg/String"
 SERVER = Path(__file__).parent.parent / "rosbridge_server" / "server.py"
 
 
@@ -174,3 +175,18 @@ def behind_bridge(kind: str) -> BehindBridge:
     _, flavour, *side = kind.split("-")
     others = {"left": ("right",), "right": ("left",)}
     return BehindBridge(kind, BridgeServer(flavour), others[side[0]] if side else ())
+
+
+def talking(bridged: BehindBridge) -> list[Any]:
+    """Peers that publish on /to_NAME what the other receives there: `robot` and a client."""
+    robot, client = bridged.peer("robot"), bridged.peer("client")
+    for sender, receiver, topic in ((robot, client, "/to_client"), (client, robot, "/to_robot")):
+        sender.advertise(topic, STRING)
+        receiver.subscribe(topic, STRING)
+        bridged.wait_until(lambda s=sender, t=topic: s.subscription_count(t) == 1, f"{topic} is joined")
+    return [robot, client]
+
+
+def heard(peer: Any, topic: str, text: str) -> Callable[[], bool]:
+    """Whether a text has arrived."""
+    return lambda: {"data": text} in peer.received(topic)

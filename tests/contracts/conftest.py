@@ -9,7 +9,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))  # the peers' files are programs, not a package
 
-from bridges import BRIDGED, behind_bridge
+from bridges import BRIDGED, BehindBridge, BridgeServer, behind_bridge
 from expected import BEYOND
 from graphs import InMemory, InProcesses
 from masters import Master
@@ -101,5 +101,25 @@ def master(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Master]:
     """A ROS master of this test, not started yet."""
     need("ros1", request.config)
     made = Master(tmp_path)
+    yield made
+    made.close()
+
+
+@pytest.fixture(params=("ros1", "ros2"))
+def bridged(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
+    """A bridge of this test's own; the peers ``robot`` and ``other_robot`` are nodes behind it, the others are clients."""
+    need("rosbridge", request.config)
+    made = BehindBridge(
+        f"rosbridge-{request.param}", BridgeServer(request.param), native=("robot", "other_robot")
+    )
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def robot_of_ros2(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
+    """The same for ROS 2 alone."""
+    need("rosbridge", request.config)
+    made = BehindBridge("rosbridge-ros2", BridgeServer("ros2"), native=("robot",))
     yield made
     made.close()

@@ -2,11 +2,11 @@
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from bridges import BehindBridge, BridgeServer
+from bridges import BehindBridge, BridgeServer, heard, talking
 from presence import need
 
 from jacaros.clock import WallClock, run
@@ -23,42 +23,6 @@ from jacaros.ros.open import open_backend
 pytestmark = pytest.mark.rosbridge
 
 STRING = "std_msgs/msg/String"
-FLAVOURS = ("ros1", "ros2")
-
-
-@pytest.fixture(params=FLAVOURS)
-def bridged(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
-    """A bridge of this test's own; the peers ``robot`` and ``other_robot`` are nodes behind it, the others are clients."""
-    need("rosbridge", request.config)
-    made = BehindBridge(
-        f"rosbridge-{request.param}", BridgeServer(request.param), native=("robot", "other_robot")
-    )
-    yield made
-    made.close()
-
-
-@pytest.fixture
-def robot_of_ros2(request: pytest.FixtureRequest) -> Iterator[BehindBridge]:
-    """The same for ROS 2 alone."""
-    need("rosbridge", request.config)
-    made = BehindBridge("rosbridge-ros2", BridgeServer("ros2"), native=("robot",))
-    yield made
-    made.close()
-
-
-def talking(bridged: BehindBridge, *names: str) -> list[Any]:
-    """Peers that publish on /to_NAME what the other receives there: `robot` and a client."""
-    robot, client = bridged.peer("robot"), bridged.peer("client")
-    for sender, receiver, topic in ((robot, client, "/to_client"), (client, robot, "/to_robot")):
-        sender.advertise(topic, STRING)
-        receiver.subscribe(topic, STRING)
-        bridged.wait_until(lambda s=sender, t=topic: s.subscription_count(t) == 1, f"{topic} is joined")
-    return [robot, client]
-
-
-def heard(peer: Any, topic: str, text: str) -> Callable[[], bool]:
-    """Whether a text has arrived."""
-    return lambda: {"data": text} in peer.received(topic)
 
 
 def test_the_server_tells_which_ros_it_is(bridged: BehindBridge) -> None:
@@ -195,79 +159,6 @@ def test_a_goal_is_cancelled_when_the_program_ends(bridged: BehindBridge) -> Non
     bridged.wait_until(lambda: client.feedback("g"), "the goal is under way")
     bridged.dispose(client)
     bridged.wait_until(lambda: ["end", 1000, True] in server.deeds("/count"), "the goal is cancelled")
-
-
-def test_a_big_message_goes_both_ways(bridged: BehindBridge) -> None:
-    left, right = bridged.peer("left"), bridged.peer("right")
-    left.advertise("/image", "sensor_msgs/msg/Image")
-    right.subscribe("/image", "sensor_msgs/msg/Image")
-    bridged.wait_until(lambda: left.subscription_count("/image") == 1, "the topic is joined")
-    data = [number % 256 for number in range(640 * 480 * 3)]
-    left.publish("/image", {"width": 640, "height": 480, "step": 1920, "data": data})
-    bridged.wait_until(lambda: right.received("/image"), "the image arrives")
-    assert right.received("/image")[0]["data"] == data
-
-
-def test_numbers_that_json_cannot_write_arrive_as_nan(bridged: BehindBridge) -> None:
-    robot, client = bridged.peer("robot"), bridged.peer("client")
-    robot.advertise("/scan", "sensor_msgs/msg/JointState")
-    client.subscribe("/scan", "sensor_msgs/msg/JointState")
-    bridged.wait_until(lambda: robot.subscription_count("/scan") == 1, "the topic is joined")
-    robot.publish("/scan", {"header": {"frame_id": "x"}, "position": [1.5, float("inf"), float("nan")]})
-    bridged.wait_until(lambda: client.received("/scan"), "the message arrives")
-    [state] = client.received("/scan")
-    assert state["position"][0] == 1.5
-    assert [value != value for value in state["position"]] == [False, True, True]
-
-
-def test_scans_arrive_packed_with_numbers_as_they_are(bridged: BehindBridge) -> None:
-    robot, client = bridged.peer("robot"), bridged.peer("client")
-    robot.advertise("/scan", "sensor_msgs/msg/LaserScan")
-    client.subscribe("/scan", "sensor_msgs/msg/LaserScan")
-    bridged.wait_until(lambda: robot.subscription_count("/scan") == 1, "the topic is joined")
-    robot.publish("/scan", {"ranges": [1.5, float("inf"), float("nan")], "range_max": float("inf")})
-    bridged.wait_until(lambda: client.received("/scan"), "the scan arrives")
-    [scan] = client.received("/scan")
-    assert scan["ranges"][:2] == [1.5, float("inf")]
-    assert scan["ranges"][2] != scan["ranges"][2]
-    assert scan["range_max"] == float("inf")
-
-
-@pytest.mark.parametrize(
-    ("kind", "fields"),
-    [
-        ("nav_msgs/msg/OccupancyGrid", {"info": {"width": 3, "height": 1}, "data": [-1, 0, 100]}),
-        (
-            "sensor_msgs/msg/PointCloud2",
-            {"fields": [{"name": "x", "offset": 0, "datatype": 7, "count": 1}], "data": [0, 128, 255]},
-        ),
-        ("std_msgs/msg/UInt16MultiArray", {"data": [0, 65535]}),
-        ("std_msgs/msg/Int64MultiArray", {"data": [-(2**63), 2**63 - 1]}),
-        ("std_msgs/msg/UInt64MultiArray", {"data": [2**64 - 1]}),
-        ("std_msgs/msg/Float64MultiArray", {"data": [0.1, -1e300]}),
-        ("std_msgs/msg/UInt64", {"data": 2**64 - 1}),
-        ("nav_msgs/msg/Odometry", {"pose": {"covariance": [0.5] * 36}}),
-        ("sensor_msgs/msg/JointState", {"name": ["a", "b"], "position": [0.5, 1.5]}),
-    ],
-)
-def test_arrays_of_all_sorts_arrive(robot_of_ros2: BehindBridge, kind: str, fields: dict[str, Any]) -> None:
-    robot, client = robot_of_ros2.peer("robot"), robot_of_ros2.peer("client")
-    robot.advertise("/a", kind)
-    client.subscribe("/a", kind)
-    robot_of_ros2.wait_until(lambda: robot.subscription_count("/a") == 1, "the topic is joined")
-    robot.publish("/a", fields)
-    robot_of_ros2.wait_until(lambda: client.received("/a"), "the message arrives")
-    [got] = client.received("/a")
-    assert _holds(got, fields), got
-
-
-def _holds(got: Any, wanted: Any) -> bool:
-    """Whether all that is wanted is there; messages may have further fields."""
-    if isinstance(wanted, dict):
-        return all(_holds(got[name], value) for name, value in wanted.items())
-    if isinstance(wanted, list):
-        return len(got) == len(wanted) and all(map(_holds, got, wanted))
-    return bool(got == wanted)
 
 
 def test_a_topic_of_another_type_is_told(bridged: BehindBridge) -> None:

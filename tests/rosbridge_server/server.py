@@ -82,6 +82,7 @@ class Bridge:
         self.talkative = talkative
         self.knows_actions = knows_actions and not ros1
         self.frozen = False
+        self.max_message_size = 10_000_000
         self.graph = _Graph(self)
         settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=folders)
         self.node = MemoryBackend(settings, self.graph)
@@ -98,6 +99,7 @@ class Bridge:
         loop = asyncio.get_running_loop()
         factory = WebSocketServerFactory(loop=loop)
         factory.protocol, factory.bridge = Socket, self
+        factory.setProtocolOptions(maxMessagePayloadSize=self.max_message_size)
         self._server = await loop.create_server(factory, "127.0.0.1", port)
         self.port = self._server.sockets[0].getsockname()[1]
 
@@ -164,6 +166,9 @@ async def obey(bridge: Bridge, command: dict[str, Any], peers: dict[str, Peer]) 
             bridge.freeze(False)
         case "vanish":
             bridge.graph.vanish(*command["args"])
+        case "say":
+            for connection in list(bridge.connections):
+                connection.say(*command["args"])
         case "rosapi":
             bridge.rosapi.running = command["args"][0]
         case "node":

@@ -35,6 +35,11 @@ def stored_types() -> list[str]:
     return sorted(_store().types)
 
 
+def is_stored(type_name: str) -> bool:
+    """Whether a type in full form is in the store already."""
+    return type_name in _store().types
+
+
 class RosbagsSchema:
     """Message classes of ROS 2 Jazzy from ``rosbags``, plus definitions found in folders.
 

@@ -12,9 +12,8 @@ import asyncio
 import os
 from collections.abc import Callable
 from typing import Any
-from urllib.parse import urlsplit
+from weakref import WeakValueDictionary
 
-from jacaros.errors import UsageError
 from jacaros.ros.action import ActionPolicy, Execute
 from jacaros.ros.backend import (
     ACTIONS,
@@ -31,7 +30,8 @@ from jacaros.ros.backend import (
 )
 from jacaros.ros.backends.rosbridge_goals import BridgeActionClient, BridgeActionServer
 from jacaros.ros.backends.rosbridge_graph import look
-from jacaros.ros.backends.rosbridge_link import Link
+from jacaros.ros.backends.rosbridge_greeting import greet
+from jacaros.ros.backends.rosbridge_link import Link, checked_url
 from jacaros.ros.backends.rosbridge_members import Members
 from jacaros.ros.backends.rosbridge_messages import Translator
 from jacaros.ros.backends.rosbridge_parameter_services import ParameterNews
@@ -40,7 +40,7 @@ from jacaros.ros.backends.rosbridge_requests import Done, Requests
 from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
 from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.backends.rosbridge_types import BridgeSchema, written_on_ros1
-from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
+from jacaros.ros.errors import CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.names import action_type, message_type, service_type
@@ -58,8 +58,6 @@ DOING = 1.0
 """Seconds that closing waits until the server has done what it was sent last."""
 FETCHING = 3.0
 """Seconds that the loop may be held up by asking for a type that nobody here knows."""
-GREETINGS, GREETING_PAUSE = 6, 0.5
-"""How often rosapi is asked whose graph it is, and seconds between: it may start after the server."""
 CURE = (
     "On the robot, start `ros2 launch rosbridge_server rosbridge_websocket_launch.xml` (ROS 1: `roslaunch rosbridge_server "
     "rosbridge_websocket.launch`), and give its address with --bridge or ROSBRIDGE_URI."
@@ -77,7 +75,7 @@ class RosbridgeBackend(Node):
     name = "rosbridge"
 
     def __init__(self, settings: NodeSettings, url: str | None = None) -> None:
-        self.url = _checked(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL)
+        self.url = checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL)
         self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
         self.requests = Requests(self._link.send)
         self._schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
@@ -88,9 +86,9 @@ class RosbridgeBackend(Node):
         self._news = ParameterNews(self)
         self.attached = False
         self.packs = False
-        """Whether the server can write CBOR; of ROS 2, the first ones lost messages over it."""
-        self._services: dict[str, BridgeService] = {}
-        self._action_servers: dict[str, BridgeActionServer] = {}
+        # Weakly: the members keep them, until they are closed.
+        self._services: WeakValueDictionary[str, BridgeService] = WeakValueDictionary()
+        self._action_servers: WeakValueDictionary[str, BridgeActionServer] = WeakValueDictionary()
         self._greeting: asyncio.Task[None] | None = None
         self._first_look: asyncio.Future[None] | None = None
         self._waiting: Waiting | None = None
@@ -273,7 +271,7 @@ class RosbridgeBackend(Node):
     def _received(self, message: dict[str, Any]) -> None:
         operation = message["op"]
         if operation == "publish":
-            feed = self.members.known_feed(message.get("topic", ""))
+            feed = self.members.known_feed(str(message.get("topic")))
             if feed is not None:
                 feed.put(message.get("msg"))
         elif operation == "service_response":
@@ -292,11 +290,15 @@ class RosbridgeBackend(Node):
 
     async def _greet(self) -> None:
         """Find out whose graph it is, and tell the server all that we have."""
-        try:
-            version = await self._find_version()
-        except CallFailed:  # the connection is lost again
+        found = await greet(self._rosapi, self.clock, lambda: self._link.up)
+        if found is None:
             return
-        self.translator.ros_version = version
+        if not found.told:
+            self.log(
+                f"the rosbridge server at {self.url} has no rosapi beside it, so nothing can be looked up; ROS 2 is "
+                "assumed. Its launch file starts both"
+            )
+        self.translator.ros_version, self.packs = found.ros_version, found.packs
         self.attached = True
         self.members.join()
         if self._waiting is not None:
@@ -306,28 +308,8 @@ class RosbridgeBackend(Node):
         if self._first_look is not None and not self._first_look.done():
             self._first_look.set_result(None)
 
-    async def _find_version(self) -> int:
-        for _ in range(GREETINGS):
-            try:
-                version = int((await self._rosapi("get_ros_version", {}, FETCHING))["version"])
-                self.packs = True
-                return version
-            except (ServiceUnavailable, CallTimedOut, KeyError):
-                pass
-            try:
-                types = (await self._rosapi("topics", {}, FETCHING))["types"]
-                version = 2 if any("/msg/" in kind for kind in types) else 1
-                self.packs = version == 1
-                return version
-            except (ServiceUnavailable, CallTimedOut, KeyError):
-                await self.clock.sleep(GREETING_PAUSE)
-        self.log(
-            f"the rosbridge server at {self.url} has no rosapi beside it, so nothing can be looked up; ROS 2 is assumed. "
-            "Its launch file starts both"
-        )
-        return 2
-
     def _disconnected(self) -> None:
+        self.attached = False  # again: a greeting may have ended meanwhile
         if self._greeting is not None:
             self._greeting.cancel()
         self.requests.fail_all()
@@ -344,9 +326,17 @@ class RosbridgeBackend(Node):
             self._first_look.set_result(None)
 
     def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
+        try:
+            self._do(operation, message)
+        except (TypeError, ValueError, KeyError, AttributeError) as problem:
+            self.log(
+                f"the rosbridge server sent {operation} with something that cannot be understood: {problem}"
+            )
+
+    def _do(self, operation: str, message: dict[str, Any]) -> None:
         number = str(message.get("id"))
         if operation == "call_service":
-            service = self._services.get(message.get("service", ""))
+            service = self._services.get(str(message.get("service")))
             if service is not None:
                 service.called(message)
         elif operation == "status":
@@ -358,7 +348,7 @@ class RosbridgeBackend(Node):
             elif goals is not None:
                 goals.result(number, message)
         elif operation in ("send_action_goal", "cancel_action_goal"):
-            server = self._action_servers.get(message.get("action", ""))
+            server = self._action_servers.get(str(message.get("action")))
             if server is not None and operation == "send_action_goal":
                 server.goal(message)
             elif server is not None:
@@ -394,19 +384,6 @@ class RosbridgeBackend(Node):
         # is done.
         self.requests.call_blocking("/rosapi/get_time", {}, DOING)
         self._link.finish(SENDING)
-
-
-def _checked(url: str) -> str:
-    try:
-        parts = urlsplit(url)
-        port = parts.port
-    except ValueError:
-        port, parts = None, urlsplit("")
-    if parts.scheme not in ("ws", "wss") or not parts.hostname:
-        raise UsageError(
-            f"a rosbridge server has an address such as ws://robot.lab.example:9090, not {url!r}"
-        )
-    return url if port is not None else f"{parts.scheme}://{parts.netloc}:9090{parts.path}"
 
 
 def _refuse_deadline(qos: QoS) -> None:

@@ -14,12 +14,16 @@ import logging
 import threading
 from collections.abc import Callable
 from typing import Any
+from urllib.parse import urlsplit
 
 import cbor2
 from roslibpy.comm.comm_asyncio import (  # type: ignore[import-untyped]
     AsyncioRosBridgeClientFactory,
     AsyncioRosBridgeProtocol,
 )
+
+from jacaros.errors import UsageError
+from jacaros.ros.backends.rosbridge_fragments import Fragments, frames
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.25, 2.0
 """Seconds between two attempts to connect: at first, and at most."""
@@ -105,6 +109,7 @@ class Link:
         self._factory: _Factory | None = None
         self._protocol: _Protocol | None = None
         self._closing = False
+        self._fragments = Fragments()
         self._idle = threading.Event()
 
     @property
@@ -129,7 +134,8 @@ class Link:
         protocol = self._protocol
         if protocol is None or (droppable and protocol.backlog() > BACKLOG):
             return False
-        protocol.send_message(json.dumps(message, separators=(",", ":")).encode())
+        for frame in frames(message):
+            protocol.send_message(frame)
         return self._protocol is protocol
 
     def finish(self, seconds: float) -> None:
@@ -149,12 +155,14 @@ class Link:
         """Take a frame of the server, JSON or, in binary ones, CBOR; on roslibpy's thread."""
         try:
             message = cbor2.loads(payload) if binary else json.loads(payload)
-            operation = message["op"]
-        except (ValueError, TypeError, KeyError, RecursionError, EOFError, cbor2.CBORDecodeError):
-            self._on_problem(f"the rosbridge server sent something that is no operation: {payload[:80]!r}")
-            return
-        if isinstance(operation, str):
-            self._on_message(message)
+            if message["op"] == "fragment":
+                message = self._fragments.add(message)
+            if message is not None and isinstance(message["op"], str):
+                self._on_message(message)
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, EOFError) as problem:
+            self._on_problem(
+                f"the rosbridge server sent something that is no operation: {payload[:80]!r} ({problem})"
+            )
 
     def failed(self) -> None:
         """An attempt to connect has failed, or the connection is lost; on roslibpy's thread."""
@@ -166,6 +174,7 @@ class Link:
             protocol.send_close()
             return
         self._protocol = protocol
+        self._fragments.clear()
         self._on_up()
 
     def _closed(self, _: Any) -> None:
@@ -180,3 +189,21 @@ class Link:
             loop.call_later(0.005, self._close_when_sent, protocol, seconds - 0.005)
         else:
             protocol.send_close()
+
+
+def checked_url(url: str) -> str:
+    """Give the address of a server with its port, 9090 by default.
+
+    Raises:
+        UsageError: it is none.
+    """
+    try:
+        parts = urlsplit(url)
+        port = parts.port
+    except ValueError:
+        port, parts = None, urlsplit("")
+    if parts.scheme not in ("ws", "wss") or not parts.hostname:
+        raise UsageError(
+            f"a rosbridge server has an address such as ws://robot.lab.example:9090, not {url!r}"
+        )
+    return url if port is not None else f"{parts.scheme}://{parts.netloc}:9090{parts.path}"

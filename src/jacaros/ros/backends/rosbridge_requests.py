@@ -22,6 +22,8 @@ Done = Callable[[dict[str, Any] | None, ServiceError | None], None]
 LOOK_AGAIN, LOOK_STEADILY = 0.25, 1.0
 """Seconds after which what was seen of the graph is asked for again, when somebody wants to know: while there is nothing to
 be seen, and when there is."""
+UNANSWERED = 10.0
+"""Seconds after which a question that nobody answers is asked again."""
 
 
 class Requests:
@@ -147,8 +149,9 @@ class Sight(Generic[T]):
     def value(self) -> T:
         """What was seen last; asks again when that is some time ago."""
         now = time.monotonic()
-        pause = LOOK_STEADILY if self._value else LOOK_AGAIN
-        if not self.asking and now - self._asked >= pause:
+        # A server that may not serve rosapi to us does not answer at all.
+        pause = UNANSWERED if self.asking else LOOK_STEADILY if self._value else LOOK_AGAIN
+        if now - self._asked >= pause:
             self._asked, self.asking = now, True
             self._requests.begin(self._service, self._arguments, self._seen)
         return self._value

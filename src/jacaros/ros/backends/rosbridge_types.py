@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.names import message_type
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import RosbagsSchema, is_stored
 
 Ask = Callable[[str, dict[str, Any]], dict[str, Any] | None]
 """Calls a service of rosapi and waits for the fields of its response; None when there is none."""
@@ -44,6 +44,7 @@ _ACTIONLIB = {
 }
 """What actionlib wraps around the three parts of an action."""
 _NO_FIELD = "structure_needs_at_least_one_member"
+_SEQUENCE = re.compile(r"sequence<(?P<base>.+?)(?:,\s*\d+)?>")
 _INTEGER = re.compile(r"-?\d+")
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
@@ -63,10 +64,14 @@ class BridgeSchema(RosbagsSchema):
         self._describe = describe
         self._told: dict[str, str] = {}
 
-    def _definition(self, type_name: str, what: str, ending: str) -> str:
+    def _require(self, type_name: str) -> None:
         action, _, part = type_name.rpartition("_")
-        if part in _ACTIONLIB and "/action/" in action:
-            return _ACTIONLIB[part].format(action=action)
+        if part not in _ACTIONLIB or "/action/" not in action:
+            super()._require(type_name)
+        elif not is_stored(type_name):
+            self._register(type_name, _ACTIONLIB[part].format(action=action))
+
+    def _definition(self, type_name: str, what: str, ending: str) -> str:
         try:
             return super()._definition(type_name, what, ending)
         except UnknownInterface as unknown:
@@ -117,12 +122,16 @@ def definition_text(typedef: Mapping[str, Any]) -> str:
     lengths = typedef.get("fieldarraylen") or [-1] * len(typedef["fieldnames"])
     for name, kind, length in zip(typedef["fieldnames"], typedef["fieldtypes"], lengths, strict=True):
         if name != _NO_FIELD:
+            sequence = _SEQUENCE.fullmatch(kind)
+            if sequence is not None:  # so it is told of bounded ones of bounded texts
+                kind, length = sequence["base"], 0
             array = "" if length < 0 else f"[{length or ''}]"
             lines.append(f"{_base(kind, ros1)}{array} {name}")
     return "".join(f"{line}\n" for line in lines)
 
 
 def _base(kind: str, ros1: bool) -> str:
+    kind = re.sub(r",\s*\d+$", "", kind)  # so it is told of bounded sequences
     kind = re.sub(r"^(w?string)<\d+>$", "string", kind).replace("/msg/", "/")
     if ros1 and kind in _ROS1_BASES:
         return _ROS1_BASES[kind]
