@@ -10,6 +10,7 @@ import pytest
 from pages import PAGES, ROOT, blocks, name_of
 
 from jacaros.cli.main import jacaros
+from jacaros.cli.ros_arguments import as_options, has_ros_arguments
 
 
 def shell_lines() -> list[tuple[str, str]]:
@@ -43,6 +44,8 @@ def words_behind(program: str) -> list[tuple[str, list[str]]]:
 @pytest.mark.parametrize(("where", "words"), words_behind("jacaros"))
 def test_the_command_line_knows_what_pages_show(where: str, words: list[str]) -> None:
     words = [word for word in words if ">" not in word]
+    if has_ros_arguments(words):
+        words = as_options(words, pytest.fail)
     context = click.Context(jacaros, info_name="jacaros")
     name, command, rest = jacaros.resolve_command(context, words)
     assert command is not None

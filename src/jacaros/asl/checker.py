@@ -20,7 +20,7 @@ from jacaros.asl.checks.plans import (
     never_selected,
     wrong_urgencies,
 )
-from jacaros.asl.checks.variables import singletons, vain_comparisons
+from jacaros.asl.checks.variables import singletons, singletons_of_facts, vain_comparisons
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import Span
 from jacaros.asl.walk import walk
@@ -43,6 +43,8 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
     warnings = _mistakes(program, known, errors)
     for clause in _sound(program, errors):
         warnings += singletons(clause)
+    facts = (belief for belief in program.beliefs if not isinstance(belief, nodes.Rule))
+    warnings += [*singletons_of_facts(facts, "belief"), *singletons_of_facts(program.goals, "goal")]
     if not errors:
         warnings += narrow_handlers(program)
     return sorted(dict.fromkeys(warnings), key=place)

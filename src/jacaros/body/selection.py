@@ -150,7 +150,9 @@ class Selection:
                     f"; the method {call.name} of '{forgotten.name}' is no operation for agents (@operation)"
                 )
             nothing = all(a.type_name in DEFAULT_TYPES for w in places for a in w.artifacts())
-            return "; no artifact has been made there yet (makeArtifact)" if nothing else ""
+            return (
+                "; no artifact has been made there yet (makeArtifact, or --mapping FILE)" if nothing else ""
+            )
         return f"; did you mean {' or '.join(key + offers[key] for key in near[:3])}?"
 
 

@@ -9,7 +9,7 @@ from jacaros.errors import UsageError
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-_OPTIONS = (
+_ADDRESS = (
     click.option(
         "--domain-id",
         type=int,
@@ -26,7 +26,9 @@ _OPTIONS = (
         metavar="URL",
         help="Address of a rosbridge server, such as ws://robot.lab.example:9090, in place of ROSBRIDGE_URI.",
     ),
-    click.option("--namespace", default="", metavar="NAME", help="Put before relative ROS names."),
+)
+_NAMESPACE = click.option("--namespace", default="", metavar="NAME", help="Put before relative ROS names.")
+_NAMES = (
     click.option("--node-name", metavar="NAME", help="Name of our node, in place of the system's name."),
     click.option(
         "--remap",
@@ -39,7 +41,16 @@ _OPTIONS = (
 
 def graph_options(command: F) -> F:
     """Give a command the options that name a graph, our node in it, and other names for topics."""
-    for option in reversed(_OPTIONS):
+    return _with(command, (*_ADDRESS, _NAMESPACE, *_NAMES))
+
+
+def world_options(command: F) -> F:
+    """The same without a namespace: a world file says those of its robots."""
+    return _with(command, (*_ADDRESS, *_NAMES))
+
+
+def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:
+    for option in reversed(options):
         command = option(command)
     return command
 

@@ -91,6 +91,7 @@ def _threads_go_on() -> bool:
 def call(arguments: list[str] | None = None) -> int:
     """Carry a command out; the exit code."""
     try:
+        arguments = _own(sys.argv[1:] if arguments is None else arguments)
         result = jacaros.main(args=arguments, prog_name="jacaros", standalone_mode=False)
     except click.exceptions.Exit as end:
         return end.exit_code
@@ -110,6 +111,17 @@ def call(arguments: list[str] | None = None) -> int:
         print(f"jacaros: this is a defect of jacaros, please report it: {defect}", file=sys.stderr)
         return 1
     return result if isinstance(result, int) else 0
+
+
+def _own(arguments: list[str]) -> list[str]:
+    """The arguments, with options of ours in place of what ``ros2 run``, rosrun and launch files have added."""
+    if not any(":=" in each or each == "--ros-args" for each in arguments):
+        return arguments
+    from jacaros.cli.ros_arguments import as_options, has_ros_arguments  # here: few runs need it
+
+    if not has_ros_arguments(arguments):
+        return arguments
+    return as_options(arguments, lambda line: print(f"jacaros: {line}", file=sys.stderr))
 
 
 def _tell(error: JacarosError, code: int) -> int:

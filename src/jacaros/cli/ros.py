@@ -68,7 +68,7 @@ def command() -> None:
     """  # fmt: skip
 
 
-@command.command("list")
+@command.command("list", short_help="List topics, actions, services and nodes.")
 @_asking
 @click.option("--rates", is_flag=True, help="Listen for two seconds and tell how often messages come.")
 @click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
@@ -93,7 +93,7 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     _in_graph(look, **graph)
 
 
-@command.command("show")
+@command.command("show", short_help="Show one of them, or a type, with its fields.")
 @click.argument("name")
 @_asking
 @click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
@@ -122,7 +122,7 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
     _in_graph(look, **graph)
 
 
-@command.command("map")
+@command.command("map", short_help="Write a first mapping file.")
 @click.argument("names", nargs=-1, metavar="[TOPIC|SERVICE|ACTION]...")
 @click.option(
     "-o",
@@ -170,7 +170,7 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
     click.echo(f"{output} is written; see `jacaros describe {output}`")
 
 
-@command.command("check")
+@command.command("check", short_help="Tell whether a mapping file suits the graph.")
 @click.argument("file", type=click.Path(path_type=Path))
 @_asking
 def check_command(file: Path, **graph: Any) -> int:

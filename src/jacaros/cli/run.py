@@ -13,6 +13,9 @@ from jacaros.mas.launch import launch
 from jacaros.mas.options import ROS_KINDS, RunOptions
 from jacaros.mas.system import System
 
+SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
+"""Of files that can be run."""
+
 
 @click.command("run", short_help="Run an agent program or a project.")
 @click.argument("file", type=click.Path(path_type=Path))
@@ -150,14 +153,18 @@ def check_file(file: Path) -> None:
         UsageError: with the names of similar files beside it.
     """
     if file.is_file():
+        if file.suffix in (".yaml", ".yml"):
+            raise UsageError(
+                f"{file} is no program; a mapping file goes with one, jacaros run agent.asl --mapping {file}, and so "
+                "does a world: --world"
+            )
         return
     if file.is_dir():
         raise UsageError(f"{file} is a folder; give a .asl, .py, .mas2j or .jcm file in it")
-    beside = [
-        each.name for each in file.parent.glob("*.*") if each.suffix in (".asl", ".py", ".mas2j", ".jcm")
-    ]
+    beside = [each.name for each in file.parent.glob("*.*") if each.suffix in SUFFIXES]
     import difflib  # here: only for a file that is not there
 
-    near = difflib.get_close_matches(file.name, beside, n=2)
+    near = [f"{file.name}{suffix}" for suffix in SUFFIXES if f"{file.name}{suffix}" in beside]
+    near = near or difflib.get_close_matches(file.name, beside, n=2)
     hint = f"; did you mean {' or '.join(str(file.parent / name) for name in near)}?" if near else ""
     raise UsageError(f"there is no file {file}{hint}")

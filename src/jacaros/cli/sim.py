@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from jacaros.cli.graph_options import read_remaps, world_options
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.mas.options import ROS_KINDS
@@ -11,8 +12,15 @@ from jacaros.mas.options import ROS_KINDS
 
 @click.command("sim", short_help="Run a robot world as a ROS node of its own.")
 @click.argument("world")
-@click.option("--ros", type=click.Choice(ROS_KINDS), required=True, help="The ROS graph to join.")
-@click.option("--bridge", metavar="URL", help="Address of the rosbridge server, with --ros rosbridge.")
+@click.option(
+    "--ros",
+    type=click.Choice(ROS_KINDS),
+    required=True,
+    envvar="JACAROS_ROS",
+    show_envvar=True,
+    help="The ROS graph to join.",
+)
+@world_options
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds.")
 @click.option(
     "--ground-truth",
@@ -21,6 +29,7 @@ from jacaros.mas.options import ROS_KINDS
     help="Write what truly happens as JSON lines.",
 )
 @click.option("--seed", type=int, help="Makes the noise of the sensors repeatable.")
+@click.option("--full-battery", is_flag=True, help="Batteries stay full, however long the world runs.")
 @click.option(
     "--clock",
     type=click.Choice(["real", "fast"]),
@@ -42,16 +51,23 @@ from jacaros.mas.options import ROS_KINDS
 def command(
     world: str,
     ros: str,
+    domain_id: int | None,
+    master: str | None,
     bridge: str | None,
+    node_name: str | None,
+    remap: tuple[str, ...],
     seconds: float | None,
     ground_truth: Path | None,
     seed: int | None,
+    full_battery: bool,
     clock: str,
     publish_clock: bool,
     speed: float | None,
 ) -> None:
     """Run WORLD (a world file, or the name of a world that comes with jacaros) until Ctrl-C."""  # fmt: skip
-    from jacaros.ros.open import open_backend
+    from jacaros.cli.batteries import told, with_full_batteries
+    from jacaros.ros.address import GraphAddress
+    from jacaros.ros.node import to_stderr
     from jacaros.sim import World, serve
     from jacaros.sim.scaled_clock import ScaledClock
 
@@ -62,15 +78,20 @@ def command(
     if clock == "fast" and speed is not None:
         raise UsageError("--speed goes with --clock real; --clock fast is as fast as the machine can")
     time: Clock = VirtualClock() if clock == "fast" else WallClock() if speed is None else ScaledClock(speed)
+    address = GraphAddress(ros, domain_id, master, bridge, "", node_name, read_remaps(remap))
+    address.check()
     loaded = World.load(Path(world) if Path(world).is_file() else world, seed)
+    if full_battery:
+        loaded = World(with_full_batteries(loaded.description))
     loaded.ground_truth.keep = 1000
+    loaded.ground_truth.listen(told(lambda line: click.echo(line, err=True)))
 
     def tell() -> None:
         names = ", ".join(robot.name for robot in loaded.description.robots)
         click.echo(f"the world {loaded.description.name} with {names} runs; Ctrl-C ends it")
 
     async def main() -> None:
-        backend = open_backend(ros, time, "world", url=bridge)
+        backend = address.open(time, "world", to_stderr)
         clock_too = publish_clock or speed is not None
         await serve(loaded, backend, time, seconds, ground_truth, clock_too, tell)
 

@@ -4,6 +4,7 @@ The graph inside the process, and the world with it, come into being when the fi
 a program that talks to no robot pays for none.  A real graph is joined at the start.
 """
 
+import os
 from collections.abc import Callable, Coroutine
 from contextlib import AsyncExitStack
 from pathlib import Path
@@ -13,6 +14,7 @@ from jacaros.clock import Clock
 from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
+    from jacaros.mas.empty_graph import EmptyGraph
     from jacaros.ros.backend import Backend, Subscription
     from jacaros.ros.ros_clock import RosClock
     from jacaros.sim.node import SimNode
@@ -61,6 +63,7 @@ class RosGraph:
         self._node: SimNode | None = None
         self._followed: RosClock | None = None
         self._looking: Subscription | None = None
+        self._empty: EmptyGraph | None = None
         self.world: World | None = None
 
     async def start(self) -> None:
@@ -83,6 +86,8 @@ class RosGraph:
             # Only on demand: a project that names a world for practice also runs on the real robot.
             if self._options.world is not None:
                 self._start_world(backend)
+            elif self._options.ros == "ros2":
+                self._look_for_others(backend)
         elif self._source is not None or self._options.show_world:
             self.backend()
 
@@ -121,6 +126,8 @@ class RosGraph:
                 steps.push_async_callback(self._backend.close)
             if self._followed is not None:
                 steps.callback(self._followed.close)
+            if self._empty is not None:
+                steps.callback(self._empty.close)
 
     def _open(self) -> "Backend":
         return self._options.address.open(self._clock, self._name, self._log_ros)
@@ -146,6 +153,13 @@ class RosGraph:
                 )
 
         self._looking = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, heard, CLOCK_QOS)
+
+    def _look_for_others(self, backend: "Backend") -> None:
+        from jacaros.mas.empty_graph import EmptyGraph
+
+        domain = self._options.domain_id
+        number = os.environ.get("ROS_DOMAIN_ID", "0") if domain is None else str(domain)
+        self._empty = EmptyGraph(backend, self._clock, f"the ROS 2 graph of domain {number}", self._log_ros)
 
     def _log_ros(self, text: str) -> None:
         self._log(f"[ros] {text}")

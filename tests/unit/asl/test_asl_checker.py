@@ -276,6 +276,15 @@ def test_a_variable_cannot_get_another_value():
     assert codes("+!g(X) <- Y = X + 1; a(Y).") == []
 
 
+def test_names_with_a_capital_letter_in_beliefs_and_goals_of_the_beginning():
+    text = "place(Kitchen, 2). same(X, X). any(_, _Y). !go(Hall). +!go(_) : place(_, _) & same(1, 1) & any(1, 2)."
+    assert [(each.span.column, each.code) for each in warnings(text) if each.span] == [
+        (7, "singleton-variable"),
+        (text.index("Hall") + 1, "singleton-variable"),
+    ]
+    assert "kitchen; if any value is meant write _Kitchen" in warnings(text)[0].hint
+
+
 def test_true_and_none_of_python_are_variables():
     (found,) = warnings("+!g <- a(True).")
     assert (found.code, found.hint) == ("capital-constant", "true is written in lower case")

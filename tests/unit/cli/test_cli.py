@@ -15,6 +15,7 @@ from jacaros.sim import GroundTruth
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "house.yaml").write_text("name: house", encoding="utf-8")
     (tmp_path / "hello.asl").write_text("!go. +!go <- .print(hi); .stopMAS(0, 3).", encoding="utf-8")
     return tmp_path
 
@@ -56,7 +57,11 @@ def test_the_word_run_may_be_left_out(folder: Path, capsys: pytest.CaptureFixtur
         (["run", "hello.asl", "--clock", "slow"], "slow"),
         (["run"], "FILE"),
         (["nonsense"], "nonsense"),
+        (["run", "house.yaml"], "--mapping house.yaml"),
+        (["run", "hello"], "did you mean hello.asl?"),
+        (["run", "hello.asl", "--ros-args", "-q"], "--ros-args knows no -q"),
         (["sim", "empty", "--ros", "ros2", "--clock", "fast"], "--ros memory"),
+        (["sim", "empty", "--ros", "ros1", "--domain-id", "3"], "--ros ros2"),
         (["describe", "ArtOdometri"], "did you mean ArtOdometry"),
     ],
 )
@@ -223,3 +228,15 @@ def test_a_run_writes_what_truly_happened(folder: Path, capsys: pytest.CaptureFi
     truth = GroundTruth.read("truth.jsonl")
     assert truth.pose().x == pytest.approx(0.5, abs=0.02)
     assert '"kind": "end"' in Path("truth.jsonl").read_text(encoding="utf-8").splitlines()[-1]
+
+
+def test_batteries_of_a_world_are_told_to_who_started_it(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world = ["sim", "house", "--ros", "memory", "--clock", "fast", "--for", "400"]
+    code, _, errors = outcome(capsys, *world)
+    assert code == 0
+    assert "turtlebot is at 20 %" in errors
+    assert "turtlebot is empty" in errors
+    assert "--full-battery" in errors
+    assert outcome(capsys, *world, "--full-battery")[2] == ""

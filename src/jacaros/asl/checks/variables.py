@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from jacaros.asl import nodes
@@ -60,6 +60,31 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
                 _meant_variable(name, occurrences),
                 "singleton-variable",
             )
+
+
+def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[Diagnostic]:
+    """Variables that occur once in a belief or a goal of the beginning: most often a name is meant.
+
+    Args:
+        facts: all of one kind.
+        what: the kind, for people.
+    """
+    for fact in facts:
+        named = [
+            node for node in walk(fact) if isinstance(node, nodes.Variable) and not node.name.startswith("_")
+        ]
+        counted = Counter(node.name for node in named)
+        for node in named:
+            if counted[node.name] == 1 and not node.unnamed:
+                name = node.name
+                lower = name[0].lower() + name[1:]
+                yield Diagnostic(
+                    "warning",
+                    f"the variable {name} occurs only once in this {what}, which so is about any value",
+                    node.span,
+                    f"names begin with a lower-case letter: {lower}; if any value is meant write _{name}",
+                    "singleton-variable",
+                )
 
 
 def _in_head(clause: Clause) -> set[str]:

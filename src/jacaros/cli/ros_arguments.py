@@ -1,0 +1,210 @@
+"""What ROS's own tools add to a command line, read as options of ours.
+
+``ros2 run`` and launch files of ROS 2 say names and parameters behind ``--ros-args`` (design.ros2.org, "ROS Command Line
+Arguments"); rosrun and roslaunch write ``name:=value`` between the others (wiki.ros.org, "Remapping Arguments").
+"""
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jacaros.errors import UsageError
+
+_SIGN = ":="
+_ROS2_VALUES = {
+    "-r": "--remap",
+    "--remap": "--remap",
+    "-p": "--param",
+    "--param": "--param",
+    "--params-file": "--params-file",
+    "--log-level": "",
+    "--log-config-file": "",
+    "-e": "",
+    "--enclave": "",
+}
+"""Arguments of ROS 2 with a value, by the name under which it is read; those without a name have no effect here."""
+_ROS2_FLAGS = {
+    "--enable-rosout-logs": "--rosout",
+    "--disable-rosout-logs": "--no-rosout",
+    "--enable-stdout-logs": "",
+    "--disable-stdout-logs": "",
+    "--enable-external-lib-logs": "",
+    "--disable-external-lib-logs": "",
+}
+_NAMES = {"__ns": "--namespace", "__node": "--node-name", "__name": "--node-name", "__master": "--master"}
+_ROS1_WITHOUT_EFFECT = ("__log",)
+
+
+def has_ros_arguments(arguments: Sequence[str]) -> bool:
+    """Whether ROS's tools have added something to a command that joins a graph."""
+    if not arguments or (arguments[0] not in ("run", "sim") and "." not in arguments[0]):
+        return False
+    return any(each == "--ros-args" for each in arguments) or any(_ros1_arguments(arguments))
+
+
+def as_options(arguments: Sequence[str], warn: Callable[[str], None]) -> list[str]:
+    """Give *arguments* with options of ours in place of what ROS's tools have added.
+
+    ``--ros ros2`` (or ``ros1``) is added where nothing says another kind of graph.
+
+    Args:
+        arguments: of the process, without its name.
+        warn: takes a line about something that has no effect.
+
+    Raises:
+        UsageError: an argument is not ROS's, or is not written as it should be.
+    """
+    own, of_ros2 = _divided(arguments)
+    places = set(_ros1_arguments(own))
+    of_ros1 = [own[place] for place in sorted(places)]
+    own = [each for place, each in enumerate(own) if place not in places]
+    added = [*_ros1_options(of_ros1, warn), *_Ros2Arguments(of_ros2).options(own, warn)]
+    if not _given(own, "--ros") and not os.environ.get("JACAROS_ROS"):
+        added += ["--ros", "ros1" if of_ros1 and "--ros-args" not in arguments else "ros2"]
+    return [*own, *added]
+
+
+def _divided(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Divide what is ours from what stands between ``--ros-args`` and ``--``."""
+    own: list[str] = []
+    of_ros: list[str] = []
+    within = False
+    for each in arguments:
+        if each == "--ros-args":
+            within = True
+        elif within and each == "--":
+            within = False
+        else:
+            (of_ros if within else own).append(each)
+    return own, of_ros
+
+
+def _given(own: Sequence[str], option: str) -> bool:
+    return any(each == option or each.startswith(f"{option}=") for each in own)
+
+
+def _ros1_arguments(arguments: Sequence[str]) -> Iterator[int]:
+    """Give the places of ``name:=value`` that are no values of options such as ``--remap``."""
+    for place, each in enumerate(arguments):
+        if each == "--ros-args":
+            return
+        if _SIGN in each and not each.startswith("-") and not (place and arguments[place - 1] == "--remap"):
+            yield place
+
+
+def _ros1_options(written: Iterable[str], warn: Callable[[str], None]) -> Iterator[str]:
+    for each in written:
+        name, _, value = each.partition(_SIGN)
+        if name in _NAMES:
+            yield from (_NAMES[name], value)
+        elif name in _ROS1_WITHOUT_EFFECT:
+            continue
+        elif name.startswith("__"):
+            raise UsageError(
+                f"{each} is not known here; addresses stand in the variables ROS_IP and ROS_HOSTNAME"
+            )
+        elif name.startswith("_"):
+            warn(_no_effect(name[1:]))
+        else:
+            yield from ("--remap", each)
+
+
+class _Ros2Arguments:
+    """What stands behind ``--ros-args``."""
+
+    def __init__(self, written: Sequence[str]) -> None:
+        self._options: list[str] = []
+        self._rules: list[str] = []
+        self._parameters: list[tuple[str, Any]] = []
+        self._files: list[Path] = []
+        rest = iter(written)
+        for each in rest:
+            if each in _ROS2_FLAGS:
+                self._options += [_ROS2_FLAGS[each]] if _ROS2_FLAGS[each] else []
+            elif each in _ROS2_VALUES:
+                self._take(each, _ROS2_VALUES[each], next(rest, None))
+            else:
+                known = ", ".join([*_ROS2_VALUES, *_ROS2_FLAGS])
+                raise UsageError(
+                    f"--ros-args knows no {each}, only {known}; what is not ROS's stands before it or behind --"
+                )
+
+    def _take(self, written: str, name: str, value: str | None) -> None:
+        if value is None:
+            raise UsageError(f"a value is missing behind {written} of --ros-args")
+        if name == "--params-file":
+            self._files.append(Path(value))
+        elif name:
+            left, sign, right = value.partition(_SIGN)
+            if not sign or not left:
+                raise UsageError(f"{written} of --ros-args is written {written} NAME:=VALUE, not {value!r}")
+            if ":" in left:
+                raise UsageError(
+                    f"{written} {value}: leave out the name of the node; this process has one node"
+                )
+            if name == "--param":
+                self._parameters.append((left, _yaml(right)))
+            elif left in _NAMES:
+                self._options += [_NAMES[left], right]
+            else:
+                self._rules.append(value)
+
+    def options(self, own: Sequence[str], warn: Callable[[str], None]) -> list[str]:
+        """Give our options for all of it."""
+        given = dict(self._in_files())
+        given.update(self._parameters)
+        options = [*self._options, *(part for rule in self._rules for part in ("--remap", rule))]
+        simulated = given.pop("use_sim_time", False)
+        if simulated is True and own[:1] != ["sim"] and not _given(own, "--clock"):
+            options += ["--clock", "ros"]
+        for name in given:
+            warn(_no_effect(name))
+        return options
+
+    def _in_files(self) -> Iterator[tuple[str, Any]]:
+        names = dict(zip(self._options[::2], self._options[1::2], strict=False))
+        node = [*names.get("--namespace", "").strip("/").split("/"), names.get("--node-name", "")]
+        tokens = [token for token in node if token]
+        for file in self._files:
+            try:
+                content = _yaml(file.read_text(encoding="utf-8"))
+            except OSError as error:
+                raise UsageError(f"--params-file {file}: {error.strerror}") from None
+            yield from _parameters_of(content, [], tokens)
+
+
+def _parameters_of(content: Any, path: list[str], node: list[str]) -> Iterator[tuple[str, Any]]:
+    """Give the parameters of *node* in the content of a parameter file, below names of namespaces and nodes."""
+    if not isinstance(content, Mapping):
+        return
+    for key, value in content.items():
+        if key == "ros__parameters":
+            if isinstance(value, Mapping) and _suits(path, node):
+                yield from ((str(name), each) for name, each in value.items())
+        else:
+            yield from _parameters_of(value, [*path, *filter(None, str(key).split("/"))], node)
+
+
+def _suits(pattern: list[str], node: list[str]) -> bool:
+    """Whether a node's name suits a pattern: ``*`` is one part of it, ``**`` any number of them."""
+    if not pattern:
+        return not node
+    if pattern[0] == "**":
+        return any(_suits(pattern[1:], node[begin:]) for begin in range(len(node) + 1))
+    return bool(node) and pattern[0] in ("*", node[0]) and _suits(pattern[1:], node[1:])
+
+
+def _yaml(text: str) -> Any:
+    # Here: only for those who have parameters.
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    try:
+        return YAML(typ="safe", pure=True).load(text)
+    except YAMLError as error:
+        raise UsageError(f"a parameter is no YAML: {error}") from None
+
+
+def _no_effect(name: str) -> str:
+    return f"the parameter {name} has no effect on agents; options and beliefs say how they run"

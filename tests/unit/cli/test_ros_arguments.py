@@ -1,0 +1,139 @@
+"""What ``ros2 run``, launch files, rosrun and roslaunch add to a command line is understood."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.cli.main import call
+from jacaros.cli.ros_arguments import as_options, has_ros_arguments
+from jacaros.errors import UsageError
+
+
+@pytest.fixture(autouse=True)
+def no_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("JACAROS_ROS", raising=False)
+
+
+def options(*arguments: str) -> tuple[list[str], list[str]]:
+    """The options, and what is told."""
+    told: list[str] = []
+    assert has_ros_arguments(arguments)
+    return as_options(arguments, told.append), told
+
+
+LAUNCHED = ("run", "guard.asl", "--ros-args")
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        (("-r", "__node:=guard", "-r", "__ns:=/r1"), ["--node-name", "guard", "--namespace", "/r1"]),
+        (("--remap", "odom:=/odometry/filtered"), ["--remap", "odom:=/odometry/filtered"]),
+        (("-p", "use_sim_time:=true"), ["--clock", "ros"]),
+        (("-p", "use_sim_time:=True"), ["--clock", "ros"]),
+        (("-p", "use_sim_time:=false"), []),
+        (("--log-level", "info", "-e", "/", "--disable-stdout-logs"), []),
+        (("--disable-rosout-logs",), ["--no-rosout"]),
+    ],
+)
+def test_arguments_of_ros2_become_options(written: tuple[str, ...], read: list[str]) -> None:
+    assert options(*LAUNCHED, *written) == (["run", "guard.asl", *read, "--ros", "ros2"], [])
+
+
+def test_what_stands_behind_two_dashes_is_ours_again() -> None:
+    assert options("guard.asl", "--ros-args", "-r", "a:=b", "--", "--mapping", "robot.yaml") == (
+        ["guard.asl", "--mapping", "robot.yaml", "--remap", "a:=b", "--ros", "ros2"],
+        [],
+    )
+
+
+def test_what_is_said_by_our_own_options_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = ("run", "a.asl", "--ros", "memory", "--clock", "real")
+    assert options(*own, "--ros-args", "-p", "use_sim_time:=true") == (list(own), [])
+    monkeypatch.setenv("JACAROS_ROS", "rosbridge")
+    assert options("run", "a.asl", "--ros-args") == (["run", "a.asl"], [])
+
+
+def test_a_world_has_no_clock_to_follow() -> None:
+    assert options("sim", "house", "--ros-args", "-p", "use_sim_time:=true")[0] == [
+        *("sim", "house", "--ros", "ros2")
+    ]
+
+
+PARAMETERS = """
+/**:
+  ros__parameters: {use_sim_time: true}
+/r1/guard:
+  ros__parameters: {speed: 1}
+r1:
+  "*":
+    ros__parameters: {turn: 2}
+other:
+  ros__parameters: {colour: red}
+"""
+
+
+def test_files_of_parameters_are_read_for_our_node(tmp_path: Path) -> None:
+    file = tmp_path / "parameters.yaml"
+    file.write_text(PARAMETERS, encoding="utf-8")
+    names = ("-r", "__node:=guard", "-r", "__ns:=/r1")
+    read, told = options(*LAUNCHED, *names, "--params-file", str(file))
+    assert read[-4:] == ["--clock", "ros", "--ros", "ros2"]
+    assert [line.split()[2] for line in told] == ["speed", "turn"]
+    assert "has no effect" in told[0]
+
+
+def test_arguments_of_ros1_become_options() -> None:
+    written = (
+        "run",
+        "a.asl",
+        "--remap",
+        "x:=y",
+        "odom:=/odometry",
+        "__name:=guard",
+        "__log:=/tmp/log",
+        "_speed:=1",
+    )
+    read, told = options(*written)
+    assert read == [
+        *("run", "a.asl", "--remap", "x:=y", "--remap", "odom:=/odometry", "--node-name", "guard"),
+        *("--ros", "ros1"),
+    ]
+    assert [line.split()[2] for line in told] == ["speed"]
+
+
+def test_other_commands_and_options_with_such_values_are_left_alone() -> None:
+    assert not has_ros_arguments(["run", "a.asl", "--remap", "x:=y"])
+    assert not has_ros_arguments(["run", "a.asl", "--remap=x:=y"])
+    assert not has_ros_arguments(["check", "a:=b"])
+    assert not has_ros_arguments([])
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        (("--ros-args", "--clock", "ros"), "stands before it or behind --"),
+        (("--ros-args", "-r"), "a value is missing behind -r"),
+        (("--ros-args", "-r", "odom"), "is written -r NAME:=VALUE"),
+        (("--ros-args", "-r", "other:odom:=x"), "leave out the name of the node"),
+        (("--ros-args", "-p", "x:={"), "no YAML"),
+        (("--ros-args", "--params-file", "gone.yaml"), "gone.yaml: No such file"),
+        (("__ip:=127.0.0.1",), "ROS_IP"),
+    ],
+)
+def test_mistakes_are_told(written: tuple[str, ...], told: str) -> None:
+    with pytest.raises(UsageError, match=told):
+        options("run", "a.asl", *written)
+
+
+def test_a_run_takes_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "who.asl").write_text(
+        '!go. +!go <- makeArtifact(r, "ArtRos", [], I); focus(I); ?node(N); .print(N); .stopMAS.',
+        encoding="utf-8",
+    )
+    arguments = ["who.asl", "--ros", "memory", "--clock", "fast"]
+    assert call([*arguments, "--ros-args", "-r", "__node:=left", "-r", "__ns:=/r1"]) == 0
+    assert capsys.readouterr().out == "[who] /r1/left\n"
