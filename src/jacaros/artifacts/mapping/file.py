@@ -1,5 +1,6 @@
 """Mapping files: found, read, and checked for all that can be told without knowing any message type."""
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -26,6 +27,7 @@ SHIPPED = Path(__file__).parent.parent / "mappings"
 
 ENDINGS = (".yaml", ".yml")
 
+_NAME = re.compile(r"[^\s#/]+")
 _KEYS = (
     "description",
     "namespace",
@@ -118,7 +120,7 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
     shared = _interfaces(entries["interfaces"], path.parent) if "interfaces" in entries else ()
     found = {}
     for name, node in entries["artifacts"].entries():
-        if not isinstance(name.value, str) or not name.value:
+        if not isinstance(name.value, str) or not _NAME.fullmatch(name.value):
             name.wrong(f"{name.value!r} is no name of an artifact", "write a word")
             continue
         found[str(name.value)] = _artifact(str(name.value), place_of(name), node, path.parent, shared)
@@ -149,6 +151,8 @@ def _artifact(
     topics = [read_property(*pair) for pair in _pairs(entries, "properties")]
     topics += [read_signal(*pair) for pair in _pairs(entries, "signals")]
     prefix = entries.get("tf_prefix")
+    if prefix is not None and prefix.value is not None:
+        prefix.text()
     part = ArtifactPart(
         name,
         place,

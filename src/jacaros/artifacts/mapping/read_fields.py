@@ -88,7 +88,7 @@ def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
 def read_conversion(entries: dict[str, Node]) -> Conversion:
     """The keys that are the same for fields of properties and for values of operations."""
     kind = entries["as"].choice(*KINDS) if "as" in entries else ""
-    digits = entries.get("round")
+    digits, unit = entries.get("round"), entries.get("unit")
     if "prefix" in entries and kind != "name":
         entries["prefix"].wrong("'prefix' goes with 'as: name'", "add 'as: name'")
     return Conversion(
@@ -97,7 +97,7 @@ def read_conversion(entries: dict[str, Node]) -> Conversion:
         _names(entries["names"]) if "names" in entries else (),
         _line(entries, kind),
         digits.whole(0, 0) if digits is not None else None,
-        str(entries["unit"].value) if "unit" in entries else "",
+        str(unit.value) if unit is not None and isinstance(unit.value, str) and unit.value in UNITS else "",
         "message_unit" in entries,
     )
 

@@ -1,6 +1,7 @@
 """Reads ``properties``, ``signals``, ``frames`` and ``parameters``."""
 
 import dataclasses
+from collections.abc import Iterator
 
 from jacaros.artifacts.mapping.declared import (
     FieldPart,
@@ -12,12 +13,13 @@ from jacaros.artifacts.mapping.declared import (
     Written,
 )
 from jacaros.artifacts.mapping.paths import WHOLE
-from jacaros.artifacts.mapping.read_fields import path_of, place_of, read_field, read_fields, shown
+from jacaros.artifacts.mapping.read_fields import ANGLES, path_of, place_of, read_field, read_fields, shown
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, is_type, ros_name, type_written
 from jacaros.artifacts.mapping.read_qos import read_qos
+from jacaros.artifacts.mapping.units import UNITS
 from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.env.values import Atom
-from jacaros.yaml_nodes import Node
+from jacaros.yaml_nodes import Node, Problem
 
 _MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
@@ -252,6 +254,11 @@ def read_frame(name: Node, node: Node) -> FramePart:
             node.problems.append(
                 field.place.problem(f"a transform has no '{field.path.text}'", f"it has {', '.join(PLACES)}")
             )
+        else:
+            node.problems += _of_transform(field)
+    for key in ("target", "source"):
+        if key in entries and entries[key].value == "":
+            entries[key].wrong(f"'{key}' is empty", "write the name of a frame, such as base_link")
     policy = read_policy(entries, fields)
     return FramePart(
         belief_name(name),
@@ -265,6 +272,23 @@ def read_frame(name: Node, node: Node) -> FramePart:
         dataclasses.replace(policy, rate=None, expire=None),
         entries["description"].text() if "description" in entries else "",
     )
+
+
+_KINDS = {**dict.fromkeys(("x", "y", "z"), "length"), **dict.fromkeys(ANGLES, "angle"), "stamp": "time"}
+"""Kinds of what of a transform can be shown."""
+
+
+def _of_transform(field: FieldPart) -> Iterator[Problem]:
+    """What is wrong with a conversion of a part of a transform."""
+    place, conversion = field.path.text, field.conversion
+    if conversion.kind or conversion.names or field.shares is not None:
+        yield field.place.problem(
+            f"{place} of a transform is a number", "a unit, scale, offset and round are all it can have"
+        )
+    elif conversion.unit and UNITS[conversion.unit].kind != _KINDS[place]:
+        listed = ", ".join(name for name, each in UNITS.items() if each.kind == _KINDS[place])
+        told = f"{place} of a transform is a {_KINDS[place]}, and {conversion.unit} a unit of {UNITS[conversion.unit].kind}"
+        yield field.place.problem(told, f"units of {_KINDS[place]} are {listed}")
 
 
 def _pose(place: Place) -> tuple[FieldPart, ...]:

@@ -7,6 +7,7 @@ import pytest
 from jacaros.artifacts.mapping.declared import MappingFile
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, read_mapping
+from jacaros.mas.mappings import check_mapping_file
 from jacaros.ros.qos import LATCHED, SENSOR_DATA, QoS
 
 MESSAGE = "std_msgs/msg/Float64"
@@ -103,6 +104,23 @@ WRONG = {
     "message type for an action": (
         "operations: {a: {action: t, type: nav_msgs/msg/Odometry}}",
         "1:35: nav_msgs/msg/Odometry is the type of messages, not of an action | here a type is like nav2_msgs/action/",
+    ),
+    "unit of a transform": (
+        "frames: {a: {target: map, source: b, fields: [{path: x, unit: degrees}]}}",
+        "1:47: x of a transform is a length, and degrees a unit of angle | units of length are metres, ",
+    ),
+    "conversion of a transform": (
+        "frames: {a: {target: map, source: b, fields: [{path: yaw, as: yaw}]}}",
+        "1:47: yaw of a transform is a number | a unit, scale, offset and round are all it can have",
+    ),
+    "empty frame": (
+        "frames: {a: {target: map, source: ''}}",
+        "1:35: 'source' is empty | write the name of a frame, such as base_link",
+    ),
+    "prefix that is a list": ("tf_prefix: [a]\nproperties: {a: t}", "1:12: 'tf_prefix' must be a text"),
+    "name of an artifact": (
+        "artifacts: {a b: {properties: {c: t}}}",
+        "1:13: 'a b' is no name of an artifact | write a word",
     ),
     "type with dots": (
         "properties: {a: {topic: t, type: nav_msgs.msg.Odometry}}",
@@ -341,6 +359,13 @@ def test_a_mistake_is_told_with_place_and_cure(name: str) -> None:
     text, expected = WRONG[name]
     found = told(text)
     assert any(each.startswith(expected) for each in found), found
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_types_are_checked_too_in_spite_of_a_mistake(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "m.yaml"
+    file.write_text(WRONG[name][0], encoding="utf-8")
+    assert check_mapping_file(file)
 
 
 def test_properties_may_be_called_like_keys() -> None:

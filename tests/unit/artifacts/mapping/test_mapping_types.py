@@ -1,11 +1,14 @@
 """Mapping files compared with message types: what does not fit is told with place and cure."""
 
+from pathlib import Path
+
 import pytest
 
 from jacaros.artifacts.mapping.checking import check_mapping
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
+from jacaros.mas.mappings import check_mapping_file
 
 ODOMETRY = "properties: {{a: {{topic: t, type: nav_msgs/msg/Odometry, {}}}}}"
 BATTERY = "properties: {{a: {{topic: t, type: sensor_msgs/msg/BatteryState, {}}}}}"
@@ -233,3 +236,14 @@ def test_types_that_only_the_robot_knows_are_told_as_such() -> None:
 def test_a_unit_that_messages_do_not_usually_have_is_said() -> None:
     text = ODOMETRY.format("fields: [{path: pose.pose.position.x, unit: degrees, message_unit: radians}]")
     check_mapping(read_mapping(text), stored_interfaces())
+
+
+@pytest.mark.parametrize("unit", ["meters", "[degrees]", "3", "{a: b}"])
+def test_a_unit_that_there_is_not_stops_no_check_of_types(unit: str, tmp_path: Path) -> None:
+    file = tmp_path / "m.yaml"
+    head = "properties:\n  a:\n    topic: t\n    type: nav_msgs/msg/Odometry\n    fields:\n"
+    field = f"      - {{path: pose.pose.position.x, unit: {unit}}}\n"
+    file.write_text(f"{head}{field}      - pose.nothing\n", encoding="utf-8")
+    messages = [each.message for each in check_mapping_file(file)]
+    assert any(each.startswith("there is no unit") for each in messages)
+    assert any("has no field 'nothing'" in each for each in messages)
