@@ -19,7 +19,7 @@ _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
-@click.command("check", short_help="Tell what is wrong in programs and projects.")
+@click.command("check", short_help="Tell what is wrong in programs, projects and mappings.")
 @click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--format",

@@ -19,7 +19,7 @@ from jacaros.project_modules import ProjectModules
 PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
 
-@click.command("describe", short_help="Tell what an artifact type or a project offers.")
+@click.command("describe", short_help="Tell what an artifact type, a mapping or a project offers.")
 @click.argument("what")
 @click.option(
     "--project",

@@ -22,13 +22,13 @@ ENDED_BY_SIGNAL = (130, 143)
 
 COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
-    "check": ("jacaros.cli.check", "Tell what is wrong in programs and projects."),
+    "check": ("jacaros.cli.check", "Tell what is wrong in programs, projects and mappings."),
     "fmt": ("jacaros.cli.fmt", "Lay programs out in one style."),
     "compile": ("jacaros.cli.compile", "Show the Python code that is made of a program."),
     "test": ("jacaros.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.cli.sim", "Run a robot world as a ROS node of its own."),
     "ros": ("jacaros.cli.ros", "Look at a live ROS graph, and write mapping files for it."),
-    "describe": ("jacaros.cli.describe", "Tell what an artifact type or a project offers."),
+    "describe": ("jacaros.cli.describe", "Tell what an artifact type, a mapping or a project offers."),
     "version": ("jacaros.cli.version", "Tell the versions of jacaros and of what it uses."),
 }
 """Module and summary of each command."""
