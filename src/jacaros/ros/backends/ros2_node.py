@@ -159,7 +159,6 @@ class Ros2Node(Node):
     def _take_clock(self) -> None:
         """Take the messages of ``/clock`` that rclpy follows (`use_sim_time`); simulators may send a thousand a second."""
         for subscription in self.rcl.subscriptions:
-            subscription.callback_group = self.receiver.group
             self.receiver.add(subscription, subscription.callback)
 
     def _spin(self) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from typing import Any
 
-from rclpy.callback_groups import CallbackGroup, ReentrantCallbackGroup  # type: ignore[import-not-found]
+from rclpy.callback_groups import CallbackGroup  # type: ignore[import-not-found]
 from rclpy.guard_condition import GuardCondition  # type: ignore[import-not-found]
 from rclpy.impl.implementation_singleton import rclpy_implementation  # type: ignore[import-not-found]
 
@@ -58,7 +58,6 @@ class Receiver:
         self._context = context
         self._report = report
         self._wake_executor = executor.wake
-        self._events = ReentrantCallbackGroup()
         self._guard: Any = GuardCondition(None, None, context=context)
         self._lock = threading.Lock()
         self._takers: dict[Any, Take] = {}
@@ -73,11 +72,12 @@ class Receiver:
     def add(self, subscription: Any, take: Take) -> None:
         """Have *take* called with each message of *subscription*, in the receiver's thread; it must not block.
 
-        Other news of the subscription (deadline, quality of service) is left to the executor.
+        Its other news (deadline, quality of service) is told in this thread too: an executor that waits for it wakes up
+        with each message, on Fast DDS, and has the interpreter just when it is needed here.
         """
-        for handler in subscription.event_handlers:
-            handler.callback_group = self._events
-        self._wake_executor()
+        # A subscription that rclpy has made itself is of another group so far.
+        for entity in (subscription, *subscription.event_handlers):
+            entity.callback_group = self.group
         with self._lock:
             self._takers[subscription] = take
             self._wake()
@@ -135,19 +135,24 @@ class Receiver:
         self._let_go()
         with ExitStack() as held:
             # What is held here is destroyed by others only after it was let go.
-            handles, sources = [], {}
+            handles, events, sources = [], [], {}
             for subscription, take in takers:
                 handle = subscription.handle
                 with suppress(InvalidHandle):  # gone with its node
                     held.enter_context(handle)
                     handles.append(handle)
                     sources[handle.pointer] = (handle, subscription.msg_type, take)
+                    for event in subscription.event_handlers:
+                        held.enter_context(event)
+                        events.append(event)
             held.enter_context(self._guard.handle)
             held.enter_context(self._context.handle)
-            self._receive(handles, sources)
+            self._receive(handles, events, sources)
 
-    def _receive(self, handles: list[Any], sources: dict[int, tuple[Any, Any, Take]]) -> None:
-        wait_set: Any = WaitSet(len(handles), 1, 0, 0, 0, 0, self._context.handle)
+    def _receive(
+        self, handles: list[Any], events: list[Any], sources: dict[int, tuple[Any, Any, Take]]
+    ) -> None:
+        wait_set: Any = WaitSet(len(handles), 1, 0, 0, 0, len(events), self._context.handle)
         guard = self._guard.handle
 
         def arm() -> None:
@@ -155,6 +160,8 @@ class Receiver:
             for handle in handles:
                 wait_set.add_subscription(handle)
             wait_set.add_guard_condition(guard)
+            for event in events:
+                event.add_to_wait_set(wait_set)
 
         arm()
         while not self._changed:
@@ -165,10 +172,14 @@ class Receiver:
                 for handle, kind, take in ready
                 if (found := self._taken(handle, kind)) is not None
             ]
+            happened = [(event, event.take_data()) for event in events if event.is_ready(wait_set)]
             # First all that is left to do here: once the loop is awake it shares the interpreter with this thread.
             arm()
             for take, message in arrived:
                 take(message)
+            for event, data in happened:
+                if data:
+                    event.callback(data)
 
     def _taken(self, handle: Any, kind: Any) -> Any:
         try:
