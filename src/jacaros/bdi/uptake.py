@@ -22,17 +22,22 @@ def is_untaken(agent: Circumstance, name: str) -> bool:
     for event in agent.events:
         if event[EVENT_INTENTION] is None and _is_change(event[EVENT_GOAL][0], name):
             return True
-    return any(each.frames and _is_change(each.frames[0][GOAL][0], name) for each in _running(agent))
+    if agent.current is not None and agent.current.waiting is None and _handles(agent.current, name):
+        return True
+    return any(_handles(each, name) for each in _queued(agent)) if agent.intentions or agent.events else False
+
+
+def _handles(intention: Intention, name: str) -> bool:
+    """Whether an intention's first plan is for a change of a belief called *name*."""
+    return bool(intention.frames) and _is_change(intention.frames[0][GOAL][0], name)
 
 
 def _is_change(kind: Trigger, name: str) -> bool:
     return kind.kind == "" and kind.functor.name == name
 
 
-def _running(agent: Circumstance) -> Iterator[Intention]:
+def _queued(agent: Circumstance) -> Iterator[Intention]:
     """The intentions that wait for nothing but their turn."""
-    if agent.current is not None and agent.current.waiting is None:
-        yield agent.current
     yield from agent.intentions
     for event in agent.events:
         intention = event[EVENT_INTENTION]

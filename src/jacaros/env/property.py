@@ -232,7 +232,9 @@ class PropertyStore:
 
     def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
         """True when there is a property called *name* whose values fit *template*."""
-        return any(not template or _fits(template, p.values) for p in self._like(name, template))
+        if not template:
+            return bool(self._by_name.get(name))
+        return any(_fits(template, p.values) for p in self._like(name, template))
 
     def committed(self) -> tuple[ObservableProperty, ...]:
         """The properties as observers know them, in the order of their definition."""

@@ -40,6 +40,8 @@ class RosGraph:
         name: of the agent system; its ROS node is called so.
         world: the world that the project names, None for the default one.
         log: takes a line for people.
+        hurry: called when messages of other processes have been delivered: agents need not wait for the next round of the
+            loop.
 
     Attributes:
         world: the embedded world, None while there is none.
@@ -52,7 +54,9 @@ class RosGraph:
         name: str,
         world: str | Path | None,
         log: Callable[[str], None],
+        hurry: Callable[[], None] = lambda: None,
     ) -> None:
+        self._hurry = hurry
         self._options = options
         self._clock = clock
         self._name = _node_name(name)
@@ -78,6 +82,7 @@ class RosGraph:
         if self._options.ros != "memory":
             backend = self._open()
             self._backend = backend
+            backend.after_delivery(self._hurry)
             await backend.start()
             if self._options.ros_clock:
                 self._follow_clock(backend)

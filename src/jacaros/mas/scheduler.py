@@ -63,6 +63,11 @@ class Scheduler:
         if not self._due:
             self._call_soon()
 
+    def hurry(self) -> None:
+        """Let the ready agents have their turns now and not in the next round of the loop; from a callback of the loop."""
+        if self._queue:
+            self._take_turns()
+
     def stop(self) -> None:
         """Let nobody have a turn any more."""
         self._stopped = True
@@ -75,6 +80,14 @@ class Scheduler:
         self._loop.call_soon(self._turns)
 
     def _turns(self) -> None:
+        self._take_turns()
+        self._due = False
+        if self._queue:
+            self._call_soon()
+        elif not self._stopped:
+            self._on_idle()
+
+    def _take_turns(self) -> None:
         queue, quantum = self._queue, self.QUANTUM
         left = self.CYCLES_PER_CALL
         try:
@@ -91,11 +104,6 @@ class Scheduler:
         except Exception as error:
             self._report(error)
         self._clock.busy(self.CYCLES_PER_CALL - left)
-        self._due = False
-        if queue:
-            self._call_soon()
-        elif not self._stopped:
-            self._on_idle()
 
     def _report(self, error: Exception) -> None:
         self.stop()

@@ -106,7 +106,9 @@ class System:
             from jacaros.mas.rosout import RosoutConsole  # here: only for runs on a real graph
 
             self.console = RosoutConsole(self.console, lambda: self.ros.joined)
-        return RosGraph(options, self.clock, deployment.name, deployment.world, self.console.log)
+        return RosGraph(
+            options, self.clock, deployment.name, deployment.world, self.console.log, self.scheduler.hurry
+        )
 
     def _found(
         self, prepare: Callable[[Program], Program] | None, when_made: Callable[[AgentHost], None] | None

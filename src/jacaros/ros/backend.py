@@ -192,6 +192,12 @@ class Backend(Protocol):
     def on_connection(self, callback: Callable[[bool], None]) -> None:
         """Have *callback* called on the loop whenever `connected` changes, with the new value."""
 
+    def after_delivery(self, callback: Callable[[], None]) -> None:
+        """Have *callback* called on the loop after messages of other processes have been delivered.
+
+        Whoever got something to do by them may then do it at once.  A backend need not call it.
+        """
+
     async def start(self) -> None:
         """Join the graph.
 

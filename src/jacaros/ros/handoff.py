@@ -61,6 +61,21 @@ class Handoff(Generic[T]):
         elif dealt_with is not None:
             dealt_with.acquire(timeout=self._courtesy)
 
+    def put_here(self, item: T) -> None:
+        """Deliver *item*, which is on the loop already: now if nothing waits, else in its turn."""
+        with self._lock:
+            if self._closed:
+                return
+            if self._woken:
+                if len(self._waiting) == self._waiting.maxlen:
+                    self.dropped += 1
+                self._waiting.append(item)
+                return
+            # The turn is taken: what comes before the next one waits.
+            self._woken = True
+        self._loop.call_soon(self._deliver_next)
+        self._deliver(item)
+
     def close(self) -> None:
         """Forget what waits and take nothing more."""
         with self._lock:

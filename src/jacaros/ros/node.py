@@ -75,6 +75,8 @@ class Node:
         self.factory = MessageFactory(schema)
         self.exit_hooks = ExitHooks(settings.log, finish, threaded_hooks)
         self.connected = False
+        self.delivered: Callable[[], None] = lambda: None
+        """Called on the loop when a message that came from outside has been delivered."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._on_connection: list[Callable[[bool], None]] = []
         self._transforms = TransformBroadcaster(self)
@@ -109,6 +111,10 @@ class Node:
             self.connected = connected
             for callback in list(self._on_connection):
                 callback(connected)
+
+    def after_delivery(self, callback: Callable[[], None]) -> None:
+        """Have *callback* called after messages of other processes have been delivered."""
+        self.delivered = callback
 
     def resolve(self, name: str) -> str:
         """Give the absolute, remapped form of a name."""

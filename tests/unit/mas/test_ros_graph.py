@@ -111,6 +111,9 @@ class Elsewhere:
     started = closed = False
     listening: Callable[[object], None] | None = None
 
+    def after_delivery(self, callback: Callable[[], None]) -> None:
+        del callback
+
     async def start(self) -> None:
         self.started = True
 

@@ -172,3 +172,22 @@ def test_nobody_becomes_ready_after_the_stop() -> None:
 
     run(main, clock)
     assert log == []
+
+
+def test_in_a_hurry_the_ready_agents_have_their_turns_at_once() -> None:
+    log: list[str] = []
+    idle: list[int] = []
+    clock = VirtualClock()
+
+    async def main() -> None:
+        scheduler = Scheduler(clock, lambda: idle.append(len(log)))
+        scheduler.hurry()
+        scheduler.make_ready(Worker("a", 120, log))
+        scheduler.make_ready(Worker("b", 1, log))
+        scheduler.hurry()
+        assert log == ["a", "b", "a", "a"]
+        assert scheduler.idle
+        await clock.sleep(1)
+        assert idle == [4], "told once, in the next round"
+
+    run(main, clock)

@@ -210,3 +210,37 @@ def test_courtesy_has_an_end_and_a_failing_receiver_does_not_prolong_it() -> Non
         assert isinstance(reported[0], ZeroDivisionError)
 
     run(main, WallClock())
+
+
+def test_what_is_on_the_loop_already_is_delivered_at_once_but_one_item_a_turn() -> None:
+    async def main() -> None:
+        got: list[int] = []
+        handoff = Handoff[int](asyncio.get_running_loop(), 2, got.append)
+        handoff.put_here(0)
+        assert got == [0]
+        for number in range(1, 5):
+            handoff.put_here(number)
+        assert got == [0]
+        assert handoff.dropped == 2
+        await turns_until(lambda: len(got) == 3)
+        assert got == [0, 3, 4]
+        await asyncio.sleep(0)
+        handoff.put_here(5)
+        assert got[-1] == 5
+        handoff.close()
+        handoff.put_here(6)
+        assert got[-1] == 5
+
+    run(main, WallClock())
+
+
+def test_what_comes_on_the_loop_does_not_overtake_what_came_from_a_thread() -> None:
+    async def main() -> None:
+        got: list[int] = []
+        handoff = Handoff[int](asyncio.get_running_loop(), 10, got.append)
+        in_other_thread(lambda: handoff.put(0))
+        handoff.put_here(1)
+        await turns_until(lambda: len(got) == 2)
+        assert got == [0, 1]
+
+    run(main, WallClock())

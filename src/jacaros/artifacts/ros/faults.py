@@ -106,8 +106,9 @@ class Header:
     def accepts(self, sample: Sample) -> bool:
         """Whether a message may be used; notes it when not."""
         header: Any = sample.message.header
-        good = self._is_in_frame(header.frame_id, sample.stamp) and self._stamps.accept(
-            to_seconds(header.stamp), sample.stamp
+        frame = header.frame_id
+        good = (not frame or frame == self._frame or self._is_in_frame(frame, sample.stamp)) and (
+            self._stamps.accept(to_seconds(header.stamp), sample.stamp)
         )
         if good:
             self._good_at = sample.stamp

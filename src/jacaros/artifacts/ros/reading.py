@@ -87,6 +87,8 @@ class ReadingPolicy:
         """Whether *new* is worth passing after *old*."""
         if old == new:
             return False
+        if self.dead_band == 0.0 and self.finite:
+            return True
         if len(old) != len(new):
             return True
         for index, value in enumerate(new):  # noqa: SIM110 - most differ in the first field: no generator for that
@@ -211,13 +213,10 @@ class Reading:
             if self.policy.latest_only and self._outlet.behind() and self._queue.wait():
                 return
             self._delivered = self.newest
-            self._begin_pause()
+            if self.policy.rate is not None:
+                self._pause = self._clock.call_later(1.0 / self.policy.rate, self._end_pause)
             self._deliver(self.newest, self._cause)
-        self._queue.end()
-
-    def _begin_pause(self) -> None:
-        if self.policy.rate is not None:
-            self._pause = self._clock.call_later(1.0 / self.policy.rate, self._end_pause)
+        self._queue.waits = False
 
     def _end_pause(self) -> None:
         self._pause = None
@@ -250,10 +249,10 @@ class Queue:
 
     Args:
         clock: measures the wait.
-        look: called again and again while something waits; calls `wait` or `end`.
+        look: called again and again while something waits; calls `wait`, or ends the waiting.
 
     Attributes:
-        waits: whether something waits.
+        waits: whether something waits; set to False to end that.
     """
 
     def __init__(self, clock: Clock, look: Callable[[], None]) -> None:
@@ -276,10 +275,6 @@ class Queue:
         else:
             self._timer = self._clock.call_later(LOOK_AGAIN, self._look_again)
         return True
-
-    def end(self) -> None:
-        """Nothing waits any more."""
-        self.waits = False
 
     def close(self) -> None:
         """Look no more."""

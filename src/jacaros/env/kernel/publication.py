@@ -67,7 +67,10 @@ class Publication:
 
     def has_untaken(self, name: str) -> bool:
         """Whether an observer has still to take up what it was told about properties called *name*."""
-        return any(observer.has_untaken(name) for observer in self._slow)
+        for observer in self._slow:  # noqa: SIM110 - asked with every message of a sensor: no generator for that
+            if observer.has_untaken(name):
+                return True
+        return False
 
     def _note_slow(self) -> None:
         # Asking an object for a protocol costs more than a whole step, and sensors ask with every message.
@@ -106,8 +109,9 @@ class Publication:
         complete = others = Observation(self._artifact, signals, *changes, cause)
         if addressee is not None:
             others = Observation(self._artifact, (), *changes, cause)
-        self._tell()
-        self._telling = iter(self.observers), addressee, complete, others
+        if self._telling is not _NOBODY:
+            self._tell()
+        self._telling = iter(tuple(self._observers)), addressee, complete, others
         self._tell()
 
     def _tell(self) -> None:

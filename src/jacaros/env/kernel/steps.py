@@ -119,7 +119,7 @@ class Steps(StepInProgress):
         elif self.disposed:
             return None
         else:
-            self.turns.enter(execution, self._guard(execution))
+            self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
         return execution
 
     def initialise(self, declared: DeclaredOperation, request: OperationRequest) -> OperationExecution:

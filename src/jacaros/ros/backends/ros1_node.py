@@ -11,6 +11,7 @@ from weakref import WeakKeyDictionary
 import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
+from jacaros.ros.backends.ros1_connections import Takers, connect_streams
 from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, stay_local
 from jacaros.ros.backends.ros1_mismatch import MismatchWatch
 from jacaros.ros.backends.ros1_repairs import (
@@ -64,6 +65,7 @@ class Ros1Node(Node):
         )
         self.link = MasterLink(self.master_uri, self.node_name, actions)
         self.members: dict[Member, None] = {}
+        self.takers = Takers(self.log)
         self.actions: WeakKeyDictionary[Member, None] = WeakKeyDictionary()
         """Action clients and servers: they have something to tell when they are closed."""
         self.unsent: dict[Callable[[], bool], None] = {}
@@ -85,6 +87,8 @@ class Ros1Node(Node):
         print_to_standard_error()
         let_subscribers_hear()
         let_closed_nodes_rest()
+        self.takers.loop = self._loop
+        connect_streams(self.takers)
         let_parameters_tell(self._note_parameter)
         self.exit_hooks.watch_thread()
         self._first_look = self._loop.create_future()

@@ -70,7 +70,7 @@ class Ros1Publisher:
         """Whether nothing waits in the queues to the subscriptions."""
         implementation = getattr(self._publisher, "impl", None)
         connections = list(getattr(implementation, "connections", None) or ())
-        return not any(getattr(connection, "_queue", None) for connection in connections)
+        return not any(connection.busy for connection in connections)
 
     def _register(self) -> None:
         latch = self._qos.durability == "transient_local"
@@ -103,6 +103,7 @@ class TopicFeed:
         self._lock = threading.Lock()
         self._latched: dict[str, Any] = {}
         self._subscriber: Any = None
+        node.takers[topic] = self._take
         node.link.do(self._register)
 
     @property
@@ -142,6 +143,8 @@ class TopicFeed:
 
     def close(self) -> None:
         """Leave the topic."""
+        if self._node.takers.get(self._topic) == self._take:
+            del self._node.takers[self._topic]
         self._node.link.do(self._unregister)
 
     def _register(self) -> None:
@@ -158,6 +161,15 @@ class TopicFeed:
                 self._latched[header.get("callerid", "")] = message
             for subscription in self._subscriptions:
                 subscription.queue.put(message)
+
+    def _take(self, message: Any, header: Mapping[str, str]) -> None:
+        """Take a message on the loop."""
+        if header.get("latching") == "1":
+            with self._lock:
+                self._latched[header.get("callerid", "")] = message
+        for subscription in self._subscriptions:
+            subscription.queue.put_here(message)
+        self._node.delivered()
 
 
 class Feeds:

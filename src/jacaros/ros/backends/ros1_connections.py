@@ -1,0 +1,138 @@
+"""rospy's connections with `Inlet` and `Outbox` inside: rospy finds the other side and agrees with it, and then rests."""
+
+import asyncio
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from typing import Any
+
+import rospy.impl.registration as registration  # type: ignore[import-not-found]
+import rospy.impl.tcpros_pubsub  # type: ignore[import-not-found]
+import rospy.topics  # type: ignore[import-not-found]
+from genpy import DeserializationError  # type: ignore[import-not-found]
+from rospy.exceptions import TransportTerminated  # type: ignore[import-not-found]
+from rospy.impl.tcpros_base import TCPROSTransport  # type: ignore[import-not-found]
+
+from jacaros.ros.backends.ros1_streams import Inlet, Outbox
+from jacaros.ros.handoff import post
+
+Take = Callable[[Any, "dict[str, str]"], None]
+"""Takes a message, on the loop, and what its publisher said of itself at first."""
+
+
+class Takers(dict[str, Take]):
+    """Who takes the messages of which topic, on the loop of the node.
+
+    Attributes:
+        loop: that of the node.
+        log: takes a line about a message that cannot be read.
+    """
+
+    loop: asyncio.AbstractEventLoop
+
+    def __init__(self, log: Callable[[str], None]) -> None:
+        super().__init__()
+        self.log = log
+
+
+class InletTransport(TCPROSTransport):  # type: ignore[misc]
+    """Takes the place of rospy's connection; that to a publisher of a topic that has a taker is read on the loop.
+
+    Other topics, such as those that rospy itself listens to, are read by rospy.
+    """
+
+    takers: Takers
+    _over: threading.Event | None = None
+
+    def receive_once(self) -> Any:
+        """Let the loop read until the connection ends; on the thread of rospy's that belongs to this connection."""
+        connection = self.socket
+        subscriber = registration.get_topic_manager().get_subscriber_impl(self.name)
+        if self.name not in self.takers or connection is None or subscriber is None or self.read_buff.tell():
+            return super().receive_once()
+        loop, over = self.takers.loop, threading.Event()
+        self._over = over
+        with suppress(OSError):  # closed just now
+            # A socket of our own: rospy closes its one in any thread, and its number may then be that of another.
+            inlet = Inlet(loop, connection.dup(), partial(self._take, subscriber), over.set)
+            if not self.done and post(loop, inlet.open):
+                over.wait()
+            if not post(loop, inlet.close):
+                inlet.close()
+        raise TransportTerminated(f"the connection to {self.endpoint_id} has ended")
+
+    def _take(self, subscriber: Any, messages: list[bytes], size: int) -> None:
+        self.stat_bytes += size
+        self.stat_num_msg += len(messages)
+        for data in messages:
+            take = self.takers.get(self.name)
+            if self.done or take is None:
+                return
+            try:
+                message = subscriber.data_class().deserialize(data)
+            except DeserializationError as problem:
+                self.takers.log(
+                    f"topic {self.name}: a message of {self.endpoint_id} cannot be read: {problem}"
+                )
+                continue
+            message._connection_header = self.header
+            if len(subscriber.callbacks) == 1 and subscriber.statistics_logger is None:
+                take(message, self.header)
+            else:  # somebody else in this process listens as well, by rospy
+                subscriber.receive_callback([message], self)
+
+    def close(self) -> None:
+        """Close the connection; in any thread."""
+        super().close()
+        if self._over is not None:
+            self._over.set()
+
+
+class OutboxConnection:
+    """Takes the place of rospy's ``QueuedConnection``: a connection to a subscriber, and what waits to be sent to it.
+
+    Args:
+        connection: that of rospy.
+        size: see `Outbox`.
+    """
+
+    def __init__(self, connection: Any, size: int) -> None:
+        self._connection = connection
+        self._outbox = Outbox(connection.socket.dup(), size)
+        connection.set_cleanup_callback(lambda _: self._outbox.close())
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self._connection, name)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something has still to be sent."""
+        return self._outbox.busy
+
+    @property
+    def stat_bytes(self) -> int:
+        """How many bytes have been sent, for rospy's statistics."""
+        return self._outbox.sent_bytes
+
+    @property
+    def stat_num_msg(self) -> int:
+        """How many messages have been sent."""
+        return self._outbox.sent_messages
+
+    def write_data(self, data: bytes) -> bool:
+        """Send *data*; raises ``TransportTerminated`` when the subscriber has gone."""
+        try:
+            self._outbox.send(data)
+        except OSError as problem:
+            raise TransportTerminated(str(problem)) from None
+        return True
+
+
+def connect_streams(takers: Takers) -> None:
+    """Have rospy use these connections; before ``init_node``."""
+    InletTransport.takers = takers
+    rospy.impl.tcpros_pubsub.TCPROSTransport = InletTransport
+    rospy.topics.QueuedConnection = OutboxConnection

@@ -1,0 +1,182 @@
+"""Messages of ROS 1 on a socket, each behind its length: read on the loop, written as far as the other side takes them.
+
+rospy has threads for both.  Before an agent could react to a message, the loop's thread had to be woken up by that of the
+connection, and before a command left, a third one; each of that takes a tenth of a millisecond on a machine that was idle.
+"""
+
+import asyncio
+import select
+import socket
+import threading
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+
+CHUNK = 65536
+"""Bytes that are read at a time; of a long message up to `LARGE_CHUNK`."""
+LARGE_CHUNK = 1 << 20
+_LENGTH = 4
+"""Bytes in front of a message that tell its length, the least significant first."""
+
+
+class Inlet:
+    """The messages of one publisher, read on the loop.
+
+    Args:
+        loop: where they are read.
+        connection: is closed with this.
+        take: gets whole messages, the oldest first, and how many bytes have come.
+        ended: called on the loop when the publisher has closed the connection.
+    """
+
+    def __init__(
+        self,
+        loop: asyncio.AbstractEventLoop,
+        connection: socket.socket,
+        take: Callable[[list[bytes], int], None],
+        ended: Callable[[], None],
+    ) -> None:
+        self._loop = loop
+        self._socket = connection
+        self._take, self._ended = take, ended
+        self._rest = bytearray()
+        self._wanted = 0
+        """Length of `_rest` at which its first message is whole; 0 while that is not known."""
+
+    def open(self) -> None:
+        """Begin to read."""
+        self._socket.setblocking(False)
+        self._loop.add_reader(self._socket.fileno(), self._read)
+
+    def close(self) -> None:
+        """Read no more."""
+        if self._socket.fileno() >= 0:
+            self._loop.remove_reader(self._socket.fileno())
+            self._socket.close()
+
+    def _read(self) -> None:
+        try:
+            data = self._socket.recv(min(max(CHUNK, self._wanted - len(self._rest)), LARGE_CHUNK))
+        except (BlockingIOError, InterruptedError):
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self.close()
+            self._ended()
+            return
+        # What is usual: one message, and nothing but that.
+        if not self._rest and int.from_bytes(data[:_LENGTH], "little") + _LENGTH == len(data):
+            self._take([data[_LENGTH:]], len(data))
+            return
+        self._rest += data
+        self._take(self._whole() if len(self._rest) >= self._wanted else [], len(data))
+
+    def _whole(self) -> list[bytes]:
+        """Cut the whole messages off what has been read."""
+        rest, messages, start = self._rest, [], 0
+        self._wanted = 0
+        while len(rest) - start >= _LENGTH:
+            end = start + _LENGTH + int.from_bytes(rest[start : start + _LENGTH], "little")
+            if end > len(rest):
+                self._wanted = end - start
+                break
+            messages.append(bytes(memoryview(rest)[start + _LENGTH : end]))
+            start = end
+        del rest[:start]
+        return messages
+
+
+class Outbox:
+    """What one subscriber is sent: at once what its socket takes, the rest by a thread that lives as long as that takes.
+
+    However slow the subscriber is, nobody here waits for it.
+
+    Args:
+        connection: is closed with this.
+        size: how many messages may wait, the oldest is dropped first; 0: any number.
+
+    Attributes:
+        sent_bytes, sent_messages: so far.
+    """
+
+    def __init__(self, connection: socket.socket, size: int) -> None:
+        self.sent_bytes = self.sent_messages = 0
+        self._socket = connection
+        self._lock = threading.Lock()
+        self._begun = b""
+        """The rest of a message of which a part has been sent."""
+        self._waiting: deque[bytes] = deque(maxlen=size or None)
+        self._sending = self._closed = False
+        self._problem: OSError | None = None
+        connection.setblocking(False)
+        # Commands are short and come alone: they are not to wait for others.
+        with suppress(OSError):
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something has still to be sent."""
+        return self._sending
+
+    def send(self, data: bytes) -> None:
+        """Send *data*, which has its length in front, now or after what waits; callable from any thread.
+
+        Raises:
+            OSError: the subscriber has gone.
+        """
+        with self._lock:
+            if self._closed:
+                raise BrokenPipeError("the connection is closed")
+            if self._sending:
+                self._waiting.append(data)
+                return
+            self._begun = self._rest_of(data)
+            if self._problem is not None:
+                raise self._problem
+            if not self._begun:
+                return
+            self._sending = True
+        threading.Thread(target=self._send_rest, name="ROS slow subscriber", daemon=True).start()
+
+    def close(self) -> None:
+        """Send no more; callable from any thread."""
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            with suppress(OSError):
+                self._socket.shutdown(socket.SHUT_RDWR)
+            if not self._sending:
+                self._socket.close()
+
+    def _rest_of(self, data: bytes) -> bytes:
+        """Send what the socket takes, and give the rest."""
+        try:
+            sent = self._socket.send(data)
+        except (BlockingIOError, InterruptedError):
+            return data
+        except OSError as problem:
+            self._problem = problem
+            return b""
+        self.sent_bytes += sent
+        if sent < len(data):
+            return data[sent:]
+        self.sent_messages += 1
+        return b""
+
+    def _send_rest(self) -> None:
+        poll = select.poll()
+        poll.register(self._socket, select.POLLOUT)
+        while True:
+            poll.poll()
+            with self._lock:
+                if not self._closed:
+                    self._begun = self._rest_of(self._begun)
+                if not self._begun and self._waiting:
+                    self._begun = self._waiting.popleft()
+                if self._closed or self._problem is not None or not self._begun:
+                    self._sending = False
+                    if self._closed:
+                        self._socket.close()
+                    return
