@@ -201,3 +201,34 @@ run(main, WallClock())
     )
     assert answer.stdout.startswith("RosError ROS 1 allows one node per process"), answer.stderr
     assert answer.returncode == 0
+
+
+def test_a_signal_in_the_middle_of_joining_ends_the_start(master: Master) -> None:
+    master.start()
+    program = """
+import asyncio
+import rospy
+from jacaros.clock import WallClock, run
+from jacaros.ros.open import open_backend
+async def main():
+    backend = open_backend("ros1", WallClock(), "hasty")
+    def interrupted(*_, **__):
+        backend.exit_hooks.run()
+        raise rospy.exceptions.ROSInitException("shut down meanwhile")
+    rospy.init_node = interrupted
+    async with asyncio.timeout(30):
+        await backend.start()
+        await backend.close()
+    print("ended")
+run(main, WallClock())
+"""
+    answer = subprocess.run(
+        [sys.executable, "-c", program],
+        env=os.environ | master.environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert answer.stdout == "ended\n", answer.stderr
+    assert answer.returncode == 0

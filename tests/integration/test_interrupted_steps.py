@@ -125,6 +125,14 @@ def test_an_operation_in_a_thread_is_left_behind(folder: Path) -> None:
 
 
 @pytest.mark.slow
+def test_nothing_is_said_to_be_left_behind_by_an_import(folder: Path) -> None:
+    (folder / "artifacts.py").write_text("import time\nprint('[bob] begun', flush=True)\ntime.sleep(60)\n")
+    code, _, errors = interrupted(folder, '!g. +!g <- makeArtifact("a", "artifacts.Slow", [], _).')
+    assert code == 130
+    assert errors == ""
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [(), ("--clock", "fast")])
 def test_the_robot_is_left_still(folder: Path, options: tuple[str, ...]) -> None:
     program = """

@@ -125,6 +125,8 @@ class Interruption:
             self._told = True
             if task_of(frame) is not None:
                 self._tell(f"interrupted in the middle of a step: {at_work(frame)}")
-            else:
+            elif (
+                self._ending
+            ):  # else what was interrupted is an import, as at the start: nothing is left behind
                 self._tell("the run has ended; an operation that does not end is left behind")
         raise Interrupted

@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jacaros.clock import Clock
+from jacaros.mas.graph_time import GraphTime
 from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
     from jacaros.mas.empty_graph import EmptyGraph
-    from jacaros.ros.backend import Backend, Subscription
+    from jacaros.ros.backend import Backend
     from jacaros.ros.ros_clock import RosClock
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World
@@ -66,7 +67,7 @@ class RosGraph:
         self._companions: list[Backend] = []
         self._node: SimNode | None = None
         self._followed: RosClock | None = None
-        self._looking: Subscription | None = None
+        self._time: GraphTime | None = None
         self._empty: EmptyGraph | None = None
         self.world: World | None = None
 
@@ -87,7 +88,8 @@ class RosGraph:
             if self._options.ros_clock:
                 self._follow_clock(backend)
             else:
-                self._look_for_clock(backend)
+                self._time = GraphTime(backend, self._log_ros)
+                self._time.watch()
             # Only on demand: a project that names a world for practice also runs on the real robot.
             if self._options.world is not None:
                 self._start_world(backend)
@@ -131,6 +133,8 @@ class RosGraph:
                 steps.push_async_callback(self._backend.close)
             if self._followed is not None:
                 steps.callback(self._followed.close)
+            if self._time is not None:
+                steps.callback(self._time.close)
             if self._empty is not None:
                 steps.callback(self._empty.close)
 
@@ -143,21 +147,6 @@ class RosGraph:
         assert isinstance(self._clock, RosClock), "the launch makes the clock that the options ask for"
         self._followed = self._clock
         self._clock.listen(backend)
-
-    def _look_for_clock(self, backend: "Backend") -> None:
-        """Tell once when the graph has a time of its own that this run does not follow."""
-        from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
-
-        def heard(_: object) -> None:
-            if self._looking is not None:
-                self._looking.close()
-                self._looking = None
-                self._log_ros(
-                    f"a simulator gives the time on {CLOCK_TOPIC}, and this run goes by the time of day; "
-                    "to follow the simulator run with --clock ros"
-                )
-
-        self._looking = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, heard, CLOCK_QOS)
 
     def _look_for_others(self, backend: "Backend") -> None:
         from jacaros.mas.empty_graph import EmptyGraph

@@ -108,7 +108,9 @@ def test_a_missing_library_is_told_at_the_start(monkeypatch: pytest.MonkeyPatch)
 class Elsewhere:
     """A real graph, as far as it matters here."""
 
-    started = closed = False
+    started = closed = connected = False
+    ros_version = 2
+    capabilities: frozenset[str] = frozenset()
     listening: Callable[[object], None] | None = None
 
     def after_delivery(self, callback: Callable[[], None]) -> None:

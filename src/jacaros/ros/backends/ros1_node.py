@@ -133,6 +133,9 @@ class Ros1Node(Node):
         """Wait until the queues are empty, then end rospy: its threads would keep the process alive."""
         wait_until_sent(list(self.unsent))
         self.link.stop()
+        if self._loop is not None:
+            # A signal may come while `start` still waits for the link, which will say nothing more.
+            post(self._loop, self._has_looked)
         rospy.signal_shutdown("closed")
 
     def _note_state(self, present: bool) -> None:
@@ -148,6 +151,9 @@ class Ros1Node(Node):
             self._waiting.__exit__(None, None, None)
             self._waiting = None
         self.set_connected(present)
+        self._has_looked()
+
+    def _has_looked(self) -> None:
         if self._first_look is not None and not self._first_look.done():
             self._first_look.set_result(None)
 

@@ -1,0 +1,85 @@
+"""Whose time the nodes of a graph go by."""
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.mas.graph_time import GraphTime
+from jacaros.ros.backend import PARAMETERS
+from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
+
+
+class Graph:
+    """A graph of ROS 1 whose master may keep ``use_sim_time``, and comes late."""
+
+    ros_version = 1
+    capabilities = frozenset({PARAMETERS})
+    connected = False
+
+    def __init__(self, simulated: bool | Exception) -> None:
+        self._simulated = simulated
+        self.asked = 0
+        self.tell: Callable[[bool], None] = lambda present: None
+        self.clock: Callable[[object], None] | None = None
+
+    def on_connection(self, callback: Callable[[bool], None]) -> None:
+        self.tell = callback
+
+    def subscription(self, topic: str, _type: str, callback: Callable[[object], None], _qos: object) -> Any:
+        self.clock = callback
+        return SimpleNamespace(close=lambda: setattr(self, "clock", None))
+
+    def parameters(self, node: str) -> Any:
+        assert node == "/"
+        return SimpleNamespace(get=self._get)
+
+    async def _get(self, name: str, timeout: float) -> bool:
+        assert (name, timeout > 0) == ("use_sim_time", True)
+        self.asked += 1
+        if isinstance(self._simulated, Exception):
+            raise self._simulated
+        return self._simulated
+
+
+def told(graph: Any, clock_comes: bool = False) -> list[str]:
+    """What people are told about a graph whose master is found after a while."""
+    lines: list[str] = []
+    clock = VirtualClock()
+
+    async def main() -> None:
+        time = GraphTime(graph, lines.append)
+        time.watch()
+        await clock.sleep(1)
+        assert graph.asked == 0
+        for present in (True, False, True):
+            graph.tell(present)
+            await clock.sleep(1)
+        if clock_comes and graph.clock is not None:
+            graph.clock("a time")
+        time.close()
+        assert graph.clock is None
+
+    run(main, clock)
+    return lines
+
+
+@pytest.mark.parametrize("clock_comes", [False, True])
+def test_a_run_in_real_time_is_told_once_of_nodes_in_a_simulators_time(clock_comes: bool) -> None:
+    graph = Graph(True)
+    (line,) = told(graph, clock_comes)
+    assert "use_sim_time" in line
+    assert "run with --clock ros" in line
+    assert graph.asked == 1
+
+
+@pytest.mark.parametrize("says", [False, ParameterUnknown("none"), ServiceUnavailable("gone")])
+def test_real_time_is_not_worth_a_word(says: bool | Exception) -> None:
+    assert told(Graph(says)) == []
+
+
+def test_a_clock_alone_is_told() -> None:
+    (line,) = told(Graph(ParameterUnknown("none")), clock_comes=True)
+    assert "a simulator gives the time on /clock" in line
