@@ -232,3 +232,56 @@ run(main, WallClock())
     )
     assert answer.stdout == "ended\n", answer.stderr
     assert answer.returncode == 0
+
+
+def test_a_publisher_whose_connection_broke_is_heard_again(master: Master, ros1: InProcesses) -> None:
+    master.start()
+    talker = ros1.peer("talker")
+    talker.advertise("/before", "std_msgs/msg/Int32")
+    program = """
+import asyncio, sys
+import rospy
+from jacaros.clock import WallClock, run
+from jacaros.ros.open import open_backend
+async def until(condition):
+    async with asyncio.timeout(60):
+        while not condition():
+            await asyncio.sleep(0.01)
+async def main():
+    backend = open_backend("ros1", WallClock(), "listener")
+    await backend.start()
+    listening = backend.subscription("/before", "std_msgs/msg/Int32", lambda sample: print(sample.message.data, flush=True))
+    for number in range(2):
+        await until(lambda: listening.publisher_count == 1)
+        print("connected", flush=True)
+        await asyncio.get_running_loop().run_in_executor(None, sys.stdin.readline)
+        # As when the network was away for longer than TCP is patient: nobody tells the master.
+        for each in list(rospy.topics.get_topic_manager().get_subscriber_impl("/before").connections):
+            each.close()
+        await until(lambda: listening.publisher_count == 0)
+    await backend.close()
+run(main, WallClock())
+"""
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        env=os.environ | master.environment,
+        stdin=pipe,
+        stdout=pipe,
+        text=True,
+    ) as listener:
+        assert listener.stdin is not None
+        assert listener.stdout is not None
+        try:
+            for number in range(2):
+                assert listener.stdout.readline() == "connected\n"
+                ros1.wait_until(
+                    lambda: talker.subscription_count("/before") == 1, "the talker knows of one listener"
+                )
+                talker.publish("/before", {"data": number})
+                assert listener.stdout.readline() == f"{number}\n"
+                listener.stdin.write("break\n")
+                listener.stdin.flush()
+            assert listener.wait(60) == 0
+        finally:
+            listener.kill()

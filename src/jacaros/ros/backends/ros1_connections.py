@@ -53,21 +53,21 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
             return super().receive_once()
         loop, over = self.takers.loop, threading.Event()
         self._over = over
+        take = partial(self._take, subscriber, self.takers[self.name])
         with suppress(OSError):  # closed just now
             # A socket of our own: rospy closes its one in any thread, and its number may then be that of another.
-            inlet = Inlet(loop, connection.dup(), partial(self._take, subscriber), over.set)
+            inlet = Inlet(loop, connection.dup(), take, over.set)
             if not self.done and post(loop, inlet.open):
                 over.wait()
             if not post(loop, inlet.close):
                 inlet.close()
         raise TransportTerminated(f"the connection to {self.endpoint_id} has ended")
 
-    def _take(self, subscriber: Any, messages: list[bytes], size: int) -> None:
+    def _take(self, subscriber: Any, take: Take, messages: list[bytes], size: int) -> None:
         self.stat_bytes += size
         self.stat_num_msg += len(messages)
         for data in messages:
-            take = self.takers.get(self.name)
-            if self.done or take is None:
+            if self.done:
                 return
             try:
                 message = subscriber.data_class().deserialize(data)
@@ -77,9 +77,10 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
                 )
                 continue
             message._connection_header = self.header
-            if len(subscriber.callbacks) == 1 and subscriber.statistics_logger is None:
+            alone = len(subscriber.callbacks) == 1 and subscriber.statistics_logger is None
+            if alone and self.takers.get(self.name) == take:
                 take(message, self.header)
-            else:  # somebody else in this process listens as well, by rospy
+            else:  # somebody else in this process listens as well, by rospy, or we have just ceased to
                 subscriber.receive_callback([message], self)
 
     def close(self) -> None:

@@ -12,19 +12,28 @@ import threading
 import urllib.parse
 import xmlrpc.client
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError, ServiceUnavailable
+
+PUBLICATION, SUBSCRIPTION, SERVICE = range(3)
 
 PERIOD = 0.25
 """Seconds between two looks at the master."""
 PATIENCE = 2.0
 """Seconds after which a master that does not answer is called away."""
 
+UNHEARD = 20
+"""Looks after which a publisher that the master knows, and that is not connected, is asked for again."""
+SELDOM = 240
+"""Looks between two such attempts at most; at first it is tried more often."""
+
 Offers = tuple[Iterable[tuple[str, str]], ...]
 """Publications, subscriptions and services of this node: names with types or addresses."""
+Heard = tuple[str, Collection[str]]
+"""Type of a topic and names of nodes."""
 _AWAY = (OSError, http.client.HTTPException, xmlrpc.client.Error)
 
 
@@ -35,8 +44,8 @@ class NodeActions:
     Attributes:
         join: registers the node for the first time.
         offers: tells what the node offers now.
-        register: registers one name again; the number says which kind: 0 publication, 1 subscription, 2
-            service.
+        register: registers one name again; the number says which kind: `PUBLICATION`, `SUBSCRIPTION`, `SERVICE`.
+        heard: tells the publishers that are connected to each topic that this node listens to.
         on_state: is told whether the master is there, at the first look and at every change.
         on_again: is told the names that were registered again, and whether these are all the node has: then the
             master was restarted.
@@ -48,6 +57,7 @@ class NodeActions:
     join: Callable[[], None]
     offers: Callable[[], Offers]
     register: Callable[[int, str, str], None]
+    heard: Callable[[], Mapping[str, Heard]]
     on_state: Callable[[bool], None]
     on_again: Callable[[list[str], bool], None]
     on_types: Callable[[dict[str, str]], None]
@@ -105,6 +115,8 @@ class MasterLink:
         self._joined = False
         self._state: bool | None = None
         self._published: Any = None
+        self._unheard: dict[tuple[str, str], int] = {}
+        """Topic and publisher → at how many looks in a row it was not connected."""
         self.services: frozenset[str] = frozenset()
 
     def start(self) -> None:
@@ -140,6 +152,7 @@ class MasterLink:
             self._joined = True
         else:
             self._register_missing(known)
+            self._ask_for_unheard(dict(known[0]))
         self._set_state(True)
         self._look_at_types(known)
         while self._jobs and not self._stopping:
@@ -178,6 +191,20 @@ class MasterLink:
                     again.append(name)
         if again:
             self._actions.on_again(again, kept == 0)
+
+    def _ask_for_unheard(self, publishers: Mapping[str, Collection[str]]) -> None:
+        """Have publishers connected that are there and not heard: after a break of the network rospy does not do so."""
+        unheard: dict[tuple[str, str], int] = {}
+        kinds: dict[str, str] = {}
+        for topic, (kind, connected) in self._actions.heard().items():
+            for node in publishers.get(topic, ()):
+                if node not in connected:
+                    looks = unheard[topic, node] = self._unheard.get((topic, node), 0) + 1
+                    if looks in (UNHEARD, 2 * UNHEARD, 4 * UNHEARD) or looks % SELDOM == 0:
+                        kinds[topic] = kind
+        self._unheard = unheard
+        for topic, kind in kinds.items():
+            self._actions.register(SUBSCRIPTION, topic, kind)
 
     def _set_state(self, present: bool) -> None:
         if present != self._state:

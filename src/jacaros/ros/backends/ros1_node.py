@@ -12,7 +12,7 @@ import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
 from jacaros.ros.backends.ros1_connections import Takers, connect_streams
-from jacaros.ros.backends.ros1_master import MasterLink, NodeActions, Offers, stay_local
+from jacaros.ros.backends.ros1_master import Heard, MasterLink, NodeActions, Offers, stay_local
 from jacaros.ros.backends.ros1_mismatch import MismatchWatch
 from jacaros.ros.backends.ros1_repairs import (
     let_closed_nodes_rest,
@@ -58,6 +58,7 @@ class Ros1Node(Node):
             self._join,
             _offers,
             _register_again,
+            _heard,
             self._note_state,
             self._note_again,
             self._note_types,
@@ -74,6 +75,7 @@ class Ros1Node(Node):
         """Called on the link's thread after the master had forgotten this node."""
         self.on_parameter: dict[Callable[[str, Any], None], None] = {}
         """Called on the loop with name and value of a parameter that the master says has changed."""
+        self._refused = ""
         self._waiting: Waiting | None = None
         self._first_look: asyncio.Future[None] | None = None
 
@@ -183,7 +185,10 @@ class Ros1Node(Node):
                 self.log(f"a callback for changed parameters failed: {type(problem).__name__}: {problem}")
 
     def _note_problem(self, problem: Exception) -> None:
-        post(self.loop, self.log, f"rospy refused: {type(problem).__name__}: {problem}")
+        text = f"rospy refused: {type(problem).__name__}: {problem}"
+        if text != self._refused:  # what cannot be done is tried again with each look at the master
+            self._refused = text
+            post(self.loop, self.log, text)
 
     def _note_shutdown(self) -> None:
         """On rospy's thread: somebody ended our node, most likely a newer node of the same name."""
@@ -204,6 +209,16 @@ def wait_until_sent(tests: Collection[Callable[[], bool]]) -> None:
 def _offers() -> Offers:
     topics, services = rospy.topics.get_topic_manager(), registration.get_service_manager()
     return topics.get_publications(), topics.get_subscriptions(), services.get_services()
+
+
+def _heard() -> dict[str, Heard]:
+    """The publishers that are connected, by topic."""
+    topics = rospy.topics.get_topic_manager()
+    return {
+        name: (kind, {each.callerid_pub for each in subscriber.connections})
+        for name, kind in topics.get_subscriptions()
+        if (subscriber := topics.get_subscriber_impl(name)) is not None
+    }
 
 
 def _register_again(kind: int, name: str, detail: str) -> None:

@@ -5,6 +5,7 @@ of changes.  The interface is the ROS wiki's "Parameter Server API".
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from datetime import datetime
 from typing import Any, NoReturn
 
 import rospy  # type: ignore[import-not-found]
@@ -74,7 +75,7 @@ class Ros1Parameters:
                 raise ParameterUnknown(f"there is no parameter {key} at the ROS master")
             parts = ", ".join(f"{name}/{part}" for part, _ in _leaves(value))
             raise ParameterUnknown(f"parameter {key} is a mapping; ask for its parts: {parts}")
-        given: ParameterValue = value
+        given: ParameterValue = _given(value)
         return given
 
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
@@ -95,7 +96,7 @@ class Ros1Parameters:
                 return
             name = key[len(self._prefix) :]
             # An empty mapping says that the parameter was deleted.
-            changed = dict(_leaves(value, name)) if isinstance(value, dict) else {name: value}
+            changed = dict(_leaves(value, name)) if isinstance(value, dict) else {name: _given(value)}
             if changed:
                 callback(changed)
 
@@ -169,7 +170,14 @@ def _leaves(value: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any
         if isinstance(part, dict):
             yield from _leaves(part, where)
         else:
-            yield where, part
+            yield where, _given(part)
+
+
+def _given(value: Any) -> Any:
+    """A value of the master's in the types of the port: XML-RPC's times become texts (ISO 8601)."""
+    if isinstance(value, datetime):
+        return value.isoformat()
+    return [_given(each) for each in value] if isinstance(value, list) else value
 
 
 def _plain(key: str, value: Any) -> Any:

@@ -95,11 +95,21 @@ class Ros1Client:
             problem = work.exception()
             settle(answer, None if problem else work.result(), call_failure(self.name, problem))
 
-        # A proxy of its own for each call: rospy's is not made for several calls at a time.
-        in_thread(
-            self._node.loop, lambda: rospy.ServiceProxy(self.name, self._class)(message), f"call {self.name}"
-        ).add_done_callback(finished)
-        return await within(self._node.clock, answer, rest)
+        # A proxy of its own for each call: rospy's is not made for several calls at a time.  Only one that is called
+        # persistent can be closed from outside, and a server that never answers would keep its thread for ever.
+        proxy = rospy.ServiceProxy(self.name, self._class, persistent=True)
+
+        def call() -> Any:
+            try:
+                return proxy(message)
+            finally:
+                proxy.close()
+
+        in_thread(self._node.loop, call, f"call {self.name}").add_done_callback(finished)
+        try:
+            return await within(self._node.clock, answer, rest)
+        finally:
+            proxy.close()
 
     def close(self) -> None:
         """Give the client up."""

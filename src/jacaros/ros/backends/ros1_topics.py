@@ -116,8 +116,17 @@ class TopicFeed:
         """Let *subscription* have the messages, the latched ones first."""
         with self._lock:
             self._subscriptions = (*self._subscriptions, subscription)
+            if self._latched:
+                connected = self._connected()
+                # What a publisher that has gone said last is said by nobody any more.
+                self._latched = {name: each for name, each in self._latched.items() if name in connected}
             for message in self._latched.values():
                 subscription.queue.put(message)
+
+    def _connected(self) -> set[str]:
+        """The nodes whose messages come."""
+        connections = getattr(getattr(self._subscriber, "impl", None), "connections", None) or ()
+        return {connection.callerid_pub for connection in list(connections)}
 
     def remove(self, subscription: "Ros1Subscription") -> bool:
         """Forget *subscription*; True when it was the last."""
