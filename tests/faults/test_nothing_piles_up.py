@@ -17,7 +17,7 @@ def kinds() -> Counter[str]:
     found = Counter(
         f"{type(each).__module__}.{type(each).__qualname__}"
         for each in gc.get_objects()
-        if type(each).__module__.startswith("jacaros") and type(each).__name__ not in NOTES
+        if str(type(each).__module__).startswith("jacaros") and type(each).__name__ not in NOTES
     )
     for name in ("Task", "Future", "TimerHandle"):
         found[name] = sum(type(each).__name__ == name for each in gc.get_objects())
