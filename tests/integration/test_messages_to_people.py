@@ -320,3 +320,28 @@ def test_a_mistake_in_a_world_file(project: Project) -> None:
         "            ^\n"
         "  cure: did you mean 'pose'?\n",
     )
+
+
+def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
+    project.write(
+        "robot.yaml",
+        """\
+        operations:
+          drive:
+            publish: cmd_velo
+            type: geometry_msgs/msg/Twist
+            rate: 5
+            duration: 1
+        """,
+    )
+    project.write("hasty.asl", "!go. +!go <- drive; drive; .print(done); .stopMAS.")
+    code, output, errors = project.run(
+        "run", "hasty.asl", "--mapping", "robot.yaml", "--world", "house", "--clock", "fast"
+    )
+    assert (code, output) == (0, "[hasty] done\n")
+    assert errors == (
+        "[robot] robot.yaml:3:14: nobody hears what drive publishes on /cmd_velo\n"
+        "    3 |     publish: cmd_velo\n"
+        "                     ^\n"
+        "  cure: is the robot's base running? `jacaros ros list` shows the names and types that it hears\n"
+    )

@@ -121,9 +121,21 @@ class Publishing:
                     left -= host.clock.elapsed - began
                 if ticket.aborted:
                     host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
+            self._tell_if_unheard(seconds)
         finally:
             halt()
             lane.leave(ticket)
+
+    def _tell_if_unheard(self, seconds: float) -> None:
+        """Tell people once when nobody was there to hear what was said for a while: a name or a type may be wrong."""
+        publisher = self._publisher
+        if seconds > 0.0 and publisher is not None and not publisher.subscription_count:
+            self._host.tell_once(
+                (publisher.topic, "unheard"),
+                self._part.target.place,
+                f"nobody hears what {self._part.name} publishes on {publisher.topic}",
+                "is the robot's base running? `jacaros ros list` shows the names and types that it hears",
+            )
 
     def _send(self, inputs: Sequence[object]) -> None:
         assert self._fill is not None
