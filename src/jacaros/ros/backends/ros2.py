@@ -25,7 +25,7 @@ from jacaros.ros.backends import ros2_graph
 from jacaros.ros.backends.ros2_actions import Ros2ActionServer
 from jacaros.ros.backends.ros2_goals import Ros2GoalWire
 from jacaros.ros.backends.ros2_node import Member, Ros2Node
-from jacaros.ros.backends.ros2_parameters import OtherParameters, OwnParameters, ParameterNews
+from jacaros.ros.backends.ros2_parameters import OtherParameters, OwnParameters, read_value
 from jacaros.ros.backends.ros2_services import Ros2Client, Ros2Service
 from jacaros.ros.backends.ros2_topics import Ros2Publisher, Ros2Subscription
 from jacaros.ros.errors import CallFailed, CallTimedOut, UnknownInterface
@@ -34,6 +34,7 @@ from jacaros.ros.handoff import in_thread
 from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.ros.node import NodeSettings
 from jacaros.ros.parameter import Parameters
+from jacaros.ros.parameter_news import ParameterNews
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE
 from jacaros.ros.waiting import within
@@ -64,7 +65,7 @@ class Ros2Backend(Ros2Node):
 
     def __init__(self, settings: NodeSettings, domain_id: int | None = None) -> None:
         super().__init__(settings, domain_id)
-        self._news = ParameterNews(self)
+        self._news = ParameterNews(self.subscription, read_value)
         self._parameters: dict[str, Parameters] = {}
 
     @property

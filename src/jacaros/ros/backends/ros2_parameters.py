@@ -21,59 +21,21 @@ from rclpy.exceptions import (  # type: ignore[import-not-found]
 )
 from rclpy.parameter import Parameter, parameter_value_to_python  # type: ignore[import-not-found]
 
-from jacaros.ros.backend import Sample
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_services import Ros2Client
-from jacaros.ros.backends.ros2_topics import Ros2Subscription
 from jacaros.ros.backends.ros2_values import parameter, plain_value
 from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.qos import QoS
+from jacaros.ros.parameter_news import ParameterNews
 
-EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/ParameterEvent", QoS(depth=1000)
 _LARGEST = 2**63 - 1
 
 
-class ParameterNews:
-    """Tells of changed parameters of all nodes, from the one topic; joined at the first use."""
-
-    def __init__(self, node: Ros2Node) -> None:
-        self._node = node
-        self._subscription: Ros2Subscription | None = None
-        self._listeners: dict[str, list[Callable[[Mapping[str, ParameterValue]], None]]] = {}
-
-    def listen(
-        self, node_name: str, callback: Callable[[Mapping[str, ParameterValue]], None]
-    ) -> Callable[[], None]:
-        """Have *callback* called with what changes at a node; the result ends that."""
-        if self._subscription is None:
-            self._subscription = Ros2Subscription(
-                self._node, EVENTS, EVENT_TYPE, self._take, EVENT_QUALITY, None
-            )
-            self._node.members.append(self._subscription)
-        listeners = self._listeners.setdefault(node_name, [])
-        listeners.append(callback)
-
-        def end() -> None:
-            if callback in listeners:
-                listeners.remove(callback)
-
-        return end
-
-    def _take(self, sample: Sample) -> None:
-        event = sample.message
-        listeners = self._listeners.get(event.node)
-        if not listeners:
-            return
-        changed = {
-            told.name: plain_value(parameter_value_to_python(told.value))
-            for told in (*event.new_parameters, *event.changed_parameters)
-        }
-        known = {name: value for name, value in changed.items() if value is not None}
-        if known:
-            for callback in list(listeners):
-                callback(known)
+def read_value(told: Any) -> ParameterValue | None:
+    """Read a ``rcl_interfaces/msg/ParameterValue``; None for a parameter without a value."""
+    value: ParameterValue | None = plain_value(parameter_value_to_python(told))
+    return value
 
 
 class OwnParameters:

@@ -34,7 +34,7 @@ from jacaros.ros.backends.rosbridge_greeting import greet
 from jacaros.ros.backends.rosbridge_link import Link, checked_url
 from jacaros.ros.backends.rosbridge_members import Members
 from jacaros.ros.backends.rosbridge_messages import Translator
-from jacaros.ros.backends.rosbridge_parameter_services import ParameterNews
+from jacaros.ros.backends.rosbridge_parameter_services import read
 from jacaros.ros.backends.rosbridge_parameters import BridgeParameters
 from jacaros.ros.backends.rosbridge_requests import Done, Requests
 from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
@@ -45,6 +45,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.parameter_news import ParameterNews
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.serving import settle
 from jacaros.ros.waiting import Waiting, within
@@ -83,7 +84,7 @@ class RosbridgeBackend(Node):
         self.translator = Translator(self._schema)
         self.members = Members(self)
         self.goals: dict[str, Any] = {}
-        self._news = ParameterNews(self)
+        self._news = ParameterNews(self.subscription, read)
         self.attached = False
         self.packs = False
         # Weakly: the members keep them, until they are closed.

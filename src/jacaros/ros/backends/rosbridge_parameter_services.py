@@ -3,19 +3,15 @@
 rosapi could be asked too, but it guesses the types of values from their text, and for the names of one node it asks all.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from jacaros.ros.backend import Sample
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_services import BridgeClient
-from jacaros.ros.backends.rosbridge_topics import BridgeSubscription
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
 from jacaros.ros.parameter import ParameterValue
 from jacaros.ros.parameter_store import checked_value
-from jacaros.ros.qos import QoS
 
-EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/ParameterEvent", QoS(depth=1000)
 _FIELDS = {
     1: "bool_value",
     2: "integer_value",
@@ -31,48 +27,6 @@ _FIELDS = {
 _NUMBERS: Mapping[type, int] = {bool: 1, int: 2, float: 3, str: 4, bytes: 5}
 _LIST_NUMBERS: Mapping[type, int] = {bool: 6, int: 7, float: 8, str: 9}
 _TEXTS, _NOT_SET = 9, 0
-
-Listener = Callable[[Mapping[str, ParameterValue]], None]
-
-
-class ParameterNews:
-    """Tells of changed parameters of all nodes, from the one topic; joined at the first use.
-
-    Args:
-        node: subscribes.
-    """
-
-    def __init__(self, node: BridgeNode) -> None:
-        self._node = node
-        self._subscription: BridgeSubscription | None = None
-        self._listeners: dict[str, list[Listener]] = {}
-
-    def listen(self, node_name: str, callback: Listener) -> Callable[[], None]:
-        """Have *callback* called with what changes at a node; the result ends that."""
-        if self._subscription is None:
-            self._subscription = BridgeSubscription(
-                self._node, EVENTS, EVENT_TYPE, self._take, EVENT_QUALITY, None
-            )
-            self._node.members.add(self._subscription)
-        listeners = self._listeners.setdefault(node_name, [])
-        listeners.append(callback)
-
-        def end() -> None:
-            if callback in listeners:
-                listeners.remove(callback)
-
-        return end
-
-    def _take(self, sample: Sample) -> None:
-        event = sample.message
-        listeners = self._listeners.get(event.node)
-        if not listeners:
-            return
-        told = {each.name: read(each.value) for each in (*event.new_parameters, *event.changed_parameters)}
-        known = {name: value for name, value in told.items() if value is not None}
-        if known:
-            for callback in list(listeners):
-                callback(known)
 
 
 class NodeParameters:

@@ -5,9 +5,10 @@ from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
 from jacaros.ros.backends.rosbridge_node import BridgeNode
-from jacaros.ros.backends.rosbridge_parameter_services import NodeParameters, ParameterNews
+from jacaros.ros.backends.rosbridge_parameter_services import NodeParameters
 from jacaros.ros.errors import CallFailed, CapabilityMissing, ParameterRefused, ParameterUnknown
 from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter_news import ParameterNews
 
 _ABSENT = "jacaros: no such parameter"
 """The default that is asked for: rosapi has no other way to say that there is no parameter."""

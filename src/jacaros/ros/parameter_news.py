@@ -1,0 +1,58 @@
+"""What ROS 2's nodes tell of their parameters on ``/parameter_events`` (``rcl_interfaces/msg/ParameterEvent``)."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from jacaros.ros.backend import Sample
+from jacaros.ros.parameter import ParameterValue
+from jacaros.ros.qos import QoS
+
+EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/ParameterEvent", QoS(depth=1000)
+
+Listener = Callable[[Mapping[str, ParameterValue]], None]
+
+
+class ParameterNews:
+    """Tells of changed parameters of all nodes, from the one topic; joined at the first use.
+
+    Args:
+        subscribe: that of the backend; gets the topic, its type, what takes its messages, and the quality of service.
+        read: the value in an ``rcl_interfaces/msg/ParameterValue``, None for a parameter without one.
+    """
+
+    def __init__(
+        self,
+        subscribe: Callable[[str, str, Callable[[Sample], None], QoS], object],
+        read: Callable[[Any], ParameterValue | None],
+    ) -> None:
+        self._subscribe = subscribe
+        self._read = read
+        self._joined = False
+        self._listeners: dict[str, list[Listener]] = {}
+
+    def listen(self, node_name: str, callback: Listener) -> Callable[[], None]:
+        """Have *callback* called with what changes at a node; the result ends that."""
+        if not self._joined:
+            self._joined = True
+            self._subscribe(EVENTS, EVENT_TYPE, self._take, EVENT_QUALITY)
+        listeners = self._listeners.setdefault(node_name, [])
+        listeners.append(callback)
+
+        def end() -> None:
+            if callback in listeners:
+                listeners.remove(callback)
+
+        return end
+
+    def _take(self, sample: Sample) -> None:
+        event = sample.message
+        listeners = self._listeners.get(event.node)
+        if not listeners:
+            return
+        told = {
+            each.name: self._read(each.value) for each in (*event.new_parameters, *event.changed_parameters)
+        }
+        known = {name: value for name, value in told.items() if value is not None}
+        if known:
+            for callback in list(listeners):
+                callback(known)
