@@ -12,7 +12,7 @@ from jacaros.mas.agent_host import AgentHost
 Tell = Callable[[dict[str, object]], None]
 
 _OPEN = {"executing": "pursued", "resumed": "resumed", "suspended": "suspended"}
-_OVER = ("achieved", "failed", "dropped")
+_OVER = ("achieved", "failed", "dropped", "recovered")
 _AT_WORK = ("pursued", "resumed")
 
 
@@ -31,7 +31,7 @@ class GoalNews:
 
     Args:
         tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
-            ``dropped``), ``id``, counted from 1, and of a failure ``why``.
+            ``dropped``, ``recovered``: a plan for its failure has ended), ``id``, counted from 1, and of a failure ``why``.
     """
 
     def __init__(self, tell: Tell) -> None:
@@ -46,10 +46,14 @@ class GoalNews:
 
     def __call__(self, agent: str, state: str, goal: str, number: int, why: str = "") -> None:
         """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""
+        if state == "finished":  # goals that were achieved, or failed for good, are gone already
+            state = "recovered"
         if not goal.startswith("!") or (state not in _OPEN and state not in _OVER):
             return
         key, shown = (agent, number), _OPEN.get(state, state)
         known = self._goals.get(key)
+        if known is None and state == "recovered":
+            return
         if known is None or known.text != goal:
             known = self._goals[key] = _Goal(next(self._numbers), goal, "")
         is_news = not (known.state in _AT_WORK and shown in _AT_WORK)

@@ -45,6 +45,22 @@ def test_what_is_no_goal_of_interest_is_passed_over(told):
     assert told("waiting") == []
 
 
+def test_a_goal_whose_failure_was_dealt_with_is_over(told):
+    told("executing", "failed", "executing", "executing", "finished")
+    assert [line.split()[2] for line in told()] == ["pursued", "failed", "pursued", "recovered"]
+
+
+def test_the_end_of_a_goal_is_told_once(told):
+    told("executing", "achieved", "finished")
+    told("executing", "failed", "finished")
+    told("executing", "dropped", "finished")
+    assert [line.split()[2] for line in told()] == [
+        *("pursued", "achieved"),
+        *("pursued", "failed"),
+        *("pursued", "dropped"),
+    ]
+
+
 def test_why_a_goal_failed_is_told():
     told = []
     news = GoalNews(told.append)
