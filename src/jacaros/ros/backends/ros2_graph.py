@@ -74,7 +74,7 @@ def _mismatch(node: Ros2Node, what: str, name: str, service: str, type_name: str
     if not told or ours in told:
         return None
     theirs = told[0].removesuffix(ending)
-    text = f"{what} {name} is of type {theirs}, not {type_name}"
+    text = f"{what} {name} is of type {node.schema.usual_type(theirs)}, not {type_name}"
     if node.schema.usual_type(ours.removesuffix(ending)) == theirs != ours.removesuffix(ending):
         package = theirs.split("/")[0].replace("_", "-")
         text = (
