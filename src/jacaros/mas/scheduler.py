@@ -47,6 +47,7 @@ class Scheduler:
         self._queue: deque[Runnable] = deque()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._due = False
+        self._taking_turns = False
         self._stopped = False
 
     @property
@@ -64,8 +65,8 @@ class Scheduler:
             self._call_soon()
 
     def hurry(self) -> None:
-        """Let the ready agents have their turns now and not in the next round of the loop; from a callback of the loop."""
-        if self._queue:
+        """Let the ready agents have their turns now and not in the next round of the loop, unless one has its turn."""
+        if self._queue and not self._taking_turns:
             self._take_turns()
 
     def stop(self) -> None:
@@ -90,6 +91,7 @@ class Scheduler:
     def _take_turns(self) -> None:
         queue, quantum = self._queue, self.QUANTUM
         left = self.CYCLES_PER_CALL
+        self._taking_turns = True
         try:
             while queue and left > 0:
                 agent = queue.popleft()
@@ -103,6 +105,8 @@ class Scheduler:
                     left -= 1
         except Exception as error:
             self._report(error)
+        finally:
+            self._taking_turns = False
         self._clock.busy(self.CYCLES_PER_CALL - left)
 
     def _report(self, error: Exception) -> None:

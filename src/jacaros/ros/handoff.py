@@ -21,20 +21,10 @@ class Handoff(Generic[T]):
         loop: where *deliver* is called.
         depth: how many items may wait.
         deliver: takes one item, on the loop.
-        courtesy: seconds that `put` waits at most until the loop has dealt with an item that woke it up.  A thread that
-            goes on computing would otherwise keep the interpreter to itself just when the agents are to react.
     """
 
-    def __init__(
-        self,
-        loop: asyncio.AbstractEventLoop,
-        depth: int,
-        deliver: Callable[[T], None],
-        courtesy: float = 0.0,
-    ) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, depth: int, deliver: Callable[[T], None]) -> None:
         self._loop = loop
-        self._courtesy = courtesy
-        self._dealt_with: threading.Lock | None = None
         self._deliver = deliver
         self._waiting: deque[T] = deque(maxlen=depth)
         self._lock = threading.Lock()
@@ -43,7 +33,7 @@ class Handoff(Generic[T]):
         self.dropped = 0
 
     def put(self, item: T) -> None:
-        """Queue *item*; callable from any other thread, and blocks for the seconds of courtesy at most."""
+        """Queue *item*; callable from any other thread."""
         with self._lock:
             if self._closed:
                 return
@@ -53,13 +43,8 @@ class Handoff(Generic[T]):
             if self._woken:
                 return
             self._woken = True
-            dealt_with = self._dealt_with = threading.Lock() if self._courtesy > 0.0 else None
-        if dealt_with is not None:
-            dealt_with.acquire()
         if not post(self._loop, self._deliver_next):
             self.close()
-        elif dealt_with is not None:
-            dealt_with.acquire(timeout=self._courtesy)
 
     def put_here(self, item: T) -> None:
         """Deliver *item*, which is on the loop already: now if nothing waits, else in its turn."""
@@ -99,15 +84,9 @@ class Handoff(Generic[T]):
             item = self._waiting.popleft()
             self._woken = bool(self._waiting)
             again = self._woken
-            dealt_with, self._dealt_with = self._dealt_with, None
         if again:
             self._loop.call_soon(self._deliver_next)
-        try:
-            self._deliver(item)
-        finally:
-            if dealt_with is not None:
-                # After the agents, whose turn was asked for while the item was delivered.
-                self._loop.call_soon(dealt_with.release)
+        self._deliver(item)
 
 
 def post(loop: asyncio.AbstractEventLoop, callback: Callable[..., None], *arguments: Any) -> bool:

@@ -191,3 +191,24 @@ def test_in_a_hurry_the_ready_agents_have_their_turns_at_once() -> None:
         assert idle == [4], "told once, in the next round"
 
     run(main, clock)
+
+
+def test_nobody_has_a_turn_within_the_turn_of_another() -> None:
+    log: list[str] = []
+    clock = VirtualClock()
+
+    class Hurrying(Worker):
+        def run(self, fuel: int) -> bool:
+            log.append("begin")
+            scheduler.make_ready(Worker("other", 1, log))
+            scheduler.hurry()
+            log.append("end")
+            return False
+
+    async def main() -> None:
+        scheduler.make_ready(Hurrying("a", 1, log))
+        await clock.sleep(1)
+        assert log == ["begin", "end", "other"]
+
+    scheduler = Scheduler(clock)
+    run(main, clock)

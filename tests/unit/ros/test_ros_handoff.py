@@ -172,46 +172,6 @@ def test_a_thread_asks_the_loop_and_waits() -> None:
     run(main, WallClock())
 
 
-def test_with_courtesy_the_other_thread_goes_on_when_the_item_is_dealt_with() -> None:
-    async def main() -> None:
-        loop = asyncio.get_running_loop()
-        order: list[str] = []
-
-        def deliver(item: int) -> None:
-            order.append(f"delivered {item}")
-            loop.call_soon(order.append, f"agents reacted to {item}")
-
-        handoff = Handoff[int](loop, 10, deliver, courtesy=30.0)
-
-        def receive() -> None:
-            for item in (1, 2):
-                handoff.put(item)
-                order.append(f"put {item} is over")
-
-        await in_thread(loop, receive, "client library")
-        assert order == [
-            line
-            for item in (1, 2)
-            for line in (f"delivered {item}", f"agents reacted to {item}", f"put {item} is over")
-        ]
-
-    run(main, WallClock())
-
-
-def test_courtesy_has_an_end_and_a_failing_receiver_does_not_prolong_it() -> None:
-    async def main() -> None:
-        loop = asyncio.get_running_loop()
-        busy = Handoff[int](loop, 10, lambda item: None, courtesy=0.01)
-        in_other_thread(lambda: busy.put(1))  # the loop waits for the thread here, so nothing is dealt with
-        reported: list[object] = []
-        loop.set_exception_handler(lambda _, context: reported.append(context["exception"]))
-        failing = Handoff[int](loop, 10, lambda item: reported[-1 // item], courtesy=30.0)
-        await in_thread(loop, lambda: failing.put(0), "client library")
-        assert isinstance(reported[0], ZeroDivisionError)
-
-    run(main, WallClock())
-
-
 def test_what_is_on_the_loop_already_is_delivered_at_once_but_one_item_a_turn() -> None:
     async def main() -> None:
         got: list[int] = []

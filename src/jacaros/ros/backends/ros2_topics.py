@@ -184,6 +184,7 @@ class Ros2Subscription:
         self._missing = frozenset()
         self._deadline_missed = False
         self._callback(self._node.sample(message, self.topic))
+        self._node.delivered()
 
     def _tell(self, trouble: TopicTrouble, text: str) -> None:
         if self._closed:

@@ -116,6 +116,7 @@ class BridgeNode(Protocol):
     requests: Requests
     translator: Translator
     goals: dict[str, Any]
+    delivered: Callable[[], None]
 
     @property
     def members(self) -> Membership:

@@ -252,6 +252,7 @@ class BridgeSubscription:
             self.trouble(f"topic {self.topic}: a message is no {self._type_name}: {problem}")
         else:
             self._callback(self._node.sample(message, self.topic))
+            self._node.delivered()
 
 
 def _quality(qos: QoS) -> dict[str, Any]:
