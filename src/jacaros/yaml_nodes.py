@@ -78,7 +78,7 @@ class Node:
         if self.value is None and not required:
             return {}
         if self.value is None:
-            self.wrong(f"nothing stands below {self.what}", f"indent its keys below it: {', '.join(known)}")
+            self.wrong(f"{self.what} is empty", f"its keys stand below it, indented: {', '.join(known)}")
             return {}
         if not isinstance(self.value, CommentedMap):
             self.wrong(f"{self.what} must be a mapping of keys to values", f"keys: {', '.join(known)}")
