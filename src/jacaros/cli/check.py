@@ -36,7 +36,16 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
     multiple=True,
     help="Leave out warnings of this kind; may be given more often.",
 )
-def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str, ...]) -> int:
+@click.option(
+    "--mapping",
+    "mappings",
+    metavar="FILE",
+    multiple=True,
+    help="A mapping file that programs (.asl) are run with: do they ask for what it offers? May be given more often.",
+)
+def command(
+    files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str, ...], mappings: tuple[str, ...]
+) -> int:
     """Tell what is wrong in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
     with the programs of its agents, a mapping file (.yaml), or a folder with all of them.
 
@@ -47,7 +56,7 @@ def command(files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str
     unknown = [code for code in ignore if code not in KINDS]
     if unknown:
         raise UsageError(f"there is no code {unknown[0]}")
-    findings = check_files([existing(file, _KINDS) for file in files])
+    findings = check_files([existing(file, _KINDS) for file in files], mappings)
     if not findings.files and not findings.diagnostics:
         raise no_programs(files)
     findings.diagnostics = [

@@ -16,6 +16,7 @@ from jacaros.asl.source import SourceFile
 from jacaros.asl.suppression import Suppressions, wanted
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
@@ -39,10 +40,14 @@ class Findings:
     files: set[Path] = field(default_factory=set)
 
 
-def check_files(paths: Sequence[Path]) -> Findings:
+def check_files(paths: Sequence[Path], mappings: Sequence[str] = ()) -> Findings:
     """Check programs, projects with the programs of their agents, and whole folders.
 
     In a folder a program is checked by itself only if no project there names it and no other program includes it.
+
+    Args:
+        paths: files and folders.
+        mappings: mapping files that programs given by themselves are run with; what they do is compared with these.
     """
     findings = Findings()
     for path in paths:
@@ -54,6 +59,8 @@ def check_files(paths: Sequence[Path]) -> Findings:
             _check_python_agent(path, findings)
         elif path.suffix in MAPPINGS:
             _check_mapping(path, findings)
+        elif mappings:
+            _check_program_with_mappings(path, mappings, findings)
         else:
             _check_program(path, (path.parent,), findings)
     findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
@@ -183,6 +190,28 @@ def _check_mapping(path: Path, findings: Findings) -> None:
 
     findings.files.add(path.resolve())
     findings.diagnostics += check_mapping_file(path)
+
+
+def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: Findings) -> None:
+    """Check a lone program, and whether the artifacts of mapping files offer what it asks of them."""
+    from jacaros.artifacts.mapping.file import find_mapping  # here: see `_check_mapping`
+    from jacaros.mas.mappings import with_mappings
+
+    program = _check_program(path, (path.parent,), findings)
+    for name in mappings:
+        file = find_mapping(name, (Path(), path.parent))
+        if file is not None:
+            _check_mapping(file, findings)
+    lone = load_deployment(path)
+    try:
+        deployment = with_mappings(lone, mappings)
+    except ProjectError as error:
+        # The mistakes in a file have been told, with those that only the check finds; what is not there has not.
+        findings.diagnostics += [_of_project(each) for each in error.diagnostics if not each.code]
+        return
+    if program is not None:
+        agents = [(deployment.agents[0], program)]
+        findings.diagnostics += _of_artifacts(deployment, agents, (path.parent,))
 
 
 def _mapping_files(

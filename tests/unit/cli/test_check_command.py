@@ -241,3 +241,31 @@ def test_every_code_has_a_level_and_a_meaning() -> None:
         assert code == code.lower()
         assert kind.level in ("error", "warning", "note")
         assert kind.meaning
+
+
+def test_a_program_is_compared_with_the_mappings_that_it_is_run_with(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = "!go.\n+!go <- navigate_too(1, 2, 0);\n  navigate_to(1, 2);\n  navigate_to(1, 2, 0).\n"
+    (folder / "go.asl").write_text(program, encoding="utf-8")
+    assert found(capsys, "go.asl") == []
+    expected = [("go.asl", line, "unknown-operation") for line in (2, 3)]
+    assert found(capsys, "go.asl", "--mapping", "nav2.yaml") == expected
+    (folder / "own.yaml").write_text(
+        "operations:\n  navigate_too:\n    parameters: [x, y, yaw]\n    publish: goal\n"
+        "    type: geometry_msgs/msg/Pose2D\n    fields: {x: $x, y: $y, theta: $yaw}\n",
+        encoding="utf-8",
+    )
+    both = ("--mapping", "nav2.yaml", "--mapping", "own.yaml")
+    assert found(capsys, "go.asl", *both) == expected[1:]
+
+
+def test_mistakes_in_such_a_mapping_are_told_once_and_stand_before_those_of_the_program(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "wrong.yaml").write_text("propertys: {}\n", encoding="utf-8")
+    assert found(capsys, "good.asl", "--mapping", "wrong.yaml") == [("wrong.yaml", 1, "wrong-mapping")]
+    code, output, _ = outcome(capsys, "good.asl", "--mapping", "nav3.yaml")
+    assert code == 1
+    assert "there is no mapping file nav3.yaml" in output
+    assert "did you mean nav2.yaml?" in output
