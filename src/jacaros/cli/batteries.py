@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.sim.description import BatterySettings, WorldDescription
 
 LOW = 20
-"""Percent at which it is told for the first time."""
+"""Percent at which it is told, each time that a battery gets so low."""
 
 
 def with_full_batteries(world: WorldDescription) -> WorldDescription:
@@ -17,7 +17,8 @@ def with_full_batteries(world: WorldDescription) -> WorldDescription:
 
 
 def told(tell: Callable[[str], None]) -> Callable[[dict[str, Any]], None]:
-    """Give a listener of `GroundTruth.listen` that tells *tell* of batteries that are low, and empty."""
+    """Give a listener of `GroundTruth.listen` that tells *tell* of batteries that have become low, or are empty."""
+    low: set[str] = set()
 
     def listen(record: dict[str, Any]) -> None:
         if record.get("event") == "battery_empty":
@@ -25,7 +26,12 @@ def told(tell: Callable[[str], None]) -> Callable[[dict[str, Any]], None]:
                 f"the battery of {record['robot']} is empty: it does not drive any more. Start the world again; with "
                 "--full-battery it stays full"
             )
-        elif record.get("event") == "battery" and record["data"]["level"] == LOW:
-            tell(f"the battery of {record['robot']} is at {LOW} %")
+        elif record.get("event") == "battery":
+            robot, level = record["robot"], record["data"]["level"]
+            if level > LOW:
+                low.discard(robot)
+            elif robot not in low:
+                low.add(robot)
+                tell(f"the battery of {robot} is at {level} %")
 
     return listen

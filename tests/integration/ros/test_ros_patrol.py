@@ -73,7 +73,8 @@ def test_the_patrol_goes_on_after_two_charges(
     print(*verdict.lines(), sep="\n")
     assert verdict.complaints == []
     assert agents.complaints == []
-    assert world.errors == []
+    assert len(world.errors) == 2, "the battery became low twice"
+    assert all(line.startswith("the battery of turtlebot is at ") for line in world.errors)
 
 
 @pytest.mark.only("ros1")

@@ -1,0 +1,59 @@
+"""A graph with nobody else in it is told."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.mas.empty_graph import EmptyGraph
+from jacaros.ros.errors import CallFailed
+from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+
+
+def told(contents: GraphContents | Exception, close: bool = False) -> list[str]:
+    """What is logged of a graph with these contents within a minute."""
+    clock = VirtualClock()
+    lines: list[str] = []
+
+    async def look(timeout: float | None = None) -> GraphContents:
+        if isinstance(contents, Exception):
+            raise contents
+        return contents
+
+    async def main() -> None:
+        backend: Any = SimpleNamespace(node_name="/agents", contents=look)
+        graph = EmptyGraph(backend, clock, "the ROS 2 graph of domain 7", lines.append)
+        if close:
+            graph.close()
+        await clock.sleep(60)
+        graph.close()
+
+    run(main, clock)
+    return lines
+
+
+OWN = TopicInfo("/cmd_vel", ("geometry_msgs/msg/Twist",), (Endpoint("/agents"),))
+
+
+def test_nobody_else_is_told_once() -> None:
+    [line] = told(GraphContents({"/cmd_vel": OWN}, {}, {}, ("/agents",)))
+    assert line.startswith("nobody else is in the ROS 2 graph of domain 7. Is the robot running?")
+
+
+@pytest.mark.parametrize(
+    "contents",
+    [
+        GraphContents({}, {}, {}, ("/agents", "/robot")),
+        GraphContents({"/odom": TopicInfo("/odom", (), (Endpoint(""),))}, {}, {}, ("/agents",)),
+        GraphContents({"/cmd_vel": TopicInfo("/cmd_vel", (), (), (Endpoint("/base"),))}, {}, {}, ()),
+        CallFailed("no answer"),
+    ],
+    ids=["a node", "a publisher whose node is not known yet", "a subscription", "nothing is known"],
+)
+def test_somebody_or_no_knowledge_is_not_told(contents: GraphContents | Exception) -> None:
+    assert told(contents) == []
+
+
+def test_nothing_is_told_after_the_end() -> None:
+    assert told(GraphContents({}, {}, {}, ("/agents",)), close=True) == []
