@@ -139,3 +139,22 @@ def test_the_picture_of_two_robots_names_them(tmp_path: Path) -> None:
     assert ">robot_0<" in text
     assert ">robot_1<" in text
     assert "http" not in text.replace("http://www.w3.org/2000/svg", "")
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+def test_of_goals_that_a_plan_pursues_again_and_again_the_newest_are_shown(tmp_path: Path) -> None:
+    recorder = Recorder()
+    for number, goal in enumerate(["!start", *(f'!round("a,b", {n})' for n in range(9)), "!round(9)"]):
+        recorder.event(number * 0.1, "goal", {"agent": "a", "goal": goal, "state": "pursued", "id": number})
+    recorder.event(0.95, "goal", {"agent": "a", "goal": '!round("a,b", 8)', "state": "suspended", "id": 9})
+    recorder.close()
+    page = tmp_path / "replay.html"
+    write_replay(recorder.recording, page)
+    shown = dom(page, "t=2")
+    found = re.findall(
+        r'<li class="(?:pursued|suspended)"><i></i><span>(.*?)</span><span class="state">', shown
+    )
+    goals = [re.sub("<[^>]*>", "", each).replace("&quot;", '"') for each in found]
+    assert goals == ["!start", '!round("a,b", 7)  and 7 before it', '!round("a,b", 8)', "!round(9)"]
