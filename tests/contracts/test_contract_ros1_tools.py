@@ -64,7 +64,8 @@ def test_a_genuine_server_carries_out_our_goals(graph: Any, pair: Pair) -> None:
         left.send_goal("native", "/native/count", {"target": 4, "period": 0.05}, timeout=20)
         end = left.outcome("native", timeout=20)
         assert end == {"status": "succeeded", "result": {"last": 4, "message": ""}, "text": ""}
-        assert left.feedback("native")[:3] == [1, 2, 3]
+        # A server that has just been found may not have us among those who hear its feedback yet.
+        assert left.feedback("native")[:3] in ([1, 2, 3], [2, 3, 4])
         left.send_goal("unlucky", "/native/count", {"target": 13}, timeout=20)
         end = left.outcome("unlucky", timeout=20)
         assert (end["status"], end["result"]["last"], end["text"]) == ("aborted", 13, "an unlucky number")

@@ -152,6 +152,17 @@ def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: 
         left.get_parameter("colour", node, timeout=25)
 
 
+def test_parameters_are_read_of_a_node_that_was_killed_and_started_anew(graph: Any, pair: Pair) -> None:
+    """The one that was killed is still in the graph, and alone there for a moment: it is asked, and never answers."""
+    left, _ = pair
+    node = "/native_serve"
+    with running(graph, "serve"):
+        assert "speed" in left.parameter_names(node, timeout=25)
+    with running(graph, "serve"):
+        assert "speed" in left.parameter_names(node, timeout=40)
+        assert left.get_parameter("speed", node, timeout=25) == 0.5
+
+
 def test_a_plain_node_uses_our_parameters(graph: Any, pair: Pair) -> None:
     cruiser = graph.peer("cruiser")
     cruiser.declare("lanes", 4, only_even=True, minimum=0, maximum=10)

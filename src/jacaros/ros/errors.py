@@ -51,6 +51,10 @@ class CallFailed(ServiceError):
     """The server reported a failure, or the connection to it broke during the call."""
 
 
+class ServerGone(CallFailed):
+    """The server of a service went away during the call; whether it was done is not known."""
+
+
 class ServerUnavailable(ServiceUnavailable):
     """Nobody offered the action until the time-out."""
 

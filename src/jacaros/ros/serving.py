@@ -9,7 +9,7 @@ from typing import Any
 from jacaros.clock import Clock, Timer
 from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.backend import Handler
-from jacaros.ros.errors import CallFailed, CallTimedOut, MessageMismatch, ServiceUnavailable
+from jacaros.ros.errors import CallFailed, CallTimedOut, MessageMismatch, ServerGone, ServiceUnavailable
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import response_type
 from jacaros.ros.waiting import Waiting
@@ -161,9 +161,9 @@ class ServerWatch:
             self._look_later()
 
 
-def server_gone(name: str) -> CallFailed:
+def server_gone(name: str) -> ServerGone:
     """What a call fails with whose server has gone."""
-    return CallFailed(
+    return ServerGone(
         f"the server of service {name} went away during the call; whether it was done is not known"
     )
 

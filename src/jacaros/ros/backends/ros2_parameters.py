@@ -24,7 +24,7 @@ from rclpy.parameter import Parameter, parameter_value_to_python  # type: ignore
 from jacaros.ros.backends.ros2_node import Ros2Node
 from jacaros.ros.backends.ros2_services import Ros2Client
 from jacaros.ros.backends.ros2_values import parameter, plain_value
-from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown
+from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServerGone
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_news import ParameterNews
@@ -163,12 +163,12 @@ class OtherParameters:
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
-        answer = await self._call("ListParameters", {"depth": 0}, timeout)
+        answer = await self._read("ListParameters", {"depth": 0}, timeout)
         return sorted(answer.result.names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
         """Give a parameter's value."""
-        answer = await self._call("GetParameters", {"names": [name]}, timeout)
+        answer = await self._read("GetParameters", {"names": [name]}, timeout)
         value = plain_value(parameter_value_to_python(answer.values[0])) if len(answer.values) == 1 else None
         if value is None:
             raise ParameterUnknown(f"node {self.node} has no parameter {name}, or it has no value")
@@ -203,8 +203,20 @@ class OtherParameters:
 
     async def _type(self, name: str, timeout: float | None) -> int:
         """The number of a parameter's type; 0 for one that is not there."""
-        answer = await self._call("GetParameterTypes", {"names": [name]}, timeout)
+        answer = await self._read("GetParameterTypes", {"names": [name]}, timeout)
         return int(answer.types[0]) if len(answer.types) == 1 else ParameterType.PARAMETER_NOT_SET
+
+    async def _read(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
+        """Ask, and ask once more where the node went away: one that was started anew may not have been seen yet."""
+        clock = self._node.clock
+        deadline = None if timeout is None else clock.elapsed + timeout
+        while True:
+            try:
+                rest = None if deadline is None else deadline - clock.elapsed
+                return await self._call(service, request, rest)
+            except ServerGone:
+                if deadline is not None and clock.elapsed >= deadline:
+                    raise
 
     async def _call(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
         client = self._clients.get(service)
