@@ -207,7 +207,7 @@ class OtherParameters:
         return int(answer.types[0]) if len(answer.types) == 1 else ParameterType.PARAMETER_NOT_SET
 
     async def _read(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
-        """Ask, and ask once more where the node went away: one that was started anew may not have been seen yet."""
+        """Ask, and ask again where the node went away and is there: it was started anew, and had not been seen yet."""
         clock = self._node.clock
         deadline = None if timeout is None else clock.elapsed + timeout
         while True:
@@ -215,7 +215,8 @@ class OtherParameters:
                 rest = None if deadline is None else deadline - clock.elapsed
                 return await self._call(service, request, rest)
             except ServerGone:
-                if deadline is not None and clock.elapsed >= deadline:
+                late = deadline is not None and clock.elapsed >= deadline
+                if late or not self._clients[service].ready:
                     raise
 
     async def _call(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
