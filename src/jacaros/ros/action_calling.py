@@ -20,7 +20,7 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import goal_type
-from jacaros.ros.serving import checked_message, settle
+from jacaros.ros.serving import RETRY, checked_message, settle
 from jacaros.ros.waiting import Waiting, within
 
 
@@ -179,26 +179,16 @@ class GoalSender:
         """Send a goal and wait until the server has accepted it."""
         message = checked_message(self._factory, self._goal_type, goal)
         deadline = None if timeout is None else self.clock.elapsed + timeout
-        await self._server(timeout)
-        pending = PendingGoal(self, self.wire.new_id(), on_feedback)
-        self._goals[pending.goal_id] = pending
-        try:
-            self.wire.send_goal(pending.goal_id, message)
-            await within(
-                self.clock, pending.acceptance, None if deadline is None else deadline - self.clock.elapsed
-            )
-        except TimeoutError:
-            self._abandon(pending)
-            raise CallTimedOut(
-                f"the server of action {self.name} did not say within {timeout:g} s whether it accepts the goal"
-            ) from None
-        except asyncio.CancelledError:
-            self._abandon(pending)
-            raise
-        except ServiceError:
-            self._forget(pending.goal_id)
-            raise
-        return pending
+        while True:
+            await self._server(deadline, timeout)
+            try:
+                return await self._attempt(message, on_feedback, deadline, timeout)
+            except (
+                ServerUnavailable
+            ):  # it was seen a moment ago, but has gone, or is not known everywhere yet
+                if deadline is not None and self.clock.elapsed + RETRY > deadline:
+                    raise self._nobody(timeout) from None
+            await self.clock.sleep(RETRY)
 
     def close(self) -> None:
         """Give the client up: its goals are cancelled, waiting callers fail."""
@@ -287,14 +277,48 @@ class GoalSender:
 
     # Within:
 
-    async def _server(self, timeout: float | None) -> None:
+    async def _attempt(
+        self,
+        message: Any,
+        on_feedback: Callable[[Any], None] | None,
+        deadline: float | None,
+        timeout: float | None,
+    ) -> PendingGoal:
+        """Send a goal once; raises `ServerUnavailable` when it turns out that nobody is there."""
+        pending = PendingGoal(self, self.wire.new_id(), on_feedback)
+        self._goals[pending.goal_id] = pending
+        try:
+            self.wire.send_goal(pending.goal_id, message)
+            await within(
+                self.clock, pending.acceptance, None if deadline is None else deadline - self.clock.elapsed
+            )
+        except TimeoutError:
+            self._abandon(pending)
+            raise CallTimedOut(
+                f"the server of action {self.name} did not say within {timeout:g} s whether it accepts the goal"
+            ) from None
+        except asyncio.CancelledError:
+            self._abandon(pending)
+            raise
+        except ServiceError:
+            self._forget(pending.goal_id)
+            raise
+        return pending
+
+    def _nobody(self, timeout: float | None) -> ServerUnavailable:
+        return ServerUnavailable(f"nobody offered {self._described} within {timeout:g} s")
+
+    @property
+    def _described(self) -> str:
+        return f"action {self.name} ({self.type_name})"
+
+    async def _server(self, deadline: float | None, timeout: float | None) -> None:
+        """Wait for the server."""
         if self._closed:
             raise CallFailed(f"the client of action {self.name} was closed")
         if self.wire.offered:
             return
-        what = f"action {self.name} ({self.type_name})"
-        deadline = None if timeout is None else self.clock.elapsed + timeout
-        with Waiting(self.clock, self._log, what, "Is the node that offers it running?"):
+        with Waiting(self.clock, self._log, self._described, "Is the node that offers it running?"):
             while not self.wire.offered:
                 arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
                 self._arrivals.append(arrival)
@@ -303,7 +327,7 @@ class GoalSender:
                         self.clock, arrival, None if deadline is None else deadline - self.clock.elapsed
                     )
                 except TimeoutError:
-                    raise ServerUnavailable(f"nobody offered {what} within {timeout:g} s") from None
+                    raise self._nobody(timeout) from None
                 finally:
                     self._arrivals.remove(arrival)
 

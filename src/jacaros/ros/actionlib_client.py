@@ -30,6 +30,10 @@ LOOKING = 0.02
 """Seconds between two looks for a server that is awaited."""
 QUIET = 4
 """So many `STATUS_PERIOD` without a word of the server, and it is called away; `SERVER_LOST_AFTER` begins then."""
+SENT_AGAIN_AFTER = 1.0
+"""Seconds in which a server that runs mentions a goal that it was sent; one that does not has not got it.  Between the two
+topics being connected and the first message, a goal can get lost: rospy's publishers, and a bridge's, know a subscriber
+before it hears them.  A server that has got it after all ignores the second, for it has the same id."""
 REFUSED_AFTER = 1.0
 """Seconds in which a request for cancelling must show in the goal's state: actionlib's servers do not say no."""
 
@@ -41,13 +45,19 @@ class _Goal:
     """What is known of a goal under way.
 
     Attributes:
+        message: what was sent.
+        sent: when it was, for the last time.
+        heard_of: the server has mentioned it.
         accepted: by the server.
-        missing: messages about the server's goals, one after the other, in which an accepted goal was not mentioned.
+        missing: messages about the server's goals, one after the other, in which it was not mentioned.
         ended: such messages that called it ended, while its result has not come.
         cancelling: when cancelling was asked for, until it is answered.
         unmoved: such messages since then that called it active.
     """
 
+    message: Any
+    sent: float
+    heard_of: bool = False
     accepted: bool = False
     missing: int = 0
     ended: int = 0
@@ -95,9 +105,9 @@ class ActionlibWire:
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
         """Send a goal message."""
-        self._goals[goal_id] = _Goal()
         now = self._node.clock.now()
         message = self._goal.message(header={"stamp": now}, goal_id={"stamp": now, "id": goal_id}, goal=goal)
+        self._goals[goal_id] = _Goal(message, self._node.clock.elapsed)
         self._goal.publish(message)
         self._look()
 
@@ -196,11 +206,22 @@ class ActionlibWire:
             status = told.get(goal_id)
             if status is not None:
                 goal.missing = 0
+                goal.heard_of = True
                 self._advance(goal_id, goal, status)
-            elif goal.accepted:
-                goal.missing += 1
-                if goal.missing >= ENOUGH_NEWS:
-                    self._lose(goal_id, "has been started again and does not know")
+                continue
+            goal.missing += 1
+            if goal.missing < ENOUGH_NEWS:
+                continue
+            if goal.accepted:
+                self._lose(goal_id, "has been started again and does not know")
+            elif not goal.heard_of:
+                self._send_again(goal_id, goal)
+
+    def _send_again(self, goal_id: str, goal: _Goal) -> None:
+        now = self._node.clock.elapsed
+        if now - goal.sent >= SENT_AGAIN_AFTER and self._sender.wants(goal_id):
+            goal.sent, goal.missing = now, 0
+            self._goal.publish(goal.message)
 
     def _advance(self, goal_id: str, goal: _Goal, status: Any) -> None:
         state = State(status.status)

@@ -62,11 +62,14 @@ class PresenceWatch:
             False,
         )
         self._known = False
+        self._interruptions = node.requests.interruptions
         self._timer: Timer | None = None
 
     @property
     def offered(self) -> bool:
         """Whether a server is there, as far as is known."""
+        if self._interruptions != self._node.requests.interruptions:  # it may have gone with the connection
+            self._interruptions, self._known = self._node.requests.interruptions, False
         if self._timer is None:
             self._timer = self._node.clock.call_later(0.0, self._look)
         return self._known and self._node.connected

@@ -38,6 +38,8 @@ class Requests:
         self._numbers = itertools.count(1)
         self._pending: dict[str, tuple[str, Done]] = {}
         self._lock = threading.Lock()
+        self.interruptions = 0
+        """How often the connection was lost: what was answered before the last time may not be so any more."""
 
     def begin(self, service: str, arguments: Any, done: Done, timeout: float | None = None) -> str:
         """Call *service*; *done* is called once, on any thread, possibly at once.
@@ -80,6 +82,7 @@ class Requests:
 
     def fail_all(self) -> None:
         """End all calls: the connection is lost, and answers with it."""
+        self.interruptions += 1
         with self._lock:
             numbers = {number: service for number, (service, _) in self._pending.items()}
         for number, service in numbers.items():
@@ -118,7 +121,8 @@ def _failure(service: str, text: object) -> ServiceError:
 class Sight(Generic[T]):
     """Something of the graph that rosapi can tell, as it was seen a short time ago.
 
-    Nothing is asked while nobody wants to know: reading the value asks again, and gives what is known.
+    Nothing is asked while nobody wants to know: reading the value asks again, and gives what is known.  What was seen over
+    a connection that was lost is forgotten: the server may be another, and others too have to tell it again what they have.
 
     Args:
         requests: to ask with.
@@ -143,12 +147,16 @@ class Sight(Generic[T]):
         self._unknown = unknown
         self._value = unknown
         self._asked = -LOOK_AGAIN
+        self._interruptions = requests.interruptions
         self.asking = False
 
     @property
     def value(self) -> T:
         """What was seen last; asks again when that is some time ago."""
         now = time.monotonic()
+        if self._interruptions != self._requests.interruptions:
+            self._interruptions = self._requests.interruptions
+            self._value, self._asked, self.asking = self._unknown, -LOOK_AGAIN, False
         # A server that may not serve rosapi to us does not answer at all.
         pause = UNANSWERED if self.asking else LOOK_STEADILY if self._value else LOOK_AGAIN
         if now - self._asked >= pause:

@@ -1,0 +1,134 @@
+"""actionlib's topics, on a graph inside the process: goals that the server never got."""
+
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from jacaros.clock import VirtualClock, run
+from jacaros.ros.action import ActionPolicy, GoalStatus
+from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_serving import GoalUnderWay
+from jacaros.ros.actionlib_client import ActionlibWire
+from jacaros.ros.actionlib_server import ActionlibServer
+from jacaros.ros.actionlib_states import part_type
+from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
+from jacaros.ros.backends.rosbridge_types import BridgeSchema
+from jacaros.ros.errors import CallTimedOut
+from jacaros.ros.open import open_backend
+
+COUNT = "jacaros_interfaces/action/Count"
+
+
+class Actionlib:
+    """A server and a client of ``/count``; what the client publishes on its goal topic can be swallowed.
+
+    Attributes:
+        began: targets of the goals that the server has begun.
+        swallowed: goal messages that are lost from now on.
+        sent: goal messages that left the client.
+    """
+
+    def __init__(self) -> None:
+        self.clock = VirtualClock()
+        self.began: list[int] = []
+        self.swallowed = 0
+        self.sent = 0
+
+    async def open(self) -> GoalSender:
+        graph = MemoryGraph()
+        schema = BridgeSchema((), lambda service, arguments: None, lambda: None)
+        for part in ("ActionGoal", "ActionResult", "ActionFeedback"):
+            schema.fields(part_type(COUNT, part))
+        robot, here = await self._node(graph, "robot"), await self._node(graph, "client")
+        policy = ActionPolicy(None, lambda goal: True, False)
+        ActionlibServer(robot, "/count", COUNT, self._count, policy)
+        sender = GoalSender(self.clock, print, here.factory, "/count", COUNT)
+        sender.wire = ActionlibWire(here, sender)
+        goals = sender.wire._goal
+        deliver = goals.publish
+
+        def publish(message: Any) -> None:
+            self.sent += 1
+            if self.swallowed:
+                self.swallowed -= 1
+            else:
+                deliver(message)
+
+        goals.publish = publish  # type: ignore[method-assign]
+        return sender
+
+    async def _node(self, graph: MemoryGraph, name: str) -> MemoryBackend:
+        node = open_backend("memory", self.clock, name, graph=graph, log=print)
+        assert isinstance(node, MemoryBackend)
+        await node.start()
+        return node
+
+    async def _count(self, goal: GoalUnderWay) -> Any:
+        self.began.append(goal.request.target)
+        await self.clock.sleep(goal.request.period)
+        return {"last": goal.request.target}
+
+
+def play(scene: Callable[[Actionlib], Coroutine[Any, Any, None]]) -> None:
+    graph = Actionlib()
+    run(lambda: scene(graph), graph.clock)
+
+
+def test_a_goal_that_was_lost_on_its_way_is_sent_again() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        begun = graph.clock.elapsed
+        goal = await client.send({"target": 3, "period": 0.5}, timeout=20)
+        assert 1.0 <= graph.clock.elapsed - begun < 3.0
+        assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
+        assert graph.began == [3]
+        assert graph.sent == 2
+
+    play(scene)
+
+
+def test_a_goal_that_arrived_is_sent_once() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        goal = await client.send({"target": 3, "period": 9.0}, timeout=20)
+        assert (await goal.outcome(20)).status is GoalStatus.SUCCEEDED
+        assert graph.sent == 1
+
+    play(scene)
+
+
+def test_a_goal_that_nobody_waits_for_any_more_is_not_sent_again() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        try:
+            await client.send({"target": 3, "period": 0.5}, timeout=0.5)
+        except CallTimedOut:
+            await graph.clock.sleep(10)
+        assert graph.sent == 1
+        assert graph.began == []
+
+    play(scene)
+
+
+def test_a_goal_that_came_twice_is_carried_out_once() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        sent: list[Any] = []
+        goals = client.wire._goal  # type: ignore[attr-defined]
+        deliver = goals.publish
+
+        def twice(message: Any) -> None:
+            sent.append(message)
+            deliver(message)
+            deliver(message)
+
+        goals.publish = twice
+        goal = await client.send({"target": 3, "period": 0.5}, timeout=20)
+        assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
+        await graph.clock.sleep(1)
+        goals.publish(sent[0])
+        await graph.clock.sleep(1)
+        assert graph.began == [3]
+
+    play(scene)

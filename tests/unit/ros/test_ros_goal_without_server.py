@@ -1,0 +1,77 @@
+"""Sending a goal to a server that was seen, and then is not there for whoever carries the goal to it."""
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.errors import ServerUnavailable
+from jacaros.ros.message import MessageFactory
+from jacaros.ros.typestore import RosbagsSchema
+
+COUNT = "jacaros_interfaces/action/Count"
+
+
+class Carrier:
+    """A wire that finds nobody for the first goals.
+
+    Args:
+        clock: of the client.
+        absent: how many goals find nobody.
+    """
+
+    offered = True
+
+    def __init__(self, clock: VirtualClock, absent: float) -> None:
+        self.sent: list[str] = []
+        self._absent = absent
+        self._loop = asyncio.get_running_loop()
+        self.sender = GoalSender(clock, print, MessageFactory(RosbagsSchema()), "/count", COUNT)
+        self.sender.wire = self
+
+    def new_id(self) -> str:
+        return f"goal{len(self.sent)}"
+
+    def send_goal(self, goal_id: str, goal: Any) -> None:
+        self.sent.append(goal_id)
+        if len(self.sent) <= self._absent:
+            self._loop.call_soon(self.sender.fail, goal_id, ServerUnavailable("nobody there"))
+        else:
+            self._loop.call_soon(self.sender.accepted, goal_id)
+
+    def cancel_goal(self, goal_id: str) -> None:
+        pass
+
+    def forget_goal(self, goal_id: str) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
+def test_it_is_sent_again_as_long_as_there_is_time() -> None:
+    clock = VirtualClock()
+
+    async def scene() -> None:
+        carrier = Carrier(clock, absent=3)
+        goal = await carrier.sender.send({"target": 1}, timeout=2.0)
+        assert goal.goal_id == "goal3"
+        assert len(carrier.sent) == 4
+        assert clock.elapsed < 1.0
+
+    run(scene, clock)
+
+
+def test_the_end_of_the_time_says_that_nobody_offers_the_action() -> None:
+    clock = VirtualClock()
+
+    async def scene() -> None:
+        carrier = Carrier(clock, absent=float("inf"))
+        with pytest.raises(ServerUnavailable, match=r"nobody offered action /count \(.*Count\) within 2 s"):
+            await carrier.sender.send({"target": 1}, timeout=2.0)
+        assert 1.8 <= clock.elapsed <= 2.0
+        assert not carrier.sender.busy
+
+    run(scene, clock)

@@ -1,0 +1,43 @@
+"""What rosapi told of the graph holds for the connection over which it was told."""
+
+from typing import Any
+
+from jacaros.ros.backends.rosbridge_requests import Requests, Sight
+
+
+class Server:
+    """Answers what it is asked, when it is told to."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+        self.requests = Requests(self._take)
+        self.sight = Sight(self.requests, "/rosapi/subscribers", {}, lambda seen: len(seen["subscribers"]), 0)
+
+    def _take(self, operation: dict[str, Any]) -> bool:
+        self.asked.append(operation["id"])
+        return True
+
+    def answer(self, *subscribers: str) -> None:
+        self.requests.answered({"id": self.asked[-1], "values": {"subscribers": list(subscribers)}})
+
+
+def test_what_was_seen_before_a_connection_was_lost_is_forgotten_and_asked_for_at_once() -> None:
+    server = Server()
+    assert server.sight.value == 0
+    server.answer("/robot")
+    assert server.sight.value == 1
+    server.requests.fail_all()
+    assert server.sight.value == 0
+    assert len(server.asked) == 2
+    server.answer("/robot", "/other")
+    assert server.sight.value == 2
+
+
+def test_an_answer_that_the_connection_took_with_it_is_asked_for_again_at_once() -> None:
+    server = Server()
+    assert server.sight.value == 0
+    server.requests.fail_all()
+    assert server.sight.value == 0
+    assert len(server.asked) == 2
+    assert server.sight.value == 0
+    assert len(server.asked) == 2
