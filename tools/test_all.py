@@ -29,6 +29,9 @@ NOT_HERE = 3
 """Exit code of a script that cannot do its work on this machine."""
 
 PYTEST = (PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider")
+ONCE_MORE = ("--reruns", "1", "-r", "afER")
+"""For parts of several processes that talk over sockets in real time: a test that fails twice has failed.  One that failed
+once is counted as rerun in the closing line and named in the log: there is something to look into."""
 
 
 @dataclass(frozen=True)
@@ -71,12 +74,12 @@ def parts() -> list[Part]:
         Part("contracts", (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2 and not rosbridge")),
         Part(
             "rosbridge",
-            (*PYTEST, "tests/contracts", "-m", "rosbridge", "--require-rosbridge"),
+            (*PYTEST, "tests/contracts", "-m", "rosbridge", "--require-rosbridge", *ONCE_MORE),
             minutes=20,
         ),
         Part(
             "integration",
-            (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2"),
+            (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2", *ONCE_MORE),
         ),
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2")),
         Part("faults", (*PYTEST, "tests/faults")),
@@ -97,9 +100,8 @@ def parts() -> list[Part]:
         ("ros2", ".venv-ros2-kilted", "ros2-kilted-install"),
     ):
         python = str(ROOT / venv / "bin" / "python")
-        # Discovery in a real graph loses a first message now and then; a test that fails twice has failed, and the
-        # closing line of the part counts the others as rerun.
-        suites = ["tests/contracts", "tests/integration", "-m", kind, f"--require-{kind}", "--reruns", "1"]
+        # Discovery in a real graph loses a first message now and then.
+        suites = ["tests/contracts", "tests/integration", "-m", kind, f"--require-{kind}", *ONCE_MORE]
         if kind == "ros2":
             suites.insert(0, "tests/packaging/test_ament.py")
         name = venv.removeprefix(".venv-")
