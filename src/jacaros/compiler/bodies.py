@@ -12,9 +12,10 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.compiler.annotations import own_annotations
 from jacaros.compiler.building import annotation_parts, build, functor_of_literal, resolved, tuple_of, written
-from jacaros.compiler.conditions import accepts, condition, question
+from jacaros.compiler.conditions import condition, question
 from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
+from jacaros.compiler.internal_actions import accepts
 from jacaros.compiler.triggers import trigger
 from jacaros.compiler.variables import names_in, nodes_in
 from jacaros.terms.unifier import ATOMIC

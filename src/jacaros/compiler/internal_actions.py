@@ -1,0 +1,42 @@
+"""Code for internal actions in conditions: they are called, and may have answers."""
+
+from jacaros.asl import nodes
+from jacaros.compiler.answers import undoing
+from jacaros.compiler.building import build, resolved
+from jacaros.compiler.function import FunctionBuilder
+from jacaros.compiler.matching import Then, settle_fresh
+from jacaros.compiler.runtime import takes_time
+from jacaros.compiler.variables import names_in
+
+
+def internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
+    """A call of an internal action, with its arguments as values."""
+    action = fn.unit.actions.get(node.name)
+    names = names_in(node)
+    if action is None:
+        undoing(fn, f"unknown(agent.context, {node.name!r})", names, then)
+        return
+    constant = fn.constant(action)
+    arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
+    if fn.quiet and takes_time(action):
+        undoing(fn, f"cannot_wait(agent.context, {constant})", names, then)
+    elif not accepts(action, len(node.arguments)):
+        refusal = "refuse_quietly(agent.context, " if fn.quiet else "refuse("
+        undoing(fn, f"{refusal}{constant}, {len(node.arguments)})", names, then)
+    elif not action.backtracks:
+        undoing(fn, f"holds(agent.context, t, {constant}{arguments})", names, then)
+    elif not fn.quiet:
+        undoing(fn, f"first_answer_of(agent.context, t, {constant}{arguments})", names, then)
+    else:
+        mark = fn.local("n")
+        fn.line(f"{mark} = len(t)")
+        with fn.writer.block(f"for _ in answers_of(agent.context, t, {constant}{arguments}):"):
+            settle_fresh(fn, names)
+            then()
+        fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+
+def accepts(action: object, count: int) -> bool:
+    """Whether an internal action takes so many arguments."""
+    maximum = getattr(action, "maximum", None)
+    return bool(getattr(action, "minimum", 0) <= count and (maximum is None or count <= maximum))
