@@ -5,7 +5,7 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import Frame
-from jacaros.compiler.bodies import BodyCompiler
+from jacaros.compiler.bodies import body_compiler
 from jacaros.compiler.function import Frame as Slots
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.reflection import Reflection
@@ -82,7 +82,7 @@ def _body_plan(agent: Circumstance, term: Term) -> Plan:
     node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("body")), None, body)
     plan = Plan(node, atom("body"))
     unit = CodeUnit("<body>", agent.actions)
-    compiler = BodyCompiler(unit, Slots(_Always()), "step")
+    compiler = body_compiler(unit, Slots(_Always()), "step")
     first = compiler.body(body.steps, "None")
     unit.execute()
     install_body(unit, plan, compiler, first)

@@ -12,7 +12,7 @@ from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, 
 from jacaros.bdi.internal_action import ActionError, WrongArguments
 from jacaros.bdi.search_budget import SearchLimit
 from jacaros.bdi.subplans import handles
-from jacaros.compiler.bodies import StepInfo
+from jacaros.compiler.body_compiler import StepInfo
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.runtime import Fail, Failure, annotations_of_event, literal_of
 from jacaros.errors import InternalError

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.compiler.bodies import StepInfo
+from jacaros.compiler.body_compiler import StepInfo
 from jacaros.compiler.lowering import lower_value
 from jacaros.compiler.triggers import Trigger
 from jacaros.terms.order import annotation_set

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 from jacaros.asl import nodes
 from jacaros.compiler.annotations import first_match, patterns_in_order
-from jacaros.compiler.bodies import BodyCompiler
+from jacaros.compiler.bodies import body_compiler
+from jacaros.compiler.body_compiler import BodyCompiler
 from jacaros.compiler.building import annotation_parts, functor_of_literal, tuple_of
 from jacaros.compiler.conditions import condition
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
@@ -197,7 +198,7 @@ class SelectCompiler:
                 frame.states[variable] = "set"
         bound = list(frame.slots)
         prefix = self.unit.fresh_function("step")
-        body = BodyCompiler(self.unit, frame, prefix)
+        body = body_compiler(self.unit, frame, prefix)
         assert isinstance(node.body, nodes.Body)
         first = body.body(node.body.steps, "None")
         self.bodies.append((plan, body, first))

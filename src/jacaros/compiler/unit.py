@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from jacaros.asl import nodes
 from jacaros.compiler import runtime
-from jacaros.compiler.bodies import BodyCompiler
+from jacaros.compiler.body_compiler import BodyCompiler
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.predicates import compile_search
