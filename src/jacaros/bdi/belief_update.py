@@ -5,15 +5,12 @@ The functions for body formulae return the event to be handled by the same inten
 
 from typing import Any
 
-from jacaros.bdi import rescue, unkeyed_percepts
-from jacaros.bdi.act import Percept
 from jacaros.bdi.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.event import Event, Posted
+from jacaros.bdi.event import Posted
 from jacaros.bdi.rules import OpenFact, Rule
 from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
-from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import ATOMIC, free_variables, is_key, rename, resolve, undo, unify_annotations
 from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, atom, bare, functor
@@ -77,7 +74,7 @@ def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations 
     if new is None:
         return None
     if agent.condition_waits:
-        agent.do_soon(_nothing)
+        agent.do_soon(look_again)
     return _raise(agent, (ADDED[symbol], *row), new, apart)
 
 
@@ -106,8 +103,8 @@ def _apart(goal: tuple[Any, ...]) -> tuple[Any, ...]:
     return (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
 
 
-def _nothing() -> None:
-    """A task that only makes the agent look at awaited conditions again."""
+def look_again() -> None:
+    """A task that does nothing: for its sake the agent looks at awaited conditions again."""
 
 
 def insert(
@@ -158,7 +155,7 @@ def delete_belief(
     if removed is None:
         return None
     if agent.condition_waits:
-        agent.do_soon(_nothing)
+        agent.do_soon(look_again)
     return _raise(agent, (DELETED[symbol], *removed), annotations, apart)
 
 
@@ -326,7 +323,7 @@ def external_change(
     if agent.selects[kind] is not None or agent.event_waits or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
     if agent.condition_waits:
-        agent.do_soon(_nothing)
+        agent.do_soon(look_again)
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:
@@ -360,185 +357,11 @@ def _abolish_entry(
         external_change(agent, "-", symbol, row, held)
 
 
-def take_percepts(agent: Circumstance) -> None:
-    """Bring the belief base in line with what was noticed, and raise the events, in order."""
-    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
-    watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
-    noticed = agent.percepts
-    while noticed:
-        percepts = noticed.popleft()
-        try:
-            if len(percepts) == 2 and not watched:
-                # What is usual, for many agents many times a second: one property has another value.
-                old, new = percepts
-                exchange = old.exchange
-                if exchange is None or exchange[0] is not new:
-                    exchange = _exchange(old, new)
-                _, symbol, row, new_row, removed, added = exchange
-                if symbol is not None and new.literal not in holders:
-                    annotations = new.annotations
-                    held_by = holders.pop(old.literal, None)
-                    table = beliefs[symbol]
-                    if (
-                        held_by is annotations
-                        and table.__class__ is Table
-                        and table.exchange(row, new_row, annotations)
-                    ):
-                        holders[new.literal] = annotations
-                        if selects[removed] is not None:
-                            post(old.event or _event(old, removed, row))
-                        if selects[added] is not None:
-                            post(new.event or _event(new, added, new_row))
-                        continue
-                    if held_by is not None:
-                        holders[old.literal] = held_by
-            _apply(agent, percepts, watched)
-        except InternalError:
-            raise
-        except Exception as fault:
-            rescue.passed_over(agent, "what was perceived", fault)
-    if agent.condition_waits:
-        agent.do_soon(_nothing)
-
-
-def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
-    """Bring the belief base in line with what was noticed at once, and raise the events, in order."""
-    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
-    for percept in percepts:
-        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
-        symbol, row, is_flat, change = percept.taken or _taken(percept)
-        if is_flat is None:
-            _take_unkeyed(agent, percept, symbol, row)
-            continue
-        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
-        if kind == "add":
-            table = beliefs[symbol]
-            if (
-                literal in holders
-                or table.__class__ is not Table
-                or not is_flat
-                or not table.begin(row, annotations)
-            ):
-                if not _take_percept(agent, symbol, row, literal, annotations):
-                    continue
-            else:
-                holders[literal] = annotations
-        elif kind == "remove":
-            held_by = holders.pop(literal, None)
-            table = beliefs[symbol]
-            if (
-                held_by is not annotations or table.__class__ is not Table or not table.end(row, annotations)
-            ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
-                continue
-        if watched:
-            external_change(agent, change.operator, symbol, row, annotations, percept.cause)
-        elif selects[change] is not None:
-            post(percept.event or _event(percept, change, row))
-
-
-Taken = tuple[Functor, Row, bool | None, Trigger]
-
-
-def _taken(percept: Percept) -> Taken:
-    """Functor and arguments of a percept, whether these are flat (None: not even to be looked up), and the kind of its
-    event; kept with it for all who share it."""
-    literal = percept.literal
-    if literal.__class__ is tuple:
-        symbol, row = literal[0], literal[1:]
-    else:
-        symbol, row, _ = parts(literal)
-        if symbol is None:
-            raise InternalError(f"a percept is no literal: {literal!r}")
-    change = (DELETED if percept.kind == "remove" else ADDED)[symbol]
-    is_flat: bool | None = True
-    for argument in row:
-        if argument.__class__ not in ATOMIC:
-            is_flat = None if unkeyed_percepts.is_unkeyed(row) else False
-            break
-    taken: Taken = (symbol, row, is_flat, change)
-    percept.taken = taken
-    return taken
-
-
-def _event(percept: Percept, change: Trigger, row: Row) -> Event:
-    """The event of a percept, kept with it for all who share it."""
-    event: Event = ((change, *row), None, percept.annotations, percept.cause)
-    percept.event = event
-    return event
-
-
-def _exchange(old: Percept, new: Percept) -> tuple[Percept, Functor | None, Row, Row, Trigger, Trigger]:
-    """Two percepts as one change of a belief: the second, functor, both rows, and the kinds of the events; kept with the
-    first.  Without a functor they are something else."""
-    symbol, row, is_flat, removed = old.taken or _taken(old)
-    new_symbol, new_row, new_is_flat, added = new.taken or _taken(new)
-    alike = new_symbol is symbol and is_flat and new_is_flat and old.annotations is new.annotations
-    is_one = alike and old.kind == "remove" and new.kind == "add"
-    exchange = (new, symbol if is_one else None, row, new_row, removed, added)
-    old.exchange = exchange
-    return exchange
-
-
 def _is_flat(row: Row) -> bool:
     """Whether a row holds numbers, strings and atoms only."""
     for argument in row:  # noqa: SIM110 - `all` would make a generator for every percept
         if argument.__class__ not in ATOMIC:
             return False
-    return True
-
-
-def _take_unkeyed(agent: Circumstance, percept: Percept, symbol: Functor, row: Row) -> None:
-    """Take in a percept that cannot be looked up by what it says."""
-    annotations = percept.annotations
-    own: Row | None
-    if percept.kind == "add":
-        own = unkeyed_percepts.take(agent, symbol, row, annotations)
-    elif percept.kind == "remove":
-        own = unkeyed_percepts.forget(agent, symbol, row, annotations)
-    else:
-        own = unkeyed_percepts.own_row(row)
-    if own is not None:
-        operator = "-" if percept.kind == "remove" else "+"
-        external_change(agent, operator, symbol, own, annotations, percept.cause)
-
-
-def _take_percept(
-    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations
-) -> bool:
-    """Add a percept whose literal may be held already; several properties may have the same values.
-
-    False when the base has no room for it.
-    """
-    refusals = agent.beliefs.refusals
-    insert(agent, symbol, row, annotations)
-    if agent.beliefs.refusals != refusals:
-        return False
-    held_by = agent.held_percepts.get(literal)
-    if held_by.__class__ is list:
-        held_by.append(annotations)
-    else:
-        agent.held_percepts[literal] = annotations if held_by is None else [held_by, annotations]
-    return True
-
-
-def _forget_percept(
-    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations, known: Any
-) -> bool:
-    """Take away what a percept alone accounts for: another property may have the same values.
-
-    False when the belief is not held any more.
-    """
-    held_by: list[Annotations] = known if known.__class__ is list else [] if known is None else [known]
-    if annotations in held_by:
-        held_by.remove(annotations)
-    if held_by:
-        agent.held_percepts[literal] = held_by
-    table = agent.beliefs[symbol]
-    held = table.get(row)
-    if held is None:
-        return False
-    others = {a for annotations_ in held_by for a in annotations_}
-    take_away(table, row, held, tuple(a for a in annotations if a not in others))
     return True
 
 

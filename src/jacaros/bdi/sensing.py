@@ -1,8 +1,8 @@
 """The first part of a reasoning cycle: what came in since the last one."""
 
 from jacaros.bdi import rescue
-from jacaros.bdi.belief_update import take_percepts
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.perceiving import take_percepts
 from jacaros.bdi.speech_acts import read_message
 from jacaros.bdi.urgency import read_urgent_messages
 from jacaros.errors import InternalError

@@ -1,0 +1,190 @@
+"""Percepts become beliefs: what bodies have noticed is believed or forgotten, and raises events, in its order."""
+
+from typing import Any
+
+from jacaros.bdi import rescue, unkeyed_percepts
+from jacaros.bdi.act import Percept
+from jacaros.bdi.belief_base import Row, Table, parts, take_away
+from jacaros.bdi.belief_update import external_change, insert, look_again
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.event import Event
+from jacaros.compiler.triggers import ADDED, DELETED, Trigger
+from jacaros.errors import InternalError
+from jacaros.terms.unifier import ATOMIC
+from jacaros.terms.values import Functor, Term
+
+Annotations = tuple[Term, ...]
+
+
+def take_percepts(agent: Circumstance) -> None:
+    """Bring the belief base in line with what was noticed, and raise the events, in order."""
+    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
+    watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
+    noticed = agent.percepts
+    while noticed:
+        percepts = noticed.popleft()
+        try:
+            if len(percepts) == 2 and not watched:
+                # What is usual, for many agents many times a second: one property has another value.
+                old, new = percepts
+                exchange = old.exchange
+                if exchange is None or exchange[0] is not new:
+                    exchange = _exchange(old, new)
+                _, symbol, row, new_row, removed, added = exchange
+                if symbol is not None and new.literal not in holders:
+                    annotations = new.annotations
+                    held_by = holders.pop(old.literal, None)
+                    table = beliefs[symbol]
+                    if (
+                        held_by is annotations
+                        and table.__class__ is Table
+                        and table.exchange(row, new_row, annotations)
+                    ):
+                        holders[new.literal] = annotations
+                        if selects[removed] is not None:
+                            post(old.event or _event(old, removed, row))
+                        if selects[added] is not None:
+                            post(new.event or _event(new, added, new_row))
+                        continue
+                    if held_by is not None:
+                        holders[old.literal] = held_by
+            _apply(agent, percepts, watched)
+        except InternalError:
+            raise
+        except Exception as fault:
+            rescue.passed_over(agent, "what was perceived", fault)
+    if agent.condition_waits:
+        agent.do_soon(look_again)
+
+
+def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
+    """Bring the belief base in line with what was noticed at once, and raise the events, in order."""
+    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
+    for percept in percepts:
+        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
+        symbol, row, is_flat, change = percept.taken or _taken(percept)
+        if is_flat is None:
+            _take_unkeyed(agent, percept, symbol, row)
+            continue
+        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
+        if kind == "add":
+            table = beliefs[symbol]
+            if (
+                literal in holders
+                or table.__class__ is not Table
+                or not is_flat
+                or not table.begin(row, annotations)
+            ):
+                if not _take_percept(agent, symbol, row, literal, annotations):
+                    continue
+            else:
+                holders[literal] = annotations
+        elif kind == "remove":
+            held_by = holders.pop(literal, None)
+            table = beliefs[symbol]
+            if (
+                held_by is not annotations or table.__class__ is not Table or not table.end(row, annotations)
+            ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
+                continue
+        if watched:
+            external_change(agent, change.operator, symbol, row, annotations, percept.cause)
+        elif selects[change] is not None:
+            post(percept.event or _event(percept, change, row))
+
+
+Taken = tuple[Functor, Row, bool | None, Trigger]
+
+
+def _taken(percept: Percept) -> Taken:
+    """Functor and arguments of a percept, whether these are flat (None: not even to be looked up), and the kind of its
+    event; kept with it for all who share it."""
+    literal = percept.literal
+    if literal.__class__ is tuple:
+        symbol, row = literal[0], literal[1:]
+    else:
+        symbol, row, _ = parts(literal)
+        if symbol is None:
+            raise InternalError(f"a percept is no literal: {literal!r}")
+    change = (DELETED if percept.kind == "remove" else ADDED)[symbol]
+    is_flat: bool | None = True
+    for argument in row:
+        if argument.__class__ not in ATOMIC:
+            is_flat = None if unkeyed_percepts.is_unkeyed(row) else False
+            break
+    taken: Taken = (symbol, row, is_flat, change)
+    percept.taken = taken
+    return taken
+
+
+def _event(percept: Percept, change: Trigger, row: Row) -> Event:
+    """The event of a percept, kept with it for all who share it."""
+    event: Event = ((change, *row), None, percept.annotations, percept.cause)
+    percept.event = event
+    return event
+
+
+def _exchange(old: Percept, new: Percept) -> tuple[Percept, Functor | None, Row, Row, Trigger, Trigger]:
+    """Two percepts as one change of a belief: the second, functor, both rows, and the kinds of the events; kept with the
+    first.  Without a functor they are something else."""
+    symbol, row, is_flat, removed = old.taken or _taken(old)
+    new_symbol, new_row, new_is_flat, added = new.taken or _taken(new)
+    alike = new_symbol is symbol and is_flat and new_is_flat and old.annotations is new.annotations
+    is_one = alike and old.kind == "remove" and new.kind == "add"
+    exchange = (new, symbol if is_one else None, row, new_row, removed, added)
+    old.exchange = exchange
+    return exchange
+
+
+def _take_unkeyed(agent: Circumstance, percept: Percept, symbol: Functor, row: Row) -> None:
+    """Take in a percept that cannot be looked up by what it says."""
+    annotations = percept.annotations
+    own: Row | None
+    if percept.kind == "add":
+        own = unkeyed_percepts.take(agent, symbol, row, annotations)
+    elif percept.kind == "remove":
+        own = unkeyed_percepts.forget(agent, symbol, row, annotations)
+    else:
+        own = unkeyed_percepts.own_row(row)
+    if own is not None:
+        operator = "-" if percept.kind == "remove" else "+"
+        external_change(agent, operator, symbol, own, annotations, percept.cause)
+
+
+def _take_percept(
+    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations
+) -> bool:
+    """Add a percept whose literal may be held already; several properties may have the same values.
+
+    False when the base has no room for it.
+    """
+    refusals = agent.beliefs.refusals
+    insert(agent, symbol, row, annotations)
+    if agent.beliefs.refusals != refusals:
+        return False
+    held_by = agent.held_percepts.get(literal)
+    if held_by.__class__ is list:
+        held_by.append(annotations)
+    else:
+        agent.held_percepts[literal] = annotations if held_by is None else [held_by, annotations]
+    return True
+
+
+def _forget_percept(
+    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations, known: Any
+) -> bool:
+    """Take away what a percept alone accounts for: another property may have the same values.
+
+    False when the belief is not held any more.
+    """
+    held_by: list[Annotations] = known if known.__class__ is list else [] if known is None else [known]
+    if annotations in held_by:
+        held_by.remove(annotations)
+    if held_by:
+        agent.held_percepts[literal] = held_by
+    table = agent.beliefs[symbol]
+    held = table.get(row)
+    if held is None:
+        return False
+    others = {a for annotations_ in held_by for a in annotations_}
+    take_away(table, row, held, tuple(a for a in annotations if a not in others))
+    return True
