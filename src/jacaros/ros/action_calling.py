@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from jacaros.clock import Clock, Timer
 from jacaros.ros.action import SERVER_LOST_AFTER, Outcome
+from jacaros.ros.calling import RETRY, settle
 from jacaros.ros.errors import (
     CallFailed,
     CallTimedOut,
@@ -20,7 +21,7 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import goal_type
-from jacaros.ros.serving import RETRY, checked_message, settle
+from jacaros.ros.serving import checked_message
 from jacaros.ros.waiting import Waiting, within
 
 

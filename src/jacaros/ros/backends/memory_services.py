@@ -8,9 +8,10 @@ from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.backend import Handler
 from jacaros.ros.backends.memory_members import GraphService
 from jacaros.ros.backends.memory_node import MemoryNode
+from jacaros.ros.calling import PendingCalls, server_gone, settle
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceUnavailable
 from jacaros.ros.names import request_type
-from jacaros.ros.serving import PendingCalls, Responder, checked_message, server_gone, settle
+from jacaros.ros.serving import Responder, checked_message
 from jacaros.ros.waiting import Waiting, within
 
 

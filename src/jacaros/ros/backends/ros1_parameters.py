@@ -12,6 +12,7 @@ import rospy  # type: ignore[import-not-found]
 
 from jacaros.ros.backends.ros1_master import Master
 from jacaros.ros.backends.ros1_node import Ros1Node
+from jacaros.ros.calling import call_when_offered
 from jacaros.ros.errors import (
     CallFailed,
     CapabilityMissing,
@@ -23,7 +24,6 @@ from jacaros.ros.errors import (
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import checked_value
-from jacaros.ros.serving import call_when_offered
 from jacaros.ros.waiting import within
 
 WHOLE_NUMBERS = range(-(2**31), 2**31)

@@ -8,10 +8,10 @@ import rospy  # type: ignore[import-not-found]
 from jacaros.ros.backend import Handler
 from jacaros.ros.backends.ros1_master import call_failure
 from jacaros.ros.backends.ros1_node import Ros1Node
+from jacaros.ros.calling import AttemptingClient, settle
 from jacaros.ros.errors import CallFailed
 from jacaros.ros.handoff import LoopEnded, ask, in_thread
-from jacaros.ros.names import request_type
-from jacaros.ros.serving import PendingCalls, Responder, call_when_offered, checked_message, settle
+from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
 
 
@@ -57,36 +57,20 @@ class Ros1Service:
             raise rospy.ServiceException(f"service {self.name}: the node is shutting down") from None
 
 
-class Ros1Client:
+class Ros1Client(AttemptingClient):
     """Client of `Ros1Backend`."""
 
+    _node: Ros1Node
+
     def __init__(self, node: Ros1Node, name: str, type_name: str) -> None:
-        self.name = name
-        self._node = node
-        self._type_name = type_name
+        super().__init__(node, name, type_name)
         self._class = node.schema.service_class(type_name)
-        self._pending = PendingCalls(name)
         node.members[self] = None
 
     @property
     def ready(self) -> bool:
         """Whether somebody offers the service, as the master said a quarter of a second ago at most."""
         return self.name in self._node.link.services
-
-    def request(self, **fields: Any) -> Any:
-        """Make a request message."""
-        return self._node.factory.make(request_type(self._type_name), fields)
-
-    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
-        """Call the service and give its response."""
-        node = self._node
-        message = checked_message(node.factory, request_type(self._type_name), request)
-        what = f"service {self.name} ({self._type_name})"
-
-        async def attempt(rest: float | None) -> Any:
-            return await self._attempt(message, rest)
-
-        return await call_when_offered(node.clock, node.log, what, attempt, timeout)
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         answer = self._pending.new()

@@ -7,17 +7,10 @@ from typing import Any
 from jacaros.ros.backend import Handler
 from jacaros.ros.backends.ros2_graph import service_mismatch, service_servers, service_servers_in
 from jacaros.ros.backends.ros2_node import Ros2Node
+from jacaros.ros.calling import AttemptingClient, ServerWatch, settle
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
-from jacaros.ros.names import request_type
-from jacaros.ros.serving import (
-    PendingCalls,
-    Responder,
-    ServerWatch,
-    call_when_offered,
-    checked_message,
-    settle,
-)
+from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
 
 SETTLING = 0.5
@@ -145,15 +138,14 @@ class Ros2Service:
         self._responder.answer(request, done)
 
 
-class Ros2Client:
+class Ros2Client(AttemptingClient):
     """Client of the ``ros2`` backend."""
 
+    _node: Ros2Node
+
     def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
-        self.name = name
-        self._node = node
-        self._type_name = type_name
+        super().__init__(node, name, type_name)
         self._client: Any = node.rcl.create_client(node.schema.message_class(type_name), name)
-        self._pending = PendingCalls(name)
         self._servers: frozenset[bytes] = frozenset()
         self._compared = 0.0
         self._acquainted = False
@@ -163,21 +155,6 @@ class Ros2Client:
     def ready(self) -> bool:
         """Whether somebody offers the service."""
         return not self._closed and bool(self._client.service_is_ready())
-
-    def request(self, **fields: Any) -> Any:
-        """Make a request message."""
-        return self._node.factory.make(request_type(self._type_name), fields)
-
-    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
-        """Call the service and give its response."""
-        node = self._node
-        message = checked_message(node.factory, request_type(self._type_name), request)
-        what = f"service {self.name} ({self._type_name})"
-
-        async def attempt(rest: float | None) -> Any:
-            return await self._attempt(message, rest)
-
-        return await call_when_offered(node.clock, node.log, what, attempt, timeout)
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         node, clock = self._node, self._node.clock

@@ -40,6 +40,7 @@ from jacaros.ros.backends.rosbridge_requests import Done, Requests
 from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
 from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.backends.rosbridge_types import BridgeSchema, written_on_ros1
+from jacaros.ros.calling import settle
 from jacaros.ros.errors import CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread, post
@@ -47,7 +48,6 @@ from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.parameter_news import ParameterNews
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.serving import settle
 from jacaros.ros.waiting import Waiting, within
 
 DEFAULT_URL = "ws://127.0.0.1:9090"

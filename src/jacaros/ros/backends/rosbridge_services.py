@@ -5,9 +5,10 @@ from typing import Any
 from jacaros.ros.backend import Handler
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_requests import Sight
+from jacaros.ros.calling import AttemptingClient, ServerWatch
 from jacaros.ros.errors import CallFailed, MessageMismatch, ServiceError
 from jacaros.ros.names import request_type, response_type
-from jacaros.ros.serving import PendingCalls, Responder, ServerWatch, call_when_offered, checked_message
+from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
 
 _NOT_OUR_DEFINITION = ("does not have a field", "message requires a", "Expected a JSON object")
@@ -17,14 +18,13 @@ FOR_EVER = 86400.0
 """The time-out of a call without one, for servers that would choose five seconds themselves."""
 
 
-class BridgeClient:
+class BridgeClient(AttemptingClient):
     """Client of `RosbridgeBackend`."""
 
+    _node: BridgeNode
+
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        self.name = name
-        self._node = node
-        self._type_name = type_name
-        self._pending = PendingCalls(name)
+        super().__init__(node, name, type_name)
         self._offered = Sight(
             node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
         )
@@ -33,21 +33,6 @@ class BridgeClient:
     def ready(self) -> bool:
         """Whether somebody offers the service, as the bridge said a second ago at most."""
         return self._node.connected and self._offered.value
-
-    def request(self, **fields: Any) -> Any:
-        """Make a request message."""
-        return self._node.factory.make(request_type(self._type_name), fields)
-
-    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
-        """Call the service and give its response."""
-        node = self._node
-        message = checked_message(node.factory, request_type(self._type_name), request)
-        what = f"service {self.name} ({self._type_name})"
-
-        async def attempt(rest: float | None) -> Any:
-            return await self._attempt(message, rest)
-
-        return await call_when_offered(node.clock, node.log, what, attempt, timeout)
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         node = self._node

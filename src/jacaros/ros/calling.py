@@ -1,0 +1,197 @@
+"""Calls of services apart from the middleware: how long they are tried, and what ends them."""
+
+import asyncio
+import sys
+from collections.abc import Awaitable, Callable
+from typing import Any, Protocol
+
+from jacaros.clock import Clock, Timer
+from jacaros.ros.action import SERVER_LOST_AFTER
+from jacaros.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnavailable
+from jacaros.ros.message import MessageFactory
+from jacaros.ros.names import request_type
+from jacaros.ros.serving import checked_message
+from jacaros.ros.waiting import Waiting
+
+LOOK = 1.0
+"""Seconds between two looks whether the server of a call is still there."""
+
+RETRY = 0.1
+"""Seconds between two attempts to call a service that is not there."""
+
+
+class CallingNode(Protocol):
+    """What a client needs of its node."""
+
+    @property
+    def clock(self) -> Clock:
+        """The run's clock."""
+
+    @property
+    def log(self) -> Callable[[str], None]:
+        """Takes one line about waiting."""
+
+    @property
+    def factory(self) -> MessageFactory:
+        """Makes the requests."""
+
+
+class AttemptingClient:
+    """Client of a service on a graph that does not tell when a service comes: a call is attempted until it is offered.
+
+    Args:
+        node: calls.
+        name: absolute name of the service.
+        type_name: service type in full form.
+    """
+
+    _node: CallingNode
+
+    def __init__(self, node: CallingNode, name: str, type_name: str) -> None:
+        self.name = name
+        self._node = node
+        self._type_name = type_name
+        self._pending = PendingCalls(name)
+
+    def request(self, **fields: Any) -> Any:
+        """Make a request message."""
+        return self._node.factory.make(request_type(self._type_name), fields)
+
+    async def call(self, request: Any = None, timeout: float | None = None) -> Any:
+        """Call the service and give its response."""
+        node = self._node
+        message = checked_message(node.factory, request_type(self._type_name), request)
+        what = f"service {self.name} ({self._type_name})"
+
+        async def attempt(rest: float | None) -> Any:
+            return await self._attempt(message, rest)
+
+        return await call_when_offered(node.clock, node.log, what, attempt, timeout)
+
+    async def _attempt(self, message: Any, rest: float | None) -> Any:
+        """Call the service once, see `call_when_offered`."""
+        raise NotImplementedError
+
+
+async def call_when_offered(
+    clock: Clock,
+    log: Callable[[str], None],
+    what: str,
+    attempt: Callable[[float | None], Awaitable[Any]],
+    timeout: float | None,
+) -> Any:
+    """Call a service whose arrival cannot be awaited: try, and try again while nobody offers it.
+
+    Args:
+        clock: measures the time-out.
+        log: is told of waiting.
+        what: the service with its type.
+        attempt: calls the service once; takes the seconds that are left, raises `ServiceUnavailable` when
+            nobody offers it and `TimeoutError` when there is no answer.
+        timeout: seconds for everything; None tries for ever.
+
+    Raises:
+        ServiceUnavailable: nobody offered the service in time.
+        CallTimedOut: it was called but did not answer in time.
+    """
+    deadline = None if timeout is None else clock.elapsed + timeout
+    waiting: Waiting | None = None
+    try:
+        while True:
+            try:
+                return await attempt(None if deadline is None else deadline - clock.elapsed)
+            except TimeoutError:
+                raise CallTimedOut(f"{what} did not answer within {timeout:g} s") from None
+            except ServiceUnavailable:
+                if deadline is not None and clock.elapsed + RETRY > deadline:
+                    raise ServiceUnavailable(f"nobody offered {what} within {timeout:g} s") from None
+            if waiting is None:
+                waiting = Waiting(clock, log, what, "Is the node that offers it running?").__enter__()
+            await clock.sleep(RETRY)
+    finally:
+        if waiting is not None:
+            waiting.__exit__(*sys.exc_info())
+
+
+class PendingCalls:
+    """The futures of a client's calls under way, so that closing the client ends them.
+
+    Args:
+        name: absolute name of the service.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._futures: set[asyncio.Future[Any]] = set()
+
+    def new(self) -> asyncio.Future[Any]:
+        """Make the future of one call."""
+        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self._futures.add(future)
+        future.add_done_callback(self._futures.discard)
+        return future
+
+    def close(self) -> None:
+        """Fail what is under way."""
+        for future in list(self._futures):
+            settle(future, None, CallFailed(f"the client of service {self._name} was closed during the call"))
+
+
+class ServerWatch:
+    """Fails a call whose server has gone, where the middleware does not tell; a context manager around the wait.
+
+    A server is gone when it has been seen and then not been there for `SERVER_LOST_AFTER`.
+
+    Args:
+        clock: measures the patience.
+        name: absolute name of the service.
+        answer: the future of the call.
+        is_there: whether the server that was asked is still in the graph, as far as is known.
+    """
+
+    def __init__(
+        self, clock: Clock, name: str, answer: "asyncio.Future[Any]", is_there: Callable[[], bool]
+    ) -> None:
+        self._clock, self._name, self._answer, self._is_there = clock, name, answer, is_there
+        self._seen = False
+        self._missed = 0.0
+        self._timer: Timer | None = None
+
+    def __enter__(self) -> "ServerWatch":
+        self._seen = self._is_there()
+        self._look_later()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _look_later(self) -> None:
+        self._timer = self._clock.call_later(LOOK, self._look)
+
+    def _look(self) -> None:
+        if self._is_there():
+            self._seen, self._missed = True, 0.0
+        elif self._seen:
+            self._missed += LOOK
+        if self._missed > SERVER_LOST_AFTER:
+            settle(self._answer, None, server_gone(self._name))
+        else:
+            self._look_later()
+
+
+def server_gone(name: str) -> ServerGone:
+    """What a call fails with whose server has gone."""
+    return ServerGone(
+        f"the server of service {name} went away during the call; whether it was done is not known"
+    )
+
+
+def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None) -> None:
+    """Give a call its response or failure, unless it is over: timed out or given up."""
+    if future.done():
+        return
+    if problem is not None:
+        future.set_exception(problem)
+    else:
+        future.set_result(response)
