@@ -10,6 +10,7 @@ from jacaros.artifacts.mapping.read_values import read_values
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Publisher, Sample, Service
 from jacaros.ros.errors import RosError
+from jacaros.ros.message import to_seconds
 from jacaros.ros.names import message_type, request_type, response_type, service_type
 from jacaros.ros.qos import LATCHED, QoS
 from jacaros.yaml_nodes import Problem, read_document
@@ -39,6 +40,7 @@ class FakeGraph:
         self._publishers: dict[str, Publisher] = {}
         self._services: dict[str, Service] = {}
         self._heard: dict[str, list[Any]] = {}
+        self._types: dict[str, str] = {}
         self._asked: dict[str, list[Any]] = {}
         self.node.graph.watch_publishers(self._listen_to)
 
@@ -112,14 +114,12 @@ class FakeGraph:
         """How many messages on a topic had these values, and all of them as text.
 
         Raises:
-            ValueError: the fields are wrong; the text tells.
+            ValueError: the name or the fields are wrong; the text tells.
         """
-        messages = self.published(topic)
-        types = self.node.graph.topics()
-        name = self.node.resolve(topic)
-        if not messages and name not in types:
-            return 0, []
-        return self._count(messages, fields, types.get(name, ""))
+        name = self._name(topic)
+        messages = self._heard.get(name, [])
+        type_name = self._types.get(name) or self.node.graph.topics().get(name)
+        return self._count(messages, fields, type_name) if type_name else (0, [])
 
     def count_asked(self, service: str, fields: str) -> tuple[int, list[str]]:
         """How many requests to a service had these values, and all of them as text.
@@ -127,11 +127,17 @@ class FakeGraph:
         Raises:
             ValueError: no answer was given for the service, or the fields are wrong; the text tells.
         """
-        name = self.node.resolve(service)
+        name = self._name(service)
         offered = self.node.graph.contents().services
         if name not in self._services:
             raise ValueError(f"the test has no service {name}; begin with fake_service")
         return self._count(self.asked(name), fields, request_type(offered[name]))
+
+    def _name(self, name: str) -> str:
+        try:
+            return self.node.resolve(name)
+        except RosError as wrong:
+            raise ValueError(str(wrong)) from None
 
     def _count(self, messages: list[Any], fields: str, type_name: str) -> tuple[int, list[str]]:
         wanted = self._fields(fields, type_name) if fields else {}
@@ -143,6 +149,7 @@ class FakeGraph:
         if publisher.node_name != self._ours.node_name or name in self._heard:
             return
         messages = self._heard[name] = []
+        self._types[name] = publisher.type_name
 
         def keep(sample: Sample) -> None:
             messages.append(sample.message)
@@ -180,6 +187,8 @@ def _has(given: Any, wanted: Any) -> bool:
     if isinstance(wanted, float) or (isinstance(wanted, int) and not isinstance(wanted, bool)):
         if isinstance(given, bytes):
             return bool(given == bytes([int(wanted)]))
+        if hasattr(given, "nanosec"):  # a time: relative to it any other of the same day were close
+            return math.isclose(to_seconds(given), wanted, rel_tol=0.0, abs_tol=_TOLERANCE)
         return math.isclose(given, wanted, rel_tol=_TOLERANCE, abs_tol=_TOLERANCE)
     return bool(given == wanted)
 

@@ -27,6 +27,7 @@ operations:
     fields: {linear.x: $speed}
     rate: 10
     duration: $seconds
+  report: {publish: report, type: std_msgs/msg/Header, fields: {stamp: now}}
   any_drive: {parameters: [speed], publish: velocity, fields: {linear.x: $speed}}
   light: {parameters: [on], service: light, type: std_srvs/srv/SetBool, request: {data: $on}}
 """
@@ -165,6 +166,9 @@ def test_what_was_not_published_is_told_with_what_was(run: Run) -> None:
         ('!fake_subscriber("a", "std_srvs/srv/Trigger")', "std_srvs/srv/Trigger"),
         ('!assert_called("light", "")', "the test has no service /light; begin with fake_service"),
         ('drive(1, 0.1); !assert_published("cmd_vel", "linear.q: 1")', "has no field 'q'"),
+        ('!assert_published("a b", "x: 1")', "'a b' is no ROS name"),
+        ('!assert_not_published("a b")', "'a b' is no ROS name"),
+        ('!assert_called("a b", "")', "'a b' is no ROS name"),
     ],
 )
 def test_mistakes_are_told_at_the_goal_of_the_test(run: Run, body: str, text: str) -> None:
@@ -172,6 +176,14 @@ def test_mistakes_are_told_at_the_goal_of_the_test(run: Run, body: str, text: st
     assert text in told(outcome)
     assert "robot_test.asl:" in told(outcome)
     assert "Traceback" not in told(outcome)
+
+
+def test_times_are_compared_too(run: Run) -> None:
+    [right, wrong] = run(
+        'report; !assert_published("report", "stamp: now")', 'report; !assert_published("report", "stamp: 5")'
+    )
+    assert right.passed, told(right)
+    assert "a message on report with stamp: 5" in told(wrong)
 
 
 def test_a_wrong_mapping_is_told(run: Run, files: Path) -> None:
