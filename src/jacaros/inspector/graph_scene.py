@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
+from jacaros.artifacts.ros.odometer import not_finite
 from jacaros.clock import Clock
-from jacaros.inspector.map_drawing import map_drawing
+from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.robot_view import UNKNOWN, RobotView
 from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
 from jacaros.ros.errors import RosError, TransformUnavailable
@@ -47,6 +48,13 @@ class SeenRobot:
         self.odometry: Any = None
         self.battery: Any = None
 
+    def hear_odometry(self, sample: Sample) -> bool:
+        """Keep the newest message, unless one of its numbers is none; whether it was kept."""
+        if not_finite(sample) is not None:
+            return False
+        self.odometry = sample.message
+        return True
+
     def hear_battery(self, sample: Sample) -> None:
         """Keep the newest message."""
         self.battery = sample.message
@@ -58,7 +66,9 @@ class SeenRobot:
         pose = Transform((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
         if TRANSFORMS in backend.capabilities:
             with contextlib.suppress(TransformUnavailable):
-                return backend.tf_lookup(MAP, message.header.frame_id.strip("/")).after(pose)
+                corrected = backend.tf_lookup(MAP, message.header.frame_id.strip("/")).after(pose)
+                if all(map(math.isfinite, (*corrected.translation, corrected.yaw))):
+                    return corrected
         return pose
 
     def view(self, backend: Backend) -> RobotView:
@@ -159,9 +169,10 @@ class GraphScene:
                 self._subscriptions[topic] = self._backend.subscription(topic, type_name, hear, qos)
 
     def _hear_odometry(self, robot: SeenRobot, sample: Sample) -> None:
-        if robot.odometry is None:
+        is_new = robot.odometry is None
+        if robot.hear_odometry(sample) and is_new:
             self._shown.append(robot)
-        robot.odometry = sample.message
 
     def _hear_map(self, sample: Sample) -> None:
-        self._map = sample.message
+        if can_be_drawn(sample.message):
+            self._map = sample.message

@@ -9,6 +9,16 @@ SOLID = 50
 """Percent of certainty above which a cell counts as occupied."""
 
 
+def can_be_drawn(message: Any) -> bool:
+    """Whether a map is one: it has as many cells as it says, of some size, somewhere."""
+    info = message.info
+    place, turn = info.origin.position, info.origin.orientation
+    numbers = (info.resolution, place.x, place.y, turn.z, turn.w)
+    return info.width * info.height == len(message.data) > 0 < info.resolution and all(
+        map(math.isfinite, numbers)
+    )
+
+
 def map_drawing(message: Any, name: str = "") -> dict[str, Any]:
     """Draw a map: outlines of what is occupied as ``walls``, and what is occupied as ``boxes``.
 

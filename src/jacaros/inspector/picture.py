@@ -5,7 +5,7 @@ It looks right on light and on dark pages, needs nothing else, and is the same f
 
 import html
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,8 @@ _STYLE = """
 """
 _MARGIN = 0.15
 _PIECES = 160
+_RADIUS = 0.17
+"""Metres, of a robot of which only a real graph tells."""
 _PATH_COLOURS = ("#1f6f8b", "#b4572e", "#6b5aa8", "#3f7d3a", "#a83e6b", "#7a6a1e")
 
 
@@ -42,9 +44,9 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
     """The SVG text."""
     sheet = _Sheet(recording, width)
     parts = [
-        *_floor(sheet, recording.world),
-        *_docks(sheet, recording.world),
-        *_walls(sheet, recording.world),
+        *_floor(sheet, recording.drawing),
+        *_docks(sheet, recording.drawing),
+        *_walls(sheet, recording.drawing),
     ]
     parts += [
         *_closed_doors(sheet, recording),
@@ -52,7 +54,7 @@ def picture_svg(recording: Recording, width: int = 640) -> str:
         *_room_names(sheet, recording),
         *_robots(sheet, recording),
     ]
-    title = html.escape(str(recording.world.get("name", "")))
+    title = html.escape(str(recording.drawing["name"]))
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {sheet.height}" width="{width}" '
         f'height="{sheet.height}" role="img" aria-label="{title}">\n<title>{title}</title>\n'
@@ -64,7 +66,7 @@ class _Sheet:
     """From metres to pixels: y grows downwards there."""
 
     def __init__(self, recording: Recording, width: int) -> None:
-        left, bottom, right, top = recording.world["bounds"]
+        left, bottom, right, top = recording.drawing["bounds"]
         for frame in recording.frames:
             for x, y, *_ in frame.robots:
                 left, right = min(left, x - 0.3), max(right, x + 0.3)
@@ -116,7 +118,7 @@ def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
 
 def _closed_doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
     """The doors that are closed at the end."""
-    doors = {door["name"]: door for door in recording.world.get("doors", ())}
+    doors = {door["name"]: door for door in recording.drawing["doors"]}
     moves = {
         data["door"]: kind for _, kind, data in recording.events if kind in ("door_opened", "door_closed")
     }
@@ -136,14 +138,13 @@ def _walls(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
 
 
 def _paths(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    frames = recording.frames
-    count = len(recording.robots)
-    step = max(1, math.ceil(len(frames) / _PIECES))
-    for first in range(0, len(frames) - 1, step):
-        piece = frames[first : first + step + 1]
-        red, green, blue = colour_at(first / len(frames))
-        for number in range(count):
-            points = [(sheet.x(frame.robots[number][0]), sheet.y(frame.robots[number][1])) for frame in piece]
+    robots = recording.rows()
+    count, length = len(robots), len(recording.frames)
+    step = max(1, math.ceil(length / _PIECES))
+    for first in range(0, length - 1, step):
+        red, green, blue = colour_at(first / length)
+        for number, rows in enumerate(robots):
+            points = [(sheet.x(x), sheet.y(y)) for x, y, *_ in rows[first : first + step + 1]]
             if any(point != points[0] for point in points):
                 colour = (
                     f"rgb({red},{green},{blue})" if count == 1 else _PATH_COLOURS[number % len(_PATH_COLOURS)]
@@ -160,7 +161,7 @@ def _thinned(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def _room_names(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    for room in recording.world["rooms"]:
+    for room in recording.drawing["rooms"]:
         text = str(room["name"]).replace("_", " ")
         x, y = _place_for(sheet, recording, room["area"], 7.2 * len(text))
         yield f'<text class="room" x="{x}" y="{y}">{html.escape(text)}</text>'
@@ -171,10 +172,10 @@ def _place_for(sheet: _Sheet, recording: Recording, area: Any, width: float) -> 
     ax, ay, bx, by = area
     left, right = sheet.x(ax) + 12, sheet.x(bx) - 12 - width
     top, bottom = sheet.y(by) + 24, sheet.y(ay) - 12
-    boxes = [(sheet.x(a), sheet.y(d), sheet.x(c), sheet.y(b)) for a, b, c, d in recording.world["boxes"]]
+    boxes = [(sheet.x(a), sheet.y(d), sheet.x(c), sheet.y(b)) for a, b, c, d in recording.drawing["boxes"]]
     boxes += [
         (sheet.x(x - r), sheet.y(y + r), sheet.x(x + r), sheet.y(y - r))
-        for (x, y, _), r in ((dock["pose"], dock["radius"]) for dock in recording.world["docks"])
+        for (x, y, _), r in ((dock["pose"], dock["radius"]) for dock in recording.drawing["docks"])
     ]
     points = [(sheet.x(row[0]), sheet.y(row[1])) for frame in recording.frames[::3] for row in frame.robots]
 
@@ -189,10 +190,12 @@ def _place_for(sheet: _Sheet, recording: Recording, area: Any, width: float) -> 
 
 
 def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
-    described = recording.world["robots"]
-    rows = recording.frames[-1].robots if recording.frames else [(*robot["pose"],) for robot in described]
+    described = recording.drawing["robots"]
+    rows: Sequence[tuple[Any, ...]] = [robot["pose"] for robot in described if "pose" in robot]
+    if recording.frames:
+        rows = recording.frames[-1].robots
     for robot, row in zip(described, rows, strict=False):
-        x, y, size = sheet.x(row[0]), sheet.y(row[1]), sheet.size(robot["radius"])
+        x, y, size = sheet.x(row[0]), sheet.y(row[1]), sheet.size(robot.get("radius", _RADIUS))
         turn = round(-math.degrees(row[2]), 1)
         yield (
             f'<g transform="translate({x} {y}) rotate({turn}) scale({size})">'

@@ -16,12 +16,20 @@ class Frame(NamedTuple):
     robots: tuple[tuple[Any, ...], ...]
 
 
+_NOWHERE: dict[str, Any] = {
+    "name": "",
+    "bounds": [-1, -1, 1, 1],
+    **{each: [] for each in ("walls", "boxes", "rooms", "docks", "doors", "robots")},
+}
+"""The drawing of a world of which nothing is known."""
+
+
 @dataclass
 class Recording:
     """A run as it was recorded.
 
     Attributes:
-        world: the drawing of the world.
+        world: the drawing of the world; empty when nothing was known of it.
         frames: the robots over time.
         texts: prints of agents as (t, agent, text).
         events: events as (t, kind, data).
@@ -43,6 +51,20 @@ class Recording:
     def robots(self) -> list[str]:
         """Names of the robots, in the order of the rows of a frame."""
         return [robot["name"] for robot in self.world.get("robots", [])]
+
+    @property
+    def drawing(self) -> dict[str, Any]:
+        """The drawing of the world, with all that viewers look for."""
+        return {**_NOWHERE, **self.world}
+
+    def rows(self) -> list[list[tuple[Any, ...]]]:
+        """The rows of each robot, one for each frame; a robot that was found late stands before that where it was found."""
+        found = []
+        for index in range(max((len(frame.robots) for frame in self.frames), default=0)):
+            rows = [frame.robots[index] if index < len(frame.robots) else None for frame in self.frames]
+            first = next(row for row in rows if row is not None)
+            found.append([first if row is None else row for row in rows])
+        return found
 
     @classmethod
     def read(cls, path: str | Path) -> "Recording":

@@ -37,21 +37,10 @@ def replay_html(recording: Recording, title: str | None = None) -> str:
 
 def payload(recording: Recording) -> dict[str, Any]:
     """What the page is given: whole numbers (ms, mm, mrad, tenths of a percent) as differences."""
-    world = {
-        "name": "",
-        "bounds": [-1, -1, 1, 1],
-        "walls": [],
-        "boxes": [],
-        "rooms": [],
-        "docks": [],
-        "doors": [],
-        "robots": [],
-    }
-    world.update(recording.world)
     radii = {robot["name"]: robot.get("radius", 0.17) for robot in recording.world.get("robots", [])}
-    columns = [list(zip(*rows, strict=True)) for rows in _rows(recording)]
+    columns = [list(zip(*rows, strict=True)) for rows in recording.rows()]
     return {
-        "world": world,
+        "world": recording.drawing,
         "duration": round(recording.duration, 3),
         "t": _differences((frame.t for frame in recording.frames), 1000),
         "robots": [
@@ -69,16 +58,6 @@ def payload(recording: Recording) -> dict[str, Any]:
         "texts": [[round(t, 3), agent, text] for t, agent, text in recording.texts],
         "events": [[round(t, 3), kind, data] for t, kind, data in recording.events],
     }
-
-
-def _rows(recording: Recording) -> list[list[tuple[Any, ...]]]:
-    """The rows of each robot, one for each frame; a robot that was found late stands before that where it was found."""
-    found = []
-    for index in range(max((len(frame.robots) for frame in recording.frames), default=0)):
-        rows = [frame.robots[index] if index < len(frame.robots) else None for frame in recording.frames]
-        first = next(row for row in rows if row is not None)
-        found.append([first if row is None else row for row in rows])
-    return found
 
 
 def _differences(values: Iterable[float], scale: int) -> list[int]:

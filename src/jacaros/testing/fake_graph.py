@@ -135,7 +135,7 @@ class FakeGraph:
 
     def _name(self, name: str) -> str:
         try:
-            return self.node.resolve(name)
+            return str(self.node.resolve(name))
         except RosError as wrong:
             raise ValueError(str(wrong)) from None
 

@@ -11,7 +11,8 @@ import pytest
 
 from jacaros.clock import VirtualClock, run
 from jacaros.inspector.graph_scene import GraphScene
-from jacaros.inspector.map_drawing import map_drawing
+from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
+from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import payload
@@ -129,6 +130,42 @@ def test_odometry_alone_is_enough() -> None:
     looking("empty", body)
 
 
+def test_numbers_that_are_none_are_not_drawn() -> None:
+    """Neither by a view, which nothing else draws, nor in a recording: JSON has no such numbers."""
+
+    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
+        publisher = backend.publisher("/odom", "nav_msgs/msg/Odometry")
+        scene = GraphScene(backend, clock)
+        await clock.sleep(5.0)
+        for x, z in ((math.nan, 0.0), (1.0, math.nan)):
+            publisher.publish({"pose": {"pose": {"position": {"x": x}, "orientation": {"z": z, "w": 1.0}}}})
+            await clock.sleep(0.1)
+        assert scene.robots() == []
+        publisher.publish({"pose": {"pose": {"position": {"x": 4.0}, "orientation": {"w": 1.0}}}})
+        await clock.sleep(0.1)
+        publisher.publish({"pose": {"pose": {"position": {"x": math.inf}, "orientation": {"w": 1.0}}}})
+        await clock.sleep(0.1)
+        assert [robot.x for robot in scene.robots()] == [4.0]
+        scene.close()
+
+    looking("empty", body)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"width": 4}, {"width": 0, "height": 0}, {"resolution": 0.0}, {"resolution": math.nan}],
+)
+def test_a_map_that_is_none_is_not_drawn(change: dict[str, Any]) -> None:
+    message = grid("##\n##")
+    assert can_be_drawn(message)
+    vars(message.info).update(change)
+    assert not can_be_drawn(message)
+
+
+def test_a_map_that_is_nowhere_is_not_drawn() -> None:
+    assert not can_be_drawn(grid("##\n##", x=math.nan))
+
+
 def test_a_world_that_is_known_late_is_recorded_all_the_same(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
 
@@ -153,3 +190,10 @@ def test_a_world_that_is_known_late_is_recorded_all_the_same(tmp_path: Path) -> 
         assert len(robot["x"]) == len(shown["t"])
         assert robot["x"][0] == {"robot_0": -1000, "robot_1": 1000}[robot["name"]]
         assert set(robot["x"][1:]) == {0}
+    picture = picture_svg(recording)
+    assert picture.count('class="robot"') == 2
+    assert ">robot_1</text>" in picture
+
+
+def test_a_recording_without_a_world_has_a_picture() -> None:
+    assert "<svg" in picture_svg(Recording())

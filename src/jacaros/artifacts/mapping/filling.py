@@ -224,9 +224,7 @@ def _converter(
     conversion: Conversion, leaf: FieldType, owner: str, last: str, interfaces: Interfaces
 ) -> Callable[[Any], Any]:
     steps: list[Callable[[Any], Any]] = []
-    if conversion.names:
-        known = {str(name): value for value, name in conversion.names}
-        steps.append(lambda value: _word(value, known))
+    words: dict[str, Any] = {str(name): value for value, name in conversion.names}
     if (line := conversion.line) is not None:
         steps.append(
             lambda value: (
@@ -240,10 +238,13 @@ def _converter(
         meant = chosen(constants(interfaces, owner), last, conversion.prefix)
         if not meant:
             raise WrongPath(f"{owner} has no constants for {last}", "write names: {0: ...}")
-        numbers = {name: value[0] if isinstance(value, bytes) else value for name, value in meant.items()}
-        steps.append(lambda value: _word(value, numbers))
+        words |= {name: value[0] if isinstance(value, bytes) else value for name, value in meant.items()}
 
     def convert(value: Any) -> Any:
+        if words and isinstance(
+            value, str
+        ):  # what it stands for is the message's value: it has the message's unit
+            return for_field(_word(value, words), leaf, interfaces)
         for step in steps:
             value = step(value)
         return for_field(value, leaf, interfaces)
@@ -257,13 +258,11 @@ def _number(value: object) -> float:
     return float(value)
 
 
-def _word(value: object, known: dict[str, Any]) -> Any:
-    if isinstance(value, str):
-        found = known.get(str(value), known.get(str(value).lower()))
-        if found is None:
-            raise ValueError(f"it is to be one of {', '.join(known)}")
-        return found
-    return value
+def _word(value: str, known: dict[str, Any]) -> Any:
+    found = known.get(str(value), known.get(str(value).lower()))
+    if found is None:
+        raise ValueError(f"it is to be one of {', '.join(known)}")
+    return found
 
 
 def for_field(value: Any, leaf: FieldType, interfaces: Interfaces) -> Any:

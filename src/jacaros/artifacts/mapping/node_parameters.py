@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 
-from jacaros.artifacts.mapping.declared import ParameterPart
+from jacaros.artifacts.mapping.declared import AS_IT_IS, ParameterPart
 from jacaros.artifacts.mapping.host import Host
-from jacaros.artifacts.mapping.taking import converted
+from jacaros.artifacts.mapping.parameter_values import parameter_converter
+from jacaros.artifacts.mapping.taking import Unshowable
 from jacaros.ros.backend import PARAMETER_EVENTS
 from jacaros.ros.errors import CapabilityMissing, ParameterUnknown, RosError
 from jacaros.ros.parameter import ParameterValue
@@ -26,7 +27,8 @@ class NodeParameter:
 
     def __init__(self, host: Host, part: ParameterPart) -> None:
         self._host, self._part = host, part
-        self._convert = converted(part.field.conversion) if part.field is not None else lambda value: value
+        conversion = part.field.conversion if part.field is not None else AS_IT_IS
+        self._convert = parameter_converter(conversion, part.parameter)
         self._reading = host.reading_of(part.name, part.policy)
         self._node = host.ros.resolve(host.robot_topic(part.node))
         self._closed = False
@@ -59,12 +61,22 @@ class NodeParameter:
             self._take(values[self._part.parameter])
 
     def _take(self, value: ParameterValue) -> None:
-        if not self._closed:
+        if self._closed:
+            return
+        try:
             self._reading.take((self._convert(value),))
+        except Unshowable as error:
+            self._withdraw()
+            part = self._part
+            told = f"{part.name} is not shown: {error}"
+            self._host.tell_once((part.name, error.functor), part.place, told, error.cure)
 
-    def _lose(self, error: RosError) -> None:
+    def _withdraw(self) -> None:
         if self._reading.newest is not None:
             self._reading.withdraw()
+
+    def _lose(self, error: RosError) -> None:
+        self._withdraw()
         if isinstance(error, ParameterUnknown):
             part = self._part
             self._host.tell_once(

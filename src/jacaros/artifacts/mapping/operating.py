@@ -10,9 +10,10 @@ from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
 from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.operation_methods import arity
+from jacaros.artifacts.mapping.parameter_values import parameter_converter
 from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
-from jacaros.artifacts.mapping.taking import Take, Unshowable, converted, taker
+from jacaros.artifacts.mapping.taking import Take, Unshowable, taker
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.ros.acting import error_code, error_text
 from jacaros.artifacts.ros.calling import MESSAGES
@@ -312,7 +313,10 @@ class _Getting(_OfNode):
         except (RosError, NameInvalid) as error:
             self._fail(error)
         else:
-            outs[0].set(converted(field.conversion)(value))
+            try:
+                outs[0].set(parameter_converter(field.conversion, self._name)(value))
+            except Unshowable as error:
+                self._host.fail(f"{error}: {error.cure}", error.functor, error.path)
 
 
 class _Asking:

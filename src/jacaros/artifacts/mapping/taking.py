@@ -237,26 +237,29 @@ _NAMED: dict[str, tuple[type, ...]] = {
 
 
 def converted(conversion: Conversion) -> Convert:
-    """The steps that follow: names, units, rounding."""
+    """The steps that follow: names, or else units and rounding."""
     steps: list[Convert] = []
-    if conversion.names:
-        known = {value: Atom(name) for value, name in conversion.names}
-        steps.append(lambda value: known.get(value, value))
     if (line := conversion.line) is not None:
         steps.append(line.there)
     if (digits := conversion.digits) is not None:
         steps.append(round if digits == 0 else (lambda value: round(value, digits)))
-    if not steps:
-        return lambda value: value
-    if len(steps) == 1:
-        return steps[0]
+    number = _in_turn(steps)
+    if not conversion.names and conversion.kind != "name":
+        return number
+    known = {value: Atom(name) for value, name in conversion.names}
 
-    def all_steps(value: Any) -> object:
-        for step in steps:
-            value = step(value)
-        return value
+    def named(value: Any) -> object:
+        found = known.get(value, value)
+        return found if isinstance(found, Atom) else number(found)
 
-    return all_steps
+    return named
+
+
+def _in_turn(steps: list[Convert]) -> Convert:
+    if len(steps) < 2:
+        return steps[0] if steps else lambda value: value
+    first, second = steps
+    return lambda value: second(first(value))
 
 
 def _otherwise(

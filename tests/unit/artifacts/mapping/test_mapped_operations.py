@@ -1,5 +1,7 @@
 """Operations of mapped artifacts: publishing, services, actions, parameters, on the graph inside the process."""
 
+import math
+
 import pytest
 from mapped_lab import settle, with_mapped
 from robot_lab import STANDSTILL, Lab
@@ -309,6 +311,30 @@ def test_parameters_of_nodes_are_set_and_given() -> None:
         assert (await lab.call(artifact, "lost", Out())).reason == "parameter_unknown(spede)"
 
     with_mapped(PARAMETERS, body)
+
+
+def test_a_parameter_that_is_no_number_has_no_unit() -> None:
+    text = """
+operations:
+  turn: {get_parameter: turn, node: lab, outputs: [{path: ., unit: degrees, round: 0, names: {none: nowhere}}]}
+"""
+
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        own, out = lab.backend.parameters(), Out()
+        own.declare("turn", Declaration("left"))
+        failed = await lab.call(artifact, "turn", out)
+        assert failed.reason == 'wrong_value("turn")'
+        assert failed.outcome is not None
+        assert 'parameter turn is "left", no number: leave out its unit' in failed.outcome.message
+        await own.set("turn", "none")
+        await lab.do(artifact, "turn", out)
+        assert out.value == Atom("nowhere")
+        own.withdraw("turn")
+        own.declare("turn", Declaration([0.0, math.pi]))
+        await lab.do(artifact, "turn", out)
+        assert out.value == [0, 180]
+
+    with_mapped(text, body)
 
 
 def test_read_gives_the_newest_values() -> None:

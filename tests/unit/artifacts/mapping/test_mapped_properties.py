@@ -497,6 +497,13 @@ def test_parameters_of_nodes_are_properties_that_follow() -> None:
         await own.set("speed", 0.75)
         await settle()
         assert t.held == [(75.0,)]
+        own.withdraw("speed")
+        own.declare("speed", Declaration("fast"))
+        await t.lab.sleep(2)
+        assert t.held == []
+        told = "\n".join(t.lab.logged)
+        assert 'a is not shown: parameter speed is "fast", no number' in told
+        assert "Traceback" not in told
 
     talk(text, body)
 

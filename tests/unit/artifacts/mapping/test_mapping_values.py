@@ -16,6 +16,7 @@ from jacaros.env.values import Atom, Structure
 
 SCAN = "sensor_msgs/msg/LaserScan"
 BATTERY = "sensor_msgs/msg/BatteryState"
+NAMED_SHARE = "{path: percentage, unit: percent, round: 0, names: {-1: unknown}}"
 QUARTER = {"z": math.sin(math.pi / 4), "w": math.cos(math.pi / 4)}
 
 
@@ -76,6 +77,8 @@ def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
         ("std_msgs/msg/Int8", {"data": 1}, "{path: data, names: {0: off, 1: on}}", (Atom("on"),)),
         ("std_msgs/msg/Int8", {"data": 2}, "{path: data, names: {0: off, 1: on}}", (2,)),
         ("std_msgs/msg/String", {"data": "x"}, "{path: data, names: {x: exit}}", (Atom("exit"),)),
+        (BATTERY, {"percentage": -1}, NAMED_SHARE, (Atom("unknown"),)),
+        (BATTERY, {"percentage": 0.5}, NAMED_SHARE, (50,)),
         (SCAN, {"ranges": [1.0, 2.0, 3.0]}, "ranges", ([1.0, 2.0, 3.0],)),
         (SCAN, {"ranges": [1.0, 2.0, 3.0]}, "['ranges[0]', 'ranges[-1]']", (1.0, 3.0)),
         (SCAN, {"ranges": range(9)}, "{path: ranges, sample: 5}", (0.0, 2.0, 4.0, 6.0, 8.0)),
@@ -260,6 +263,9 @@ def test_constants_of_the_type_by_name() -> None:
 
 def test_words_for_values_backwards() -> None:
     assert filled("std_msgs/msg/Int8", "{data: {value: $a, names: {0: off, 1: on}}}", Atom("on")).data == 1
+    fields = "{x: {value: $a, unit: centimetres, names: {-1: nowhere}}}"
+    assert filled("geometry_msgs/msg/Point", fields, Atom("nowhere")).x == -1
+    assert filled("geometry_msgs/msg/Point", fields, 50).x == 0.5
 
 
 def test_structures_lists_and_handles_stand_for_messages() -> None:

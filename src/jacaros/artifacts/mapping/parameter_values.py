@@ -1,0 +1,31 @@
+"""Values of parameters as agents get them: no definition says their type, so what does not fit is seen when it comes."""
+
+from jacaros.artifacts.mapping.declared import AS_IT_IS, Conversion
+from jacaros.artifacts.mapping.taking import Convert, Unshowable, converted
+from jacaros.env.values import text
+from jacaros.ros.parameter import ParameterValue
+
+
+def parameter_converter(conversion: Conversion, name: str) -> Convert:
+    """A function that converts the value of a parameter, of a list each element.
+
+    Args:
+        conversion: names, units, rounding.
+        name: of the parameter, for people.
+
+    The function raises `Unshowable` for what is no number where one is needed.
+    """
+    convert = converted(conversion)
+    if conversion == AS_IT_IS:
+        return convert
+    named = {value for value, _ in conversion.names}
+    wants_number = conversion.line is not None or conversion.digits is not None
+
+    def element(value: ParameterValue) -> object:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if wants_number and not is_number and not (isinstance(value, str | bool) and value in named):
+            told = f"parameter {name} is {text(value, quoted=True)}, no number"
+            raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
+        return convert(value)
+
+    return lambda value: [element(each) for each in value] if isinstance(value, list) else element(value)
