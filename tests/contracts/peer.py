@@ -187,10 +187,12 @@ class Peer(ActionCommands, GraphCommands):
     def _add(self, request: Any) -> dict[str, int]:
         return {"sum": request.a + request.b}
 
-    async def _add_slowly(self, request: Any) -> Any:
+    async def _add_together(self, request: Any) -> Any:
+        """Answer none of the first five requests before all of them are there."""
         self._running += 1
         self._most_running = max(self._most_running, self._running)
-        await self._clock.sleep(0.3)
+        while self._most_running < 5:
+            await self._clock.sleep(0.01)
         self._running -= 1
         return {"sum": request.a + request.b}
 

@@ -26,6 +26,7 @@ class ActionCommands:
         self._waits: dict[str, asyncio.Task[Any]] = {}
         self._feedback: dict[str, list[Any]] = defaultdict(list)
         self._deeds: dict[str, list[Any]] = defaultdict(list)
+        self._together = 0
 
     # The server's side
 
@@ -66,6 +67,13 @@ class ActionCommands:
             await self._clock.sleep(goal.request.period)
             goal.feedback(current=number)
         return {"last": goal.request.target, "message": "counted"}
+
+    async def _do_count_together(self, goal: Any) -> Any:
+        """Begin to count when three goals are under way."""
+        self._together += 1
+        while self._together < 3:
+            await self._clock.sleep(0.01)
+        return await self._do_count(goal)
 
     async def _do_count_and_tell_where(self, goal: Any) -> Any:
         """When it is cancelled it takes a moment to stop, and says how far it came."""

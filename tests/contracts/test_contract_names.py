@@ -25,6 +25,7 @@ def test_namespaces_reach_the_graph(graph: Any, pair: Pair) -> None:
     right.subscribe("/other/scan", "std_msgs/msg/Int32")
     for written, absolute in (("odom", "/robot2/odom"), ("scan", "/other/scan")):
         graph.wait_until(lambda w=written: robot.subscription_count(w) == 1, "they know each other")
+        graph.wait_until(lambda a=absolute: right.publisher_count(a) == 1, "they know each other")
         robot.publish(written, {"data": 5})
         graph.wait_until(lambda a=absolute: right.received(a), "the message arrives")
     assert right.call("/robot2/brain2/add", {"a": 1, "b": 2}, timeout=20) == {"sum": 3}

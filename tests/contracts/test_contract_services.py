@@ -46,12 +46,12 @@ def test_a_standard_service_needs_no_fields(graph: Any, pair: Pair, topic: str) 
 
 def test_calls_of_a_slow_service_go_on_side_by_side(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
-    right.serve(topic, "add_slowly")
+    right.serve(topic, "add_together")
     graph.wait_until(lambda: left.ready(topic), "the service is found")
     for number in range(5):
         left.begin_call(f"{topic}{number}", topic, {"a": number, "b": 100}, timeout=20)
     assert [left.end_call(f"{topic}{n}")["sum"] for n in range(5)] == [100, 101, 102, 103, 104]
-    assert right.most_calls_at_once() >= 2
+    assert right.most_calls_at_once() == 5
 
 
 def test_a_missing_service_is_unavailable_after_the_time_out(graph: Any, pair: Pair, topic: str) -> None:
@@ -102,11 +102,11 @@ def test_a_failing_service_fails_the_call(graph: Any, pair: Pair, topic: str) ->
     graph.wait_until(lambda: left.ready(topic), "the service is found")
     if "service errors" in left.capabilities():
         with pytest.raises(CallFailed, match="no sums today"):
-            left.call(topic, {"a": 1, "b": 1}, timeout=10)
+            left.call(topic, {"a": 1, "b": 1}, timeout=20)
     else:
         with pytest.raises(CallTimedOut):
             left.call(topic, {"a": 1, "b": 1}, timeout=0.5)
-    assert any("no sums today" in line for line in right.log())
+    graph.wait_until(lambda: any("no sums today" in line for line in right.log()), "it is in the log")
 
 
 @pytest.mark.needs("failing services")
@@ -114,10 +114,10 @@ def test_a_wrong_response_fails_the_call(graph: Any, pair: Pair, topic: str) -> 
     left, right = pair
     right.serve(topic, "answer_wrongly")
     graph.wait_until(lambda: left.ready(topic), "the service is found")
-    expected = CallFailed if "service errors" in left.capabilities() else CallTimedOut
-    with pytest.raises(expected):
-        left.call(topic, {"a": 1, "b": 1}, timeout=0.5)
-    assert any("no field 'total'" in line for line in right.log())
+    told = "service errors" in left.capabilities()
+    with pytest.raises(CallFailed if told else CallTimedOut):
+        left.call(topic, {"a": 1, "b": 1}, timeout=20 if told else 0.5)
+    graph.wait_until(lambda: any("no field 'total'" in line for line in right.log()), "it is in the log")
 
 
 def test_the_server_survives_a_failing_call(graph: Any, pair: Pair, topic: str) -> None:

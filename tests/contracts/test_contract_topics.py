@@ -123,11 +123,14 @@ def test_a_latched_message_waits_for_late_subscriptions(graph: Any, pair: Pair, 
 
 def test_a_volatile_topic_shows_nothing_of_the_past(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
-    left.advertise(topic, "std_msgs/msg/String")
+    connected(graph, (left, left), topic, "std_msgs/msg/String")
     left.publish(topic, {"data": "past"})
-    graph.pass_time(0.2)
+    graph.wait_until(lambda: left.received(topic), "it is past: who listens has heard it")
+    left.unsubscribe(topic)
+    graph.wait_until(lambda: left.subscription_count(topic) == 0, "nobody listens any more")
     right.subscribe(topic, "std_msgs/msg/String")
     graph.wait_until(lambda: left.subscription_count(topic) == 1, "they know each other")
+    graph.wait_until(lambda: right.publisher_count(topic) == 1, "they know each other")
     left.publish(topic, {"data": "now"})
     graph.wait_until(lambda: right.received(topic), "the new message arrives")
     assert right.received(topic) == [{"data": "now"}]
@@ -198,6 +201,7 @@ def test_a_subscription_closed_and_made_again_receives(graph: Any, pair: Pair, t
     graph.wait_until(lambda: left.subscription_count(topic) == 0, "the publisher notices the leave")
     right.subscribe(topic, "std_msgs/msg/Int32")
     graph.wait_until(lambda: left.subscription_count(topic) == 1, "the publisher notices the return")
+    graph.wait_until(lambda: right.publisher_count(topic) == 1, "the subscription sees the publisher")
     left.publish(topic, {"data": 4})
     graph.wait_until(lambda: right.received(topic), "the message arrives")
 
