@@ -21,7 +21,7 @@ import jacaros.ros.errors
 from jacaros.clock import VirtualClock, new_event_loop
 from jacaros.ros.backends.memory import MemoryGraph
 
-PATIENCE = 30.0
+PATIENCE = 90.0
 """Seconds after which a test gives up; far more than any step takes on a busy machine."""
 
 

@@ -97,7 +97,7 @@ class GraphCommands:
     # The graph
 
     async def contents(self) -> dict[str, Any]:
-        found = await self._backend.contents()
+        found = await self._backend.contents(timeout=60.0)
         return asdict(found)
 
     def rosout(self, level: str, text: str) -> None:

@@ -34,9 +34,9 @@ def serving(graph: Any, pair: Pair, name: str, behaviour: str = "count", **polic
 
 def test_a_goal_gives_feedback_and_a_result(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic)
-    goal_id = left.send_goal(topic, topic, {"target": 3, "period": 0.05}, timeout=20)
+    goal_id = left.send_goal(topic, topic, {"target": 3, "period": 0.05}, timeout=60)
     assert goal_id
-    assert left.outcome(topic, timeout=20) == {
+    assert left.outcome(topic, timeout=60) == {
         "status": "succeeded",
         "result": {"last": 3, "message": "counted"},
         "text": "counted",
@@ -48,9 +48,9 @@ def test_a_goal_gives_feedback_and_a_result(graph: Any, pair: Pair, topic: str) 
 
 def test_the_outcome_is_known_to_all_who_wait_and_who_ask_later(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic)
-    left.send_goal(topic, topic, {"target": 2, "period": 0.1}, timeout=20)
+    left.send_goal(topic, topic, {"target": 2, "period": 0.1}, timeout=60)
     for waiter in ("a", "b"):
-        left.begin_outcome(topic, timeout=20, waiter=waiter)
+        left.begin_outcome(topic, timeout=60, waiter=waiter)
     ends = [left.end_outcome(topic + waiter) for waiter in ("a", "b")]
     ends.append(left.outcome(topic))
     assert [end["result"]["last"] for end in ends] == [2, 2, 2]
@@ -58,8 +58,8 @@ def test_the_outcome_is_known_to_all_who_wait_and_who_ask_later(graph: Any, pair
 
 def test_no_result_means_the_defaults(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, "nothing")
-    left.send_goal(topic, topic, None, timeout=20)
-    end = left.outcome(topic, timeout=20)
+    left.send_goal(topic, topic, None, timeout=60)
+    end = left.outcome(topic, timeout=60)
     assert end == {"status": "succeeded", "result": {"last": 0, "message": ""}, "text": ""}
 
 
@@ -70,16 +70,16 @@ def test_each_node_serves_the_other_and_itself(graph: Any, pair: Pair, topic: st
     for client, name in ((left, "/right"), (right, "/left"), (left, "/left")):
         key = topic + name
         graph.wait_until(lambda c=client, n=key: c.action_ready(n), "the action is found")
-        client.send_goal(key, key, {"target": 1, "period": 0.01}, timeout=20)
-        assert client.outcome(key, timeout=20)["result"]["last"] == 1
+        client.send_goal(key, key, {"target": 1, "period": 0.01}, timeout=60)
+        assert client.outcome(key, timeout=60)["result"]["last"] == 1
 
 
 def test_several_goals_go_on_side_by_side(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic, "count_together")
     for target in (4, 3, 2):
-        left.send_goal(f"{topic}{target}", topic, {"target": target, "period": 0.1}, timeout=20)
+        left.send_goal(f"{topic}{target}", topic, {"target": target, "period": 0.1}, timeout=60)
     for target in (2, 3, 4):
-        assert left.outcome(f"{topic}{target}", timeout=20)["result"]["last"] == target
+        assert left.outcome(f"{topic}{target}", timeout=60)["result"]["last"] == target
         graph.wait_until(lambda t=target: len(left.feedback(f"{topic}{t}")) == t, "all feedback arrives")
         assert left.feedback(f"{topic}{target}") == list(range(1, target + 1))
     assert [deed[0] for deed in right.deeds(topic)] == ["begin"] * 3 + ["end"] * 3
@@ -88,10 +88,10 @@ def test_several_goals_go_on_side_by_side(graph: Any, pair: Pair, topic: str) ->
 def test_two_clients_get_what_is_theirs(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic)
     graph.wait_until(lambda: right.action_ready(topic), "the action is found by its own node")
-    left.send_goal(topic, topic, {"target": 3, "period": 0.1}, timeout=20)
-    right.send_goal(topic, topic, {"target": 2, "period": 0.1}, timeout=20)
-    assert right.outcome(topic, timeout=20)["result"]["last"] == 2
-    assert left.outcome(topic, timeout=20)["result"]["last"] == 3
+    left.send_goal(topic, topic, {"target": 3, "period": 0.1}, timeout=60)
+    right.send_goal(topic, topic, {"target": 2, "period": 0.1}, timeout=60)
+    assert right.outcome(topic, timeout=60)["result"]["last"] == 2
+    assert left.outcome(topic, timeout=60)["result"]["last"] == 3
     graph.wait_until(lambda: len(left.feedback(topic)) == 3, "all feedback arrives")
     graph.wait_until(lambda: len(right.feedback(topic)) == 2, "all feedback arrives")
     assert (left.feedback(topic), right.feedback(topic)) == ([1, 2, 3], [1, 2])
@@ -99,22 +99,22 @@ def test_two_clients_get_what_is_theirs(graph: Any, pair: Pair, topic: str) -> N
 
 def test_a_goal_can_be_cancelled(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic)
-    left.send_goal(topic, topic, SLOW, timeout=20)
+    left.send_goal(topic, topic, SLOW, timeout=60)
     graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
-    assert left.cancel_goal(topic, timeout=20) is True
-    end = left.outcome(topic, timeout=20)
+    assert left.cancel_goal(topic, timeout=60) is True
+    end = left.outcome(topic, timeout=60)
     assert (end["status"], end["result"]["last"]) == ("canceled", 0)
     graph.wait_until(lambda: len(right.deeds(topic)) == 2, "the code has ended")
     assert right.deeds(topic) == [["begin", 500], ["end", 500, True]]
-    assert left.cancel_goal(topic, timeout=20) is False  # it is over
+    assert left.cancel_goal(topic, timeout=60) is False  # it is over
 
 
 def test_a_cancelled_goal_may_have_a_result(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, "count_and_tell_where")
-    left.send_goal(topic, topic, SLOW, timeout=20)
+    left.send_goal(topic, topic, SLOW, timeout=60)
     graph.wait_until(lambda: len(left.feedback(topic)) >= 2, "the goal is under way")
-    assert left.cancel_goal(topic, timeout=20) is True
-    end = left.outcome(topic, timeout=20)
+    assert left.cancel_goal(topic, timeout=60) is True
+    end = left.outcome(topic, timeout=60)
     assert (end["status"], end["result"]["message"]) == ("canceled", "stopped")
     assert end["result"]["last"] >= 2
 
@@ -122,18 +122,18 @@ def test_a_cancelled_goal_may_have_a_result(graph: Any, pair: Pair, topic: str) 
 @pytest.mark.needs("refusing goals")
 def test_a_server_may_refuse_to_cancel(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, may_cancel=False)
-    left.send_goal(topic, topic, {"target": 8, "period": 0.1}, timeout=20)
+    left.send_goal(topic, topic, {"target": 8, "period": 0.1}, timeout=60)
     graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
-    assert left.cancel_goal(topic, timeout=20) is False
-    assert left.outcome(topic, timeout=20)["status"] == "succeeded"
+    assert left.cancel_goal(topic, timeout=60) is False
+    assert left.outcome(topic, timeout=60)["status"] == "succeeded"
 
 
 def test_a_newer_goal_takes_over_where_goals_preempt(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic, "count_and_tell_where", preempt=True)
-    left.send_goal(topic + "old", topic, SLOW, timeout=20)
+    left.send_goal(topic + "old", topic, SLOW, timeout=60)
     graph.wait_until(lambda: left.feedback(topic + "old"), "the old goal is under way")
-    left.send_goal(topic + "new", topic, {"target": 1, "period": 0.05}, timeout=20)
-    old, new = left.outcome(topic + "old", timeout=20), left.outcome(topic + "new", timeout=20)
+    left.send_goal(topic + "new", topic, {"target": 1, "period": 0.05}, timeout=60)
+    old, new = left.outcome(topic + "old", timeout=60), left.outcome(topic + "new", timeout=60)
     assert (old["status"], old["result"]["message"]) == ("aborted", "stopped")
     assert (new["status"], new["result"]["last"]) == ("succeeded", 1)
     # The code of the new one begins when that of the old one has ended: two never drive one robot.
@@ -148,32 +148,32 @@ def test_goals_that_wait_for_their_server_arrive_in_their_order(graph: Any, pair
     right.serve_action(topic, "count")
     for target in targets:
         left.end_send(f"{topic}{target}")
-        assert left.outcome(f"{topic}{target}", timeout=20)["result"]["last"] == target
+        assert left.outcome(f"{topic}{target}", timeout=60)["result"]["last"] == target
     assert [deed[1] for deed in right.deeds(topic) if deed[0] == "begin"] == targets
 
 
 def test_a_preempted_goal_says_why(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, preempt=True)
-    left.send_goal(topic + "old", topic, SLOW, timeout=20)
+    left.send_goal(topic + "old", topic, SLOW, timeout=60)
     graph.wait_until(lambda: left.feedback(topic + "old"), "the old goal is under way")
-    left.send_goal(topic + "new", topic, {"target": 1}, timeout=20)
-    old = left.outcome(topic + "old", timeout=20)
+    left.send_goal(topic + "new", topic, {"target": 1}, timeout=60)
+    old = left.outcome(topic + "old", timeout=60)
     assert (old["status"], old["text"]) == ("aborted", "preempted by a newer goal")
-    assert left.outcome(topic + "new", timeout=20)["status"] == "succeeded"
+    assert left.outcome(topic + "new", timeout=60)["status"] == "succeeded"
 
 
 @pytest.mark.needs("refusing goals")
 def test_a_goal_can_be_rejected(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic)
     with pytest.raises(GoalRejected, match=topic):
-        left.send_goal(topic, topic, {"target": -1}, timeout=20)
+        left.send_goal(topic, topic, {"target": -1}, timeout=60)
     assert right.deeds(topic) == []
 
 
 def test_aborting_tells_a_text_and_a_result(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, "give_up")
-    left.send_goal(topic, topic, {"target": 3}, timeout=20)
-    assert left.outcome(topic, timeout=20) == {
+    left.send_goal(topic, topic, {"target": 3}, timeout=60)
+    assert left.outcome(topic, timeout=60) == {
         "status": "aborted",
         "result": {"last": 1, "message": "cannot count so far"},
         "text": "cannot count so far",
@@ -182,8 +182,8 @@ def test_aborting_tells_a_text_and_a_result(graph: Any, pair: Pair, topic: str) 
 
 def test_aborting_needs_no_result(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic, "give_up_without_a_result")
-    left.send_goal(topic, topic, {"target": 3}, timeout=20)
-    end = left.outcome(topic, timeout=20)
+    left.send_goal(topic, topic, {"target": 3}, timeout=60)
+    end = left.outcome(topic, timeout=60)
     assert (end["status"], end["text"], end["result"]["last"]) == ("aborted", "cannot count", 0)
 
 
@@ -200,23 +200,23 @@ def test_code_that_fails_aborts_its_goal(
 ) -> None:
     topic = f"{topic}/{behaviour}"
     left, right = serving(graph, pair, topic, behaviour)
-    left.send_goal(topic, topic, {"target": 1}, timeout=20)
-    end = left.outcome(topic, timeout=20)
+    left.send_goal(topic, topic, {"target": 1}, timeout=60)
+    end = left.outcome(topic, timeout=60)
     assert end["status"] == "aborted"
     assert said in end["text"]
     assert any(said in line for line in right.log())
     # and the server lives on
-    left.send_goal(topic + "again", topic, {"target": 1}, timeout=20)
-    assert left.outcome(topic + "again", timeout=20)["status"] == "aborted"
+    left.send_goal(topic + "again", topic, {"target": 1}, timeout=60)
+    assert left.outcome(topic + "again", timeout=60)["status"] == "aborted"
 
 
 def test_waiting_for_the_outcome_can_time_out_without_harm(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = serving(graph, pair, topic)
-    left.send_goal(topic, topic, SLOW, timeout=20)
+    left.send_goal(topic, topic, SLOW, timeout=60)
     with pytest.raises(CallTimedOut, match=r"still under way after 0\.3 s"):
         left.outcome(topic, timeout=0.3)
-    assert left.cancel_goal(topic, timeout=20) is True
-    assert left.outcome(topic, timeout=20)["status"] == "canceled"
+    assert left.cancel_goal(topic, timeout=60) is True
+    assert left.outcome(topic, timeout=60)["status"] == "canceled"
 
 
 def test_a_missing_server_is_unavailable_after_the_time_out(graph: Any, pair: Pair, topic: str) -> None:
@@ -229,11 +229,11 @@ def test_a_missing_server_is_unavailable_after_the_time_out(graph: Any, pair: Pa
 
 def test_a_server_that_comes_late_gets_the_goal(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
-    left.begin_send(topic, topic, {"target": 2, "period": 0.01}, timeout=25)
+    left.begin_send(topic, topic, {"target": 2, "period": 0.01}, timeout=60)
     graph.pass_time(0.2)
     right.serve_action(topic)
     assert left.end_send(topic)
-    assert left.outcome(topic, timeout=20)["result"]["last"] == 2
+    assert left.outcome(topic, timeout=60)["result"]["last"] == 2
 
 
 def test_sending_can_be_given_up_while_waiting_for_the_server(graph: Any, pair: Pair, topic: str) -> None:
@@ -243,8 +243,8 @@ def test_sending_can_be_given_up_while_waiting_for_the_server(graph: Any, pair: 
     assert left.give_up_send(topic) is True
     right.serve_action(topic)
     graph.wait_until(lambda: left.action_ready(topic), "the action is found")
-    left.send_goal(topic + "other", topic, {"target": 1}, timeout=20)
-    left.outcome(topic + "other", timeout=20)
+    left.send_goal(topic + "other", topic, {"target": 1}, timeout=60)
+    left.outcome(topic + "other", timeout=60)
     assert [deed[:2] for deed in right.deeds(topic)] == [["begin", 1], ["end", 1]]
 
 
@@ -252,9 +252,9 @@ def test_giving_up_a_goal_that_was_just_sent_cancels_it(graph: Any, pair: Pair, 
     left, right = serving(graph, pair, topic)
     left.begin_send(topic, topic, SLOW)
     if not left.give_up_send(topic):  # it was accepted before that, as it happens
-        assert left.cancel_goal(topic, timeout=20) is True
-    left.send_goal(topic + "other", topic, {"target": 1}, timeout=20)
-    left.outcome(topic + "other", timeout=20)
+        assert left.cancel_goal(topic, timeout=60) is True
+    left.send_goal(topic + "other", topic, {"target": 1}, timeout=60)
+    left.outcome(topic + "other", timeout=60)
 
     def none_is_under_way() -> bool:
         deeds = right.deeds(topic)
@@ -267,10 +267,10 @@ def test_giving_up_a_goal_that_was_just_sent_cancels_it(graph: Any, pair: Pair, 
 
 def test_closing_the_server_aborts_what_is_under_way(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic)
-    left.send_goal(topic, topic, SLOW, timeout=20)
+    left.send_goal(topic, topic, SLOW, timeout=60)
     graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
     right.unserve_action(topic)
-    end = left.outcome(topic, timeout=25)
+    end = left.outcome(topic, timeout=60)
     assert (end["status"], end["text"]) == ("aborted", "the server was closed")
     graph.wait_until(lambda: ["end", 500, False] in right.deeds(topic), "the code has ended")
     graph.wait_until(lambda: not left.action_ready(topic), "the client notices")
@@ -280,7 +280,7 @@ def test_closing_the_server_aborts_what_is_under_way(graph: Any, pair: Pair, top
 
 def test_closing_the_client_cancels_its_goals(graph: Any, pair: Pair, topic: str) -> None:
     left, right = serving(graph, pair, topic)
-    left.send_goal(topic, topic, SLOW, timeout=20)
+    left.send_goal(topic, topic, SLOW, timeout=60)
     graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
     left.begin_outcome(topic)
     left.close_action_client(topic)
@@ -294,7 +294,7 @@ def test_a_server_that_dies_is_lost(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     mortal = graph.peer("mortal_server")
     serving(graph, (left, mortal), topic)
-    left.send_goal(topic, topic, SLOW, timeout=20)
+    left.send_goal(topic, topic, SLOW, timeout=60)
     graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
     left.begin_outcome(topic)
     graph.kill(mortal)
@@ -308,20 +308,20 @@ def test_a_server_that_dies_is_lost(graph: Any, pair: Pair, topic: str) -> None:
     # With a new server the same client goes on.
     second = graph.peer("second_server")
     serving(graph, (left, second), topic)
-    left.send_goal(topic + "again", topic, {"target": 1}, timeout=20)
-    assert left.outcome(topic + "again", timeout=20)["status"] == "succeeded"
+    left.send_goal(topic + "again", topic, {"target": 1}, timeout=60)
+    assert left.outcome(topic + "again", timeout=60)["status"] == "succeeded"
 
 
 def test_a_client_that_dies_does_the_server_no_harm(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     mortal = graph.peer("mortal_client")
     serving(graph, (mortal, right), topic)
-    mortal.send_goal(topic, topic, {"target": 5, "period": 0.1}, timeout=20)
+    mortal.send_goal(topic, topic, {"target": 5, "period": 0.1}, timeout=60)
     graph.wait_until(lambda: mortal.feedback(topic), "the goal is under way")
     graph.kill(mortal)
     graph.wait_until(lambda: left.action_ready(topic), "the action is found")
-    left.send_goal(topic, topic, {"target": 1}, timeout=20)
-    assert left.outcome(topic, timeout=20)["status"] == "succeeded"
+    left.send_goal(topic, topic, {"target": 1}, timeout=60)
+    assert left.outcome(topic, timeout=60)["status"] == "succeeded"
 
 
 def test_names_are_resolved(graph: Any, pair: Pair) -> None:
@@ -329,8 +329,8 @@ def test_names_are_resolved(graph: Any, pair: Pair) -> None:
     robot = graph.peer("counting_brain", namespace="counting_robot")
     assert robot.serve_action("count") == "/counting_robot/count"
     graph.wait_until(lambda: right.action_ready("/counting_robot/count"), "the action is found")
-    right.send_goal("names", "/counting_robot/count", {"target": 1}, timeout=20)
-    assert right.outcome("names", timeout=20)["status"] == "succeeded"
+    right.send_goal("names", "/counting_robot/count", {"target": 1}, timeout=60)
+    assert right.outcome("names", timeout=60)["status"] == "succeeded"
 
 
 def test_goals_are_checked_before_they_are_sent(graph: Any, pair: Pair, topic: str) -> None:

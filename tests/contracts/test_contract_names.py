@@ -28,7 +28,7 @@ def test_namespaces_reach_the_graph(graph: Any, pair: Pair) -> None:
         graph.wait_until(lambda a=absolute: right.publisher_count(a) == 1, "they know each other")
         robot.publish(written, {"data": 5})
         graph.wait_until(lambda a=absolute: right.received(a), "the message arrives")
-    assert right.call("/robot2/brain2/add", {"a": 1, "b": 2}, timeout=20) == {"sum": 3}
+    assert right.call("/robot2/brain2/add", {"a": 1, "b": 2}, timeout=60) == {"sum": 3}
 
 
 def test_two_robots_do_not_hear_each_other(graph: Any) -> None:

@@ -44,18 +44,18 @@ def test_a_parameter_is_read_and_changed_by_others(
     left, right = pair
     having(right, f"{name}_{kind}", first)
     node = right.node_name()
-    assert left.get_parameter(f"{name}_{kind}", node, timeout=20) == first
-    left.set_parameter(f"{name}_{kind}", second, node, timeout=20)
-    assert right.get_parameter(f"{name}_{kind}", timeout=20) == second
-    assert type(left.get_parameter(f"{name}_{kind}", node, timeout=20)) is type(second)
+    assert left.get_parameter(f"{name}_{kind}", node, timeout=60) == first
+    left.set_parameter(f"{name}_{kind}", second, node, timeout=60)
+    assert right.get_parameter(f"{name}_{kind}", timeout=60) == second
+    assert type(left.get_parameter(f"{name}_{kind}", node, timeout=60)) is type(second)
 
 
 @pytest.mark.needs("own parameters")
 def test_a_node_reads_and_changes_its_own(graph: Any, pair: Pair, name: str) -> None:
     left, _ = pair
     having(left, name, 1)
-    left.set_parameter(name, 2, timeout=20)
-    assert left.get_parameter(name, timeout=20) == 2
+    left.set_parameter(name, 2, timeout=60)
+    assert left.get_parameter(name, timeout=60) == 2
     assert left.parameter_node() == left.node_name()
 
 
@@ -64,18 +64,18 @@ def test_names_are_told(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     for ending in ("b", "a"):
         having(right, f"{name}_{ending}", 1)
-    names = left.parameter_names(right.node_name(), timeout=20)
+    names = left.parameter_names(right.node_name(), timeout=60)
     assert [n for n in names if n.startswith(name)] == [f"{name}_a", f"{name}_b"]
-    assert f"{name}_a" not in left.parameter_names(timeout=20)
+    assert f"{name}_a" not in left.parameter_names(timeout=60)
 
 
 @pytest.mark.needs("own parameters")
 def test_an_unknown_parameter_is_told(graph: Any, pair: Pair, name: str) -> None:
     left, right = pair
     with pytest.raises(ParameterUnknown, match=f"{right.node_name()}.*{name}"):
-        left.get_parameter(name, right.node_name(), timeout=20)
+        left.get_parameter(name, right.node_name(), timeout=60)
     with pytest.raises(ParameterUnknown, match=name):
-        left.get_parameter(name, timeout=20)
+        left.get_parameter(name, timeout=60)
 
 
 @pytest.mark.needs("own parameters")
@@ -83,10 +83,10 @@ def test_a_parameter_that_was_not_declared_cannot_be_set(graph: Any, pair: Pair,
     left, right = pair
     if "declared parameters" in left.capabilities():
         with pytest.raises(ParameterUnknown, match=name):
-            left.set_parameter(name, 1, right.node_name(), timeout=20)
+            left.set_parameter(name, 1, right.node_name(), timeout=60)
     else:
-        left.set_parameter(name, 1, right.node_name(), timeout=20)
-        assert right.get_parameter(name, timeout=20) == 1
+        left.set_parameter(name, 1, right.node_name(), timeout=60)
+        assert right.get_parameter(name, timeout=60) == 1
 
 
 @pytest.mark.needs("own parameters")
@@ -95,8 +95,8 @@ def test_values_that_no_parameter_holds_are_refused(graph: Any, pair: Pair, name
     having(left, name, 1)
     for value in (None, {"a": 1}, [1, "a"], [[1]]):
         with pytest.raises(ParameterRefused):
-            left.set_parameter(name, value, timeout=20)
-    assert left.get_parameter(name, timeout=20) == 1
+            left.set_parameter(name, value, timeout=60)
+    assert left.get_parameter(name, timeout=60) == 1
 
 
 def test_declaring_is_for_where_parameters_are_declared(graph: Any, pair: Pair, name: str) -> None:
@@ -127,10 +127,10 @@ def test_a_declaration_is_taken_back(graph: Any, pair: Pair, name: str) -> None:
     for each in (name, f"{name}_even"):
         left.withdraw(each)
         with pytest.raises(ParameterUnknown, match=each):
-            right.get_parameter(each, left.node_name(), timeout=20)
+            right.get_parameter(each, left.node_name(), timeout=60)
     assert left.declare(name, "another type") == "another type"
     assert left.declare(f"{name}_even", 3) == 3
-    right.set_parameter(f"{name}_even", 5, left.node_name(), timeout=20)
+    right.set_parameter(f"{name}_even", 5, left.node_name(), timeout=60)
 
 
 def test_numbers_and_ranges_have_their_limits(graph: Any, pair: Pair, name: str) -> None:
@@ -141,11 +141,11 @@ def test_numbers_and_ranges_have_their_limits(graph: Any, pair: Pair, name: str)
         with pytest.raises(ParameterRefused, match="64 bits"):
             left.declare(name, default)
     assert left.declare(name, 1, minimum=-float("inf"), maximum=1e300) == 1
-    left.set_parameter(name, 2**63 - 1, timeout=20)
+    left.set_parameter(name, 2**63 - 1, timeout=60)
     with pytest.raises(ParameterRefused, match="64 bits"):
-        left.set_parameter(name, -(2**63) - 1, timeout=20)
+        left.set_parameter(name, -(2**63) - 1, timeout=60)
     with pytest.raises(ParameterRefused):
-        left.set_parameter(name, [], timeout=20)
+        left.set_parameter(name, [], timeout=60)
 
 
 def declaring(pair: Pair, name: str, default: Any, **more: Any) -> tuple[Any, str] | None:
@@ -163,45 +163,45 @@ def test_a_parameter_keeps_its_type(graph: Any, pair: Pair, name: str) -> None:
     if (declared := declaring(pair, name, 1)) is not None:
         left, node = declared
         with pytest.raises(ParameterRefused, match=name):
-            left.set_parameter(name, "one", node, timeout=20)
-        assert left.get_parameter(name, node, timeout=20) == 1
+            left.set_parameter(name, "one", node, timeout=60)
+        assert left.get_parameter(name, node, timeout=60) == 1
 
 
 def test_a_parameter_stays_in_its_range(graph: Any, pair: Pair, name: str) -> None:
     if (declared := declaring(pair, name, 0.5, minimum=0.0, maximum=1.0)) is not None:
         left, node = declared
-        left.set_parameter(name, 1.0, node, timeout=20)
+        left.set_parameter(name, 1.0, node, timeout=60)
         for value in (1.5, -0.5):
             with pytest.raises(ParameterRefused, match=name):
-                left.set_parameter(name, value, node, timeout=20)
-        assert left.get_parameter(name, node, timeout=20) == 1.0
+                left.set_parameter(name, value, node, timeout=60)
+        assert left.get_parameter(name, node, timeout=60) == 1.0
 
 
 def test_a_range_may_be_open(graph: Any, pair: Pair, name: str) -> None:
     if (declared := declaring(pair, name, 5, minimum=1)) is not None:
         left, node = declared
-        left.set_parameter(name, 1_000_000, node, timeout=20)
+        left.set_parameter(name, 1_000_000, node, timeout=60)
         with pytest.raises(ParameterRefused, match=name):
-            left.set_parameter(name, 0, node, timeout=20)
+            left.set_parameter(name, 0, node, timeout=60)
 
 
 def test_a_read_only_parameter_is_not_changed(graph: Any, pair: Pair, name: str) -> None:
     if (declared := declaring(pair, name, "fixed", read_only=True)) is not None:
         left, node = declared
         with pytest.raises(ParameterRefused, match="read-only"):
-            left.set_parameter(name, "loose", node, timeout=20)
+            left.set_parameter(name, "loose", node, timeout=60)
         with pytest.raises(ParameterRefused, match="read-only"):
-            pair[1].set_parameter(name, "loose", timeout=20)
-        assert left.get_parameter(name, node, timeout=20) == "fixed"
+            pair[1].set_parameter(name, "loose", timeout=60)
+        assert left.get_parameter(name, node, timeout=60) == "fixed"
 
 
 def test_a_node_may_refuse_a_value(graph: Any, pair: Pair, name: str) -> None:
     if (declared := declaring(pair, name, 2, only_even=True)) is not None:
         left, node = declared
         with pytest.raises(ParameterRefused, match="it is odd"):
-            left.set_parameter(name, 3, node, timeout=20)
-        left.set_parameter(name, 4, node, timeout=20)
-        assert left.get_parameter(name, node, timeout=20) == 4
+            left.set_parameter(name, 3, node, timeout=60)
+        left.set_parameter(name, 4, node, timeout=60)
+        assert left.get_parameter(name, node, timeout=60) == 4
 
 
 def test_a_default_that_breaks_its_declaration_is_refused(graph: Any, pair: Pair, name: str) -> None:
@@ -224,17 +224,17 @@ def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:
         return {name: value} in left.parameter_changes(name)
 
     def change_is_told() -> bool:
-        left.set_parameter(name, 2, right.node_name(), timeout=20)
+        left.set_parameter(name, 2, right.node_name(), timeout=60)
         return told(2)
 
     graph.wait_until(change_is_told, "a change by another node is told")
-    right.set_parameter(name, 3, timeout=20)
+    right.set_parameter(name, 3, timeout=60)
     graph.wait_until(lambda: told(3), "a change by the node itself is told")
     having(right, name + "_new", 7)
     graph.wait_until(lambda: {name + "_new": 7} in left.parameter_changes(name), "a declaration is told")
     left.unwatch_parameters(name)
     before = len(left.parameter_changes(name))
-    left.set_parameter(name, 4, right.node_name(), timeout=20)
+    left.set_parameter(name, 4, right.node_name(), timeout=60)
     graph.pass_time(0.3)
     assert len(left.parameter_changes(name)) == before
 
@@ -251,8 +251,8 @@ def test_only_the_changes_of_the_node_are_told(graph: Any, pair: Pair, name: str
     right.watch_parameters(name)
 
     def own_change_is_told() -> bool:
-        left.set_parameter(name, 2, timeout=20)
-        right.set_parameter(name, 5, timeout=20)
+        left.set_parameter(name, 2, timeout=60)
+        right.set_parameter(name, 5, timeout=60)
         return {name: 5} in right.parameter_changes(name)
 
     graph.wait_until(own_change_is_told, "its own change is told")
@@ -263,7 +263,7 @@ def test_a_node_that_is_not_there_cannot_be_asked(graph: Any, pair: Pair, name: 
     left, _ = pair
     if graph.kind.endswith("ros1"):  # the master keeps the parameters, whether there is such a node or not
         with pytest.raises(ParameterUnknown, match=name):
-            left.get_parameter(name, "/nobody", timeout=20)
+            left.get_parameter(name, "/nobody", timeout=60)
     else:
         with pytest.raises((ServiceError, ParameterUnknown), match="nobody"):
             left.get_parameter(name, "/nobody", timeout=0.5)

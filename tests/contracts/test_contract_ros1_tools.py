@@ -61,22 +61,22 @@ def native(graph: Any) -> Callable[..., str]:
 def test_a_genuine_server_carries_out_our_goals(graph: Any, pair: Pair) -> None:
     left, _ = pair
     with running(graph, "serve"):
-        left.send_goal("native", "/native/count", {"target": 4, "period": 0.05}, timeout=20)
-        end = left.outcome("native", timeout=20)
+        left.send_goal("native", "/native/count", {"target": 4, "period": 0.05}, timeout=60)
+        end = left.outcome("native", timeout=60)
         assert end == {"status": "succeeded", "result": {"last": 4, "message": ""}, "text": ""}
         # A server that has just been found may not have us among those who hear its feedback yet.
         assert left.feedback("native")[:3] in ([1, 2, 3], [2, 3, 4])
-        left.send_goal("unlucky", "/native/count", {"target": 13}, timeout=20)
-        end = left.outcome("unlucky", timeout=20)
+        left.send_goal("unlucky", "/native/count", {"target": 13}, timeout=60)
+        end = left.outcome("unlucky", timeout=60)
         assert (end["status"], end["result"]["last"], end["text"]) == ("aborted", 13, "an unlucky number")
-        left.send_goal("long", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
-        assert left.cancel_goal("long", timeout=20) is True
-        end = left.outcome("long", timeout=20)
+        left.send_goal("long", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
+        assert left.cancel_goal("long", timeout=60) is True
+        end = left.outcome("long", timeout=60)
         assert (end["status"], end["text"]) == ("canceled", "stopped")
-        left.send_goal("older", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
-        left.send_goal("newer", "/native/count", {"target": 1}, timeout=20)
-        assert left.outcome("older", timeout=20)["status"] == "canceled"  # preempted by the newer one
-        assert left.outcome("newer", timeout=20)["status"] == "succeeded"
+        left.send_goal("older", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
+        left.send_goal("newer", "/native/count", {"target": 1}, timeout=60)
+        assert left.outcome("older", timeout=60)["status"] == "canceled"  # preempted by the newer one
+        assert left.outcome("newer", timeout=60)["status"] == "succeeded"
     left.close_action_client("/native/count")
 
 
@@ -86,19 +86,19 @@ def test_a_genuine_server_refuses_and_is_deaf_and_recalls(
     left, right = pair
     with running(graph, "crowd"):
         with pytest.raises(GoalRejected, match="refused the goal: not two"):
-            left.send_goal("two", "/native/count", {"target": 2}, timeout=20)
-        left.send_goal("three", "/native/count", {"target": 3}, timeout=20)
+            left.send_goal("two", "/native/count", {"target": 2}, timeout=60)
+        left.send_goal("three", "/native/count", {"target": 3}, timeout=60)
         # A server that has been asked is PREEMPTING at once, whatever its code does.
-        assert left.cancel_goal("three", timeout=20) is True
+        assert left.cancel_goal("three", timeout=60) is True
         left.begin_send("one", "/native/count", {"target": 1})
         graph.wait_until(lambda: right.action_ready("/native/count"), "the other client sees the server")
-        right.send_goal("four", "/native/count", {"target": 4}, timeout=20)
-        assert right.outcome("four", timeout=20)["result"]["last"] == 4
-        assert left.outcome("three", timeout=20)["status"] == "succeeded"
+        right.send_goal("four", "/native/count", {"target": 4}, timeout=60)
+        assert right.outcome("four", timeout=60)["result"]["last"] == 4
+        assert left.outcome("three", timeout=60)["status"] == "succeeded"
         native("cancel", "/native/count")  # cancelled before the server has begun with it: recalled
         left.end_send("one")
-        assert left.outcome("one", timeout=20)["text"] == "never begun"
-        assert left.outcome("one", timeout=20)["status"] == "canceled"
+        assert left.outcome("one", timeout=60)["text"] == "never begun"
+        assert left.outcome("one", timeout=60)["status"] == "canceled"
     for peer in pair:
         peer.close_action_client("/native/count")
 
@@ -106,29 +106,29 @@ def test_a_genuine_server_refuses_and_is_deaf_and_recalls(
 def test_a_genuine_server_that_freezes_or_dies_is_lost(graph: Any, pair: Pair) -> None:
     left, _ = pair
     with running(graph, "serve") as server:
-        left.send_goal("frozen", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        left.send_goal("frozen", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
         server.send_signal(signal.SIGSTOP)
         with pytest.raises(ServerLost):
-            left.outcome("frozen", timeout=20)
+            left.outcome("frozen", timeout=60)
         server.send_signal(signal.SIGCONT)
-        left.send_goal("killed", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        left.send_goal("killed", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
         server.kill()
         with pytest.raises(ServerLost):
-            left.outcome("killed", timeout=20)
+            left.outcome("killed", timeout=60)
     assert left.action_ready("/native/count") is False
     with running(graph, "serve"):
-        left.send_goal("again", "/native/count", {"target": 1}, timeout=20)
-        assert left.outcome("again", timeout=20)["status"] == "succeeded"
+        left.send_goal("again", "/native/count", {"target": 1}, timeout=60)
+        assert left.outcome("again", timeout=60)["status"] == "succeeded"
     left.close_action_client("/native/count")
 
 
 def test_a_genuine_server_started_again_at_once_does_not_know_our_goal(graph: Any, pair: Pair) -> None:
     left, _ = pair
     with running(graph, "serve") as server:
-        left.send_goal("old", "/native/count", {"target": 1000, "period": 0.02}, timeout=20)
+        left.send_goal("old", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
         server.kill()
     with running(graph, "serve"), pytest.raises(ServerLost):
-        left.outcome("old", timeout=20)
+        left.outcome("old", timeout=60)
     left.close_action_client("/native/count")
 
 
@@ -160,10 +160,10 @@ def test_a_genuine_request_cancels_all_goals_of_our_server(
     left, right = pair
     right.serve_action(topic, "count")
     for key in ("a", "b"):
-        left.send_goal(key, topic, {"target": 1000, "period": 0.05}, timeout=20)
+        left.send_goal(key, topic, {"target": 1000, "period": 0.05}, timeout=60)
     native("cancel", topic)
     for key in ("a", "b"):
-        assert left.outcome(key, timeout=20)["status"] == "canceled"
+        assert left.outcome(key, timeout=60)["status"] == "canceled"
     right.unserve_action(topic)
 
 
@@ -211,7 +211,7 @@ def test_another_version_of_a_definition_is_told(graph: Any, pair: Pair, topic: 
 def test_tf2_and_we_see_the_same_frames(graph: Any, pair: Pair, native: Callable[..., str]) -> None:
     left, right = pair
     with running(graph, "send_tf"):
-        found = left.wait_for_transform("native_odom", "native_laser", timeout=20)
+        found = left.wait_for_transform("native_odom", "native_laser", timeout=60)
         assert found["x"] == pytest.approx(2.5)
     right.send_transform("our_odom", "our_base", 3.0, static=True)
     right.send_transform("our_base", "our_laser", 0.25, static=True)

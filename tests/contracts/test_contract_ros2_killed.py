@@ -19,7 +19,7 @@ def test_a_server_that_is_killed_as_soon_as_it_has_accepted_is_lost(
     left, _ = pair
     mortal = graph.peer("short_lived_server")
     mortal.serve_action(topic)
-    left.send_goal(topic, topic, LONG, timeout=25)
+    left.send_goal(topic, topic, LONG, timeout=60)
     left.begin_outcome(topic)
     graph.kill(mortal)
     graph.wait_until(lambda: left.outcome_known(topic), "the loss is noticed", LOST)

@@ -197,11 +197,11 @@ async def test(backend, publisher, hear):
     client = backend.action_client("/count", "jacaros_interfaces/action/Count")
     before = len(backend.members), len(list(backend.rcl.clients))
     for _ in range(20):
-        goal = await client.send({"target": 1}, timeout=20)
-        await goal.cancel(timeout=20)
-    goal = await client.send({"target": 1}, timeout=20)
+        goal = await client.send({"target": 1}, timeout=60)
+        await goal.cancel(timeout=60)
+    goal = await client.send({"target": 1}, timeout=60)
     assert client.wire._calls, "the result was asked for"
-    await goal.cancel(timeout=20)
+    await goal.cancel(timeout=60)
     await until(lambda: not client.busy)
     assert not client.wire._calls
     assert (len(backend.members), len(list(backend.rcl.clients))) == before

@@ -70,36 +70,36 @@ def native(graph: Any) -> Iterator[subprocess.Popen[bytes]]:
 
 def test_goals_of_a_plain_server(graph: Any, pair: Pair, topic: str, native: Any) -> None:
     left, _ = pair
-    left.send_goal(topic, COUNT, {"target": 3, "period": 0.05}, timeout=25)
-    assert left.outcome(topic, timeout=25) == {
+    left.send_goal(topic, COUNT, {"target": 3, "period": 0.05}, timeout=60)
+    assert left.outcome(topic, timeout=60) == {
         "status": "succeeded",
         "result": {"last": 3, "message": "counted natively"},
         "text": "counted natively",
     }
     assert left.feedback(topic)[-1] == 3
     with pytest.raises(GoalRejected):
-        left.send_goal(topic + "refused", COUNT, {"target": -1}, timeout=25)
-    left.send_goal(topic + "long", COUNT, LONG, timeout=25)
+        left.send_goal(topic + "refused", COUNT, {"target": -1}, timeout=60)
+    left.send_goal(topic + "long", COUNT, LONG, timeout=60)
     graph.wait_until(lambda: left.feedback(topic + "long"), "it is under way")
-    assert left.cancel_goal(topic + "long", timeout=25) is True
-    end = left.outcome(topic + "long", timeout=25)
+    assert left.cancel_goal(topic + "long", timeout=60) is True
+    end = left.outcome(topic + "long", timeout=60)
     assert (end["status"], end["text"]) == ("canceled", "as you wish")
-    assert left.cancel_goal(topic + "long", timeout=25) is False
+    assert left.cancel_goal(topic + "long", timeout=60) is False
 
 
 def test_many_goals_of_a_plain_server_at_once(graph: Any, pair: Pair, topic: str, native: Any) -> None:
     left, _ = pair
     for number in range(1, 9):
-        left.begin_send(f"{topic}{number}", COUNT, {"target": number, "period": 0.01}, timeout=25)
+        left.begin_send(f"{topic}{number}", COUNT, {"target": number, "period": 0.01}, timeout=60)
     for number in range(1, 9):
         left.end_send(f"{topic}{number}")
-    ends = [left.outcome(f"{topic}{number}", timeout=25)["result"]["last"] for number in range(1, 9)]
+    ends = [left.outcome(f"{topic}{number}", timeout=60)["result"]["last"] for number in range(1, 9)]
     assert ends == list(range(1, 9))
 
 
 def test_a_plain_server_that_is_killed_is_lost(graph: Any, pair: Pair, topic: str, native: Any) -> None:
     left, _ = pair
-    left.send_goal(topic, COUNT, LONG, timeout=25)
+    left.send_goal(topic, COUNT, LONG, timeout=60)
     graph.wait_until(lambda: len(left.feedback(topic)) > 10, "it is under way")
     left.begin_outcome(topic)
     native.send_signal(signal.SIGKILL)
@@ -107,8 +107,8 @@ def test_a_plain_server_that_is_killed_is_lost(graph: Any, pair: Pair, topic: st
     with pytest.raises(ServerLost, match=COUNT):
         left.end_outcome(topic)
     with running(graph, "serve"):  # and the next one is found by the same client
-        left.send_goal(topic + "again", COUNT, {"target": 1}, timeout=25)
-        assert left.outcome(topic + "again", timeout=25)["status"] == "succeeded"
+        left.send_goal(topic + "again", COUNT, {"target": 1}, timeout=60)
+        assert left.outcome(topic + "again", timeout=60)["status"] == "succeeded"
 
 
 def test_a_plain_server_that_cannot_answer_while_it_works_is_not_lost(
@@ -117,8 +117,8 @@ def test_a_plain_server_that_cannot_answer_while_it_works_is_not_lost(
     left, _ = pair
     with running(graph, "block"):
         for goal in ("first", "second"):
-            left.send_goal(topic + goal, COUNT, {"target": 1, "period": 8.0}, timeout=25)
-            assert left.outcome(topic + goal, timeout=25)["text"] == "counted natively"
+            left.send_goal(topic + goal, COUNT, {"target": 1, "period": 8.0}, timeout=60)
+            assert left.outcome(topic + goal, timeout=60)["text"] == "counted natively"
 
 
 def test_a_plain_client_uses_our_action(graph: Any, pair: Pair, topic: str) -> None:
@@ -130,26 +130,26 @@ def test_a_plain_client_uses_our_action(graph: Any, pair: Pair, topic: str) -> N
 def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: Any) -> None:
     left, right = pair
     node = "/native_serve"
-    assert {"speed", "rooms", "use_sim_time"} <= set(left.parameter_names(node, timeout=25))
-    assert left.get_parameter("speed", node, timeout=25) == 0.5
-    assert left.get_parameter("rooms", node, timeout=25) == ["kitchen", "hall"]
+    assert {"speed", "rooms", "use_sim_time"} <= set(left.parameter_names(node, timeout=60))
+    assert left.get_parameter("speed", node, timeout=60) == 0.5
+    assert left.get_parameter("rooms", node, timeout=60) == ["kitchen", "hall"]
     right.watch_parameters(topic, node)
 
     def told() -> bool:
-        left.set_parameter("speed", 0.25, node, timeout=25)
+        left.set_parameter("speed", 0.25, node, timeout=60)
         return {"speed": 0.25} in right.parameter_changes(topic)
 
     graph.wait_until(told, "the change is told")
-    left.set_parameter("rooms", [], node, timeout=25)
-    assert left.get_parameter("rooms", node, timeout=25) == []
+    left.set_parameter("rooms", [], node, timeout=60)
+    assert left.get_parameter("rooms", node, timeout=60) == []
     with pytest.raises(ParameterRefused, match="range"):
-        left.set_parameter("speed", 7.0, node, timeout=25)
+        left.set_parameter("speed", 7.0, node, timeout=60)
     with pytest.raises(ParameterRefused, match="type"):
-        left.set_parameter("speed", "fast", node, timeout=25)
+        left.set_parameter("speed", "fast", node, timeout=60)
     with pytest.raises(ParameterUnknown, match="colour"):
-        left.set_parameter("colour", "red", node, timeout=25)
+        left.set_parameter("colour", "red", node, timeout=60)
     with pytest.raises(ParameterUnknown, match="colour"):
-        left.get_parameter("colour", node, timeout=25)
+        left.get_parameter("colour", node, timeout=60)
 
 
 def test_parameters_are_read_of_a_node_that_was_killed_and_started_anew(graph: Any, pair: Pair) -> None:
@@ -157,10 +157,10 @@ def test_parameters_are_read_of_a_node_that_was_killed_and_started_anew(graph: A
     left, _ = pair
     node = "/native_serve"
     with running(graph, "serve"):
-        assert "speed" in left.parameter_names(node, timeout=25)
+        assert "speed" in left.parameter_names(node, timeout=60)
     with running(graph, "serve"):
         assert "speed" in left.parameter_names(node, timeout=40)
-        assert left.get_parameter("speed", node, timeout=25) == 0.5
+        assert left.get_parameter("speed", node, timeout=60) == 0.5
 
 
 def test_a_plain_node_uses_our_parameters(graph: Any, pair: Pair) -> None:
@@ -176,7 +176,7 @@ def test_goals_of_a_process_that_stops_are_cancelled(graph: Any, pair: Pair, top
     leaver, name = graph.peer(f"leaver_{ending}"), f"{topic}_{ending}"
     right.serve_action(name)
     graph.wait_until(lambda: leaver.action_ready(name), "the action is found")
-    leaver.send_goal(name, name, {"target": 500, "period": 0.05}, timeout=25)
+    leaver.send_goal(name, name, {"target": 500, "period": 0.05}, timeout=60)
     graph.wait_until(lambda: leaver.feedback(name), "it is under way")
     if ending == "signal":
         leaver.signal(signal.SIGTERM)

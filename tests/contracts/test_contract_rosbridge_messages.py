@@ -57,7 +57,7 @@ def test_nonsense_of_the_server_does_no_harm(robot_of_ros2: BehindBridge) -> Non
         robot_of_ros2.server.do("say", nonsense)
         robot.publish("/to_client", {"data": f"still here {number}"})
         robot_of_ros2.wait_until(heard(client, "/to_client", f"still here {number}"), f"after {nonsense:.60}")
-    assert robot.call("/sum", {"a": 1, "b": 2}, timeout=20) == {"sum": 3}
+    assert robot.call("/sum", {"a": 1, "b": 2}, timeout=60) == {"sum": 3}
     assert client.connection() == [True]
 
 

@@ -21,27 +21,27 @@ LOST = 90.0
 def test_a_service_answers(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     assert right.serve(topic) == topic
-    assert left.call(topic, {"a": 2, "b": 40}, timeout=20) == {"sum": 42}
+    assert left.call(topic, {"a": 2, "b": 40}, timeout=60) == {"sum": 42}
 
 
 def test_each_node_serves_the_other(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     left.serve(topic + "/left")
     right.serve(topic + "/right")
-    assert left.call(topic + "/right", {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
-    assert right.call(topic + "/left", {"a": 1, "b": -3}, timeout=20) == {"sum": -2}
+    assert left.call(topic + "/right", {"a": 1, "b": 1}, timeout=60) == {"sum": 2}
+    assert right.call(topic + "/left", {"a": 1, "b": -3}, timeout=60) == {"sum": -2}
 
 
 def test_a_node_can_call_its_own_service(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     left.serve(topic)
-    assert left.call(topic, {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+    assert left.call(topic, {"a": 1, "b": 1}, timeout=60) == {"sum": 2}
 
 
 def test_a_standard_service_needs_no_fields(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic, "nothing", TRIGGER)
-    assert left.call(topic, {}, timeout=20, type_name=TRIGGER) == {"success": False, "message": ""}
+    assert left.call(topic, {}, timeout=60, type_name=TRIGGER) == {"success": False, "message": ""}
 
 
 def test_calls_of_a_slow_service_go_on_side_by_side(graph: Any, pair: Pair, topic: str) -> None:
@@ -49,7 +49,7 @@ def test_calls_of_a_slow_service_go_on_side_by_side(graph: Any, pair: Pair, topi
     right.serve(topic, "add_together")
     graph.wait_until(lambda: left.ready(topic), "the service is found")
     for number in range(5):
-        left.begin_call(f"{topic}{number}", topic, {"a": number, "b": 100}, timeout=20)
+        left.begin_call(f"{topic}{number}", topic, {"a": number, "b": 100}, timeout=60)
     assert [left.end_call(f"{topic}{n}")["sum"] for n in range(5)] == [100, 101, 102, 103, 104]
     assert right.most_calls_at_once() == 5
 
@@ -57,8 +57,8 @@ def test_calls_of_a_slow_service_go_on_side_by_side(graph: Any, pair: Pair, topi
 def test_a_missing_service_is_unavailable_after_the_time_out(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
     assert left.ready(topic) is False
-    with pytest.raises(ServiceUnavailable, match=f"{topic}.*within 0.3 s"):
-        left.call(topic, {"a": 1, "b": 1}, timeout=0.3)
+    with pytest.raises(ServiceUnavailable, match=f"{topic}.*within 1 s"):
+        left.call(topic, {"a": 1, "b": 1}, timeout=1)
     assert f"waiting for the service {topic} (example_interfaces/srv/AddTwoInts)" in left.log()
 
 
@@ -68,20 +68,20 @@ def test_a_service_of_another_type_is_told_for_what_it_is(graph: Any, pair: Pair
     right.serve(topic, "nothing", TRIGGER)
     right.serve_action(topic + "/act", "nothing", "nav2_msgs/action/NavigateToPose")
     # Shown to be found, by a client that fits.
-    assert right.call(topic, {}, timeout=20, type_name=TRIGGER) == {"success": False, "message": ""}
+    assert right.call(topic, {}, timeout=60, type_name=TRIGGER) == {"success": False, "message": ""}
     with pytest.raises(
         CallFailed, match=f"{topic} is of type {TRIGGER}, not example_interfaces/srv/AddTwoInts"
     ):
-        left.call(topic, {"a": 1, "b": 1}, timeout=20)
+        left.call(topic, {"a": 1, "b": 1}, timeout=60)
     with pytest.raises(
         CallFailed, match=f"{topic}/act is of type .*/action/NavigateToPose, not .*/action/Count"
     ):
-        left.send_goal(topic, topic + "/act", {"target": 1}, timeout=20)
+        left.send_goal(topic, topic + "/act", {"target": 1}, timeout=60)
 
 
 def test_a_service_that_comes_late_is_used(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
-    left.begin_call(topic, topic, {"a": 1, "b": 2}, timeout=20)
+    left.begin_call(topic, topic, {"a": 1, "b": 2}, timeout=60)
     graph.pass_time(0.2)
     right.serve(topic)
     assert left.end_call(topic) == {"sum": 3}
@@ -102,7 +102,7 @@ def test_a_failing_service_fails_the_call(graph: Any, pair: Pair, topic: str) ->
     graph.wait_until(lambda: left.ready(topic), "the service is found")
     if "service errors" in left.capabilities():
         with pytest.raises(CallFailed, match="no sums today"):
-            left.call(topic, {"a": 1, "b": 1}, timeout=20)
+            left.call(topic, {"a": 1, "b": 1}, timeout=60)
     else:
         with pytest.raises(CallTimedOut):
             left.call(topic, {"a": 1, "b": 1}, timeout=0.5)
@@ -116,7 +116,7 @@ def test_a_wrong_response_fails_the_call(graph: Any, pair: Pair, topic: str) -> 
     graph.wait_until(lambda: left.ready(topic), "the service is found")
     told = "service errors" in left.capabilities()
     with pytest.raises(CallFailed if told else CallTimedOut):
-        left.call(topic, {"a": 1, "b": 1}, timeout=20 if told else 0.5)
+        left.call(topic, {"a": 1, "b": 1}, timeout=60 if told else 0.5)
     graph.wait_until(lambda: any("no field 'total'" in line for line in right.log()), "it is in the log")
 
 
@@ -127,7 +127,7 @@ def test_the_server_survives_a_failing_call(graph: Any, pair: Pair, topic: str) 
     graph.wait_until(lambda: left.ready(topic + "/bad"), "the service is found")
     with pytest.raises((CallFailed, CallTimedOut)):
         left.call(topic + "/bad", {"a": 1, "b": 1}, timeout=0.3)
-    assert left.call(topic + "/good", {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+    assert left.call(topic + "/good", {"a": 1, "b": 1}, timeout=60) == {"sum": 2}
 
 
 def test_a_wrong_request_is_refused_before_it_is_sent(graph: Any, pair: Pair, topic: str) -> None:
@@ -141,13 +141,13 @@ def test_a_wrong_request_is_refused_before_it_is_sent(graph: Any, pair: Pair, to
 def test_a_closed_service_becomes_unavailable(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     right.serve(topic)
-    assert left.call(topic, {"a": 1, "b": 1}, timeout=20) == {"sum": 2}
+    assert left.call(topic, {"a": 1, "b": 1}, timeout=60) == {"sum": 2}
     # A call may succeed before the client's picture of the graph shows the service: its absence would tell nothing.
     graph.wait_until(lambda: left.ready(topic), "the service is found")
     right.unserve(topic)
     graph.wait_until(lambda: not left.ready(topic), "the client notices")
     with pytest.raises(ServiceUnavailable):
-        left.call(topic, {"a": 1, "b": 1}, timeout=0.3)
+        left.call(topic, {"a": 1, "b": 1}, timeout=1)
 
 
 def test_a_call_can_be_given_up(graph: Any, pair: Pair, topic: str) -> None:

@@ -66,7 +66,11 @@ class AttemptingClient:
         async def attempt(rest: float | None) -> Any:
             return await self._attempt(message, rest)
 
-        return await call_when_offered(node.clock, node.log, what, attempt, timeout)
+        return await call_when_offered(node.clock, node.log, what, attempt, timeout, self._may_be_called)
+
+    def _may_be_called(self) -> bool:
+        """Whether an attempt without an answer may have reached a server, see `call_when_offered`."""
+        return True
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         """Call the service once, see `call_when_offered`."""
@@ -79,6 +83,7 @@ async def call_when_offered(
     what: str,
     attempt: Callable[[float | None], Awaitable[Any]],
     timeout: float | None,
+    may_be_called: Callable[[], bool] = lambda: True,
 ) -> Any:
     """Call a service whose arrival cannot be awaited: try, and try again while nobody offers it.
 
@@ -89,6 +94,8 @@ async def call_when_offered(
         attempt: calls the service once; takes the seconds that are left, raises `ServiceUnavailable` when
             nobody offers it and `TimeoutError` when there is no answer.
         timeout: seconds for everything; None tries for ever.
+        may_be_called: whether an attempt without an answer may have reached a server.  Where others have to be asked for
+            the server, the last of several attempts can run out of time before they have said again that there is none.
 
     Raises:
         ServiceUnavailable: nobody offered the service in time.
@@ -96,15 +103,21 @@ async def call_when_offered(
     """
     deadline = None if timeout is None else clock.elapsed + timeout
     waiting: Waiting | None = None
+
+    def nobody() -> ServiceUnavailable:
+        return ServiceUnavailable(f"nobody offered {what} within {timeout:g} s")
+
     try:
         while True:
             try:
                 return await attempt(None if deadline is None else deadline - clock.elapsed)
             except TimeoutError:
+                if waiting is not None and not may_be_called():
+                    raise nobody() from None
                 raise CallTimedOut(f"{what} did not answer within {timeout:g} s") from None
             except ServiceUnavailable:
                 if deadline is not None and clock.elapsed + RETRY > deadline:
-                    raise ServiceUnavailable(f"nobody offered {what} within {timeout:g} s") from None
+                    raise nobody() from None
             if waiting is None:
                 waiting = Waiting(clock, log, what, "Is the node that offers it running?").__enter__()
             await clock.sleep(RETRY)

@@ -137,7 +137,7 @@ class Ros1Parameters:
 
         what = f"ROS master at {self._master.uri}"
         try:
-            return await call_when_offered(backend.clock, backend.log, what, attempt, timeout)
+            return await call_when_offered(backend.clock, backend.log, what, attempt, timeout, lambda: False)
         except ServiceUnavailable:
             raise ServiceUnavailable(f"the {what} did not answer within {timeout:g} s") from None
 

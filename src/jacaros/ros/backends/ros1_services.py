@@ -72,6 +72,9 @@ class Ros1Client(AttemptingClient):
         """Whether somebody offers the service, as the master said a quarter of a second ago at most."""
         return self.name in self._node.link.services
 
+    def _may_be_called(self) -> bool:
+        return self.ready
+
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         answer = self._pending.new()
 

@@ -34,6 +34,9 @@ class BridgeClient(AttemptingClient):
         """Whether somebody offers the service, as the bridge said a second ago at most."""
         return self._node.connected and self._offered.value
 
+    def _may_be_called(self) -> bool:
+        return self.ready
+
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         node = self._node
         node.require_connection(self.name)

@@ -1,0 +1,42 @@
+"""Calls of services whose arrival cannot be awaited: how they end where the last attempt had no time left."""
+
+import pytest
+
+from jacaros.clock import VirtualClock, run
+from jacaros.ros.errors import CallTimedOut, ServiceUnavailable
+from jacaros.ros.calling import call_when_offered
+
+
+def end_of_call(takes: float, offered: bool) -> str:
+    """Call a service for a second; each attempt takes so long to find out that nobody is there."""
+    clock = VirtualClock()
+    attempts: list[float] = []
+
+    async def attempt(rest: float | None) -> None:
+        assert rest is not None
+        attempts.append(rest)
+        await clock.sleep(min(rest, takes))
+        if rest < takes:
+            raise TimeoutError
+        raise ServiceUnavailable("nobody is there")
+
+    async def main() -> str:
+        with pytest.raises((ServiceUnavailable, CallTimedOut)) as caught:
+            await call_when_offered(clock, print, "service /x", attempt, 1.0, lambda: offered)
+        assert clock.elapsed == pytest.approx(1.0, abs=0.11)
+        return str(caught.value)
+
+    return run(main, clock)
+
+
+def test_who_was_missing_to_the_last_is_missing_though_the_last_attempt_had_no_time() -> None:
+    for takes in (0.03, 0.04, 0.13, 0.2, 0.29):
+        assert end_of_call(takes, offered=False) == "nobody offered service /x within 1 s"
+
+
+def test_who_came_meanwhile_and_did_not_answer_timed_out() -> None:
+    assert end_of_call(0.29, offered=True) == "service /x did not answer within 1 s"
+
+
+def test_one_attempt_without_an_answer_timed_out() -> None:
+    assert end_of_call(7.0, offered=False) == "service /x did not answer within 1 s"
