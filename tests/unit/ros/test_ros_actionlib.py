@@ -32,6 +32,7 @@ class Actionlib:
         self.began: list[int] = []
         self.swallowed = 0
         self.sent = 0
+        self._nodes: list[MemoryBackend] = []
 
     async def open(self) -> GoalSender:
         graph = MemoryGraph()
@@ -60,7 +61,12 @@ class Actionlib:
         node = open_backend("memory", self.clock, name, graph=graph, log=print)
         assert isinstance(node, MemoryBackend)
         await node.start()
+        self._nodes.append(node)
         return node
+
+    async def close(self) -> None:
+        for node in self._nodes:
+            await node.close()
 
     async def _count(self, goal: GoalUnderWay) -> Any:
         self.began.append(goal.request.target)
@@ -70,7 +76,12 @@ class Actionlib:
 
 def play(scene: Callable[[Actionlib], Coroutine[Any, Any, None]]) -> None:
     graph = Actionlib()
-    run(lambda: scene(graph), graph.clock)
+
+    async def main() -> None:
+        await scene(graph)
+        await graph.close()
+
+    run(main, graph.clock)
 
 
 def test_a_goal_that_was_lost_on_its_way_is_sent_again() -> None:

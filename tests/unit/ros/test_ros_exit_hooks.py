@@ -95,9 +95,12 @@ def test_an_ignored_signal_stays_ignored() -> None:
     assert done.stdout.decode().splitlines()[0] == "True"
 
 
-def test_handlers_are_given_back() -> None:
-    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)]
+def test_handlers_are_given_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    from jacaros.ros import exit_hooks
     from jacaros.ros.exit_hooks import ExitHooks
+
+    monkeypatch.setattr(exit_hooks, "_process", exit_hooks._Process())  # whatever other tests have left open
+    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)]
 
     hooks = ExitHooks(print, lambda: None, threaded=False)
     remove = hooks.add(lambda: None)

@@ -3,8 +3,8 @@
 import pytest
 
 from jacaros.clock import VirtualClock, run
-from jacaros.ros.errors import CallTimedOut, ServiceUnavailable
 from jacaros.ros.calling import call_when_offered
+from jacaros.ros.errors import CallTimedOut, ServiceUnavailable
 
 
 def end_of_call(takes: float, offered: bool) -> str:
