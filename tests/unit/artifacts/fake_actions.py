@@ -41,6 +41,11 @@ class FakeServer:
         self.clients.append(FakeClient(self, self.lab.backend.resolve(name)))
         return self.clients[-1]
 
+    @property
+    def told(self) -> list[str]:
+        """What happened, without the times."""
+        return [text for _, text in self.events]
+
     def note(self, text: str) -> None:
         self.events.append((round(self.lab.clock.elapsed, 3), text))
 

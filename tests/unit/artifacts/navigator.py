@@ -117,6 +117,15 @@ async def begun(
     return server, going
 
 
+async def suspended(
+    lab: Lab, operation: str, *options: object, after: float = 1.0, **traits: object
+) -> tuple[FakeServer, Run]:
+    """The same, suspended after so many seconds."""
+    server, going = await begun(lab, operation, *options, after=after, **traits)
+    going.execution.pause()
+    return server, going
+
+
 async def failed(run: Run, reason: str) -> str:
     """Wait for the end, and assert the failure reason; gives the message."""
     await run.done

@@ -178,7 +178,7 @@ def test_dropping_at_the_moment_of_acceptance_cancels_the_goal(delay: float) -> 
         server, going = await begun(lab, "go", after=0, accepting=2)
         lab.clock.call_later(delay, going.execution.cancel)
         await lab.sleep(3)
-        assert [text for _, text in server.events] == ["accepted 0", "cancel 0", "canceled 0"]
+        assert server.told == ["accepted 0", "cancel 0", "canceled 0"]
 
     in_lab(body, None)
 
@@ -188,7 +188,7 @@ def test_an_artifact_that_is_disposed_cancels_its_goals() -> None:
         server, going = await begun(lab, "go")
         lab.workspace.dispose_artifact(going.execution.request.artifact)
         await going.done
-        assert "cancel 0" in [text for _, text in server.events]
+        assert "cancel 0" in server.told
         assert server.goals[0].over
 
     in_lab(body, None)
@@ -215,7 +215,7 @@ def test_a_disposed_artifact_leaves_no_exit_hook_behind() -> None:
         await lab.sleep(0.1)
         backend: Any = lab.backend
         backend.exit_hooks.run()
-        assert [text for _, text in server.events] == ["closed"]
+        assert server.told == ["closed"]
 
     in_lab(body, None)
 

@@ -2,7 +2,7 @@
 
 import pytest
 from fake_actions import FakeServer
-from navigator import Navigator, begun, failed, succeeded
+from navigator import Navigator, begun, failed, succeeded, suspended
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts.ros.acting import ENDING
@@ -12,8 +12,7 @@ from jacaros.ros.action import GoalStatus
 
 def test_going_on_while_suspended() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "go", Structure("timeout", (10,)))
-        going.execution.pause()
+        server, going = await suspended(lab, "go", Structure("timeout", (10,)))
         await lab.sleep(1)
         server.goals[0].end(x=3)
         await going.done
@@ -24,8 +23,7 @@ def test_going_on_while_suspended() -> None:
 
 def test_cancelled_while_suspended_and_sent_again() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrRest", Structure("timeout", (5,)))
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrRest", Structure("timeout", (5,)))
         await lab.sleep(60)
         assert server.events == [(0, "accepted 0"), (1, "cancel 0"), (1.11, "canceled 0")]
         going.execution.resume()
@@ -52,8 +50,7 @@ def test_time_in_which_the_goal_rests_does_not_count_but_the_rest_does() -> None
 
 def test_resumed_before_the_cancelled_goal_has_ended_it_is_sent_again_after_that() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrRest", ending=2)
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrRest", ending=2)
         await lab.sleep(0.5)
         going.execution.resume()
         await lab.sleep(2)
@@ -67,8 +64,7 @@ def test_resumed_before_the_cancelled_goal_has_ended_it_is_sent_again_after_that
 
 def test_a_goal_that_succeeds_while_it_is_being_cancelled_has_succeeded() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrRest", ending=None)
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrRest", ending=None)
         await lab.sleep(0.1)
         server.goals[0].end()
         await succeeded(going)
@@ -78,12 +74,11 @@ def test_a_goal_that_succeeds_while_it_is_being_cancelled_has_succeeded() -> Non
 
 def test_a_server_that_does_not_cancel_goes_on_and_its_end_counts() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrRest", agrees=False)
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrRest", agrees=False)
         await lab.sleep(10)
         going.execution.resume()
         await lab.sleep(1)
-        assert [text for _, text in server.events] == ["accepted 0", "cancel 0"]
+        assert server.told == ["accepted 0", "cancel 0"]
         server.goals[0].end()
         await going.done
 
@@ -92,8 +87,7 @@ def test_a_server_that_does_not_cancel_goes_on_and_its_end_counts() -> None:
 
 def test_a_server_that_agrees_to_cancel_and_does_not_is_lost() -> None:
     async def body(lab: Lab) -> None:
-        _, going = await begun(lab, "goOrRest", ending=None)
-        going.execution.pause()
+        _, going = await suspended(lab, "goOrRest", ending=None)
         await failed(going, "server_lost")
         assert lab.clock.elapsed == pytest.approx(1 + ENDING, abs=0.02)
 
@@ -102,10 +96,9 @@ def test_a_server_that_agrees_to_cancel_and_does_not_is_lost() -> None:
 
 def test_suspended_before_the_server_has_accepted() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrRest", accepting=2)
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrRest", accepting=2)
         await lab.sleep(5)
-        assert [text for _, text in server.events] == ["accepted 0", "cancel 0", "canceled 0"]
+        assert server.told == ["accepted 0", "cancel 0", "canceled 0"]
         going.execution.resume()
         await lab.sleep(3)
         server.goals[1].end()
@@ -116,10 +109,9 @@ def test_suspended_before_the_server_has_accepted() -> None:
 
 def test_suspended_before_it_begins_nothing_is_sent() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrRest", after=0)
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrRest", after=0)
         await lab.sleep(3)
-        sent = [text for _, text in server.events]
+        sent = server.told
         assert sent in ([], ["accepted 0", "cancel 0", "canceled 0"])
         going.execution.resume()
         await lab.sleep(1)
@@ -166,8 +158,7 @@ def test_paused_and_resumed_at_the_server() -> None:
 
 def test_a_goal_that_ends_while_it_is_paused_has_ended() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrWait")
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrWait")
         await lab.sleep(1)
         server.goals[0].end(GoalStatus.ABORTED, "lost the way", error_code=7)
         await failed(going, 'aborted(7,"lost the way")')
@@ -177,10 +168,9 @@ def test_a_goal_that_ends_while_it_is_paused_has_ended() -> None:
 
 def test_a_goal_that_cannot_be_paused_is_cancelled_and_sent_again() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrWait", Structure("refuse_pause", (1,)))
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrWait", Structure("refuse_pause", (1,)))
         await lab.sleep(2)
-        assert [text for _, text in server.events] == ["accepted 0", "cancel 0", "canceled 0"]
+        assert server.told == ["accepted 0", "cancel 0", "canceled 0"]
         assert any("could not be paused: RuntimeError: no brakes" in line for line in lab.logged)
         going.execution.resume()
         await lab.sleep(1)
@@ -250,8 +240,7 @@ def switched(lab: Lab) -> list[str]:
 
 def test_a_server_that_was_paused_goes_on_when_its_goal_was_dropped_and_has_ended() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrWait", ending=2.0)
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrWait", ending=2.0)
         await lab.sleep(1)
         going.execution.cancel()
         await lab.sleep(1)
@@ -265,8 +254,7 @@ def test_a_server_that_was_paused_goes_on_when_its_goal_was_dropped_and_has_ende
 
 def test_a_server_that_was_paused_goes_on_when_its_goal_has_ended_by_itself() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrWait")
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrWait")
         await lab.sleep(1)
         server.goals[0].end(GoalStatus.ABORTED, "lost the way", error_code=7)
         await failed(going, 'aborted(7,"lost the way")')
@@ -277,8 +265,7 @@ def test_a_server_that_was_paused_goes_on_when_its_goal_has_ended_by_itself() ->
 
 def test_a_server_that_may_have_been_paused_goes_on_before_the_goal_is_sent_again() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrWait", Structure("mute_pause", (1,)))
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrWait", Structure("mute_pause", (1,)))
         await lab.sleep(1)
         assert server.goals[0].over
         going.execution.resume()
@@ -292,8 +279,7 @@ def test_a_server_that_may_have_been_paused_goes_on_before_the_goal_is_sent_agai
 
 def test_a_server_that_cannot_be_resumed_has_its_goal_cancelled() -> None:
     async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "goOrWait", Structure("refuse_resume", (1,)))
-        going.execution.pause()
+        server, going = await suspended(lab, "goOrWait", Structure("refuse_resume", (1,)))
         await lab.sleep(1)
         going.execution.resume()
         assert "could not be resumed" in await failed(going, "canceled")
