@@ -1,0 +1,262 @@
+"""Agents, artifacts and projects in a Python program: `async with Mas(...) as mas`."""
+
+import asyncio
+from pathlib import Path
+
+import pytest
+from embedding_lab import Counter, run
+
+import jacaros
+from jacaros import Atom, Mas
+from jacaros.asl.errors import AslError
+from jacaros.clock import VirtualClock, WallClock, clock_of, new_event_loop
+from jacaros.env import OperationFailed, Out
+from jacaros.errors import UsageError
+from jacaros.mas.deployment import AgentSpec, FocusSpec, ProjectError
+from jacaros.mas.embedding.errors import RunEnded, UnknownAgent
+
+
+def test_an_agent_from_a_text_achieves_a_goal() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "+!greet(X) <- .wait(1000); .print(hello, X).")
+        goal = bob.achieve("greet(world)")
+        assert not goal.achieved
+        await goal
+        assert goal.achieved
+        assert mas.clock.now() - began == pytest.approx(1.0)
+
+    began = VirtualClock().now()
+    lines: list[str] = []
+    mas = run(test, lines)
+    assert lines == ["[bob] helloworld"]
+    assert mas.exit_code == 0
+
+
+def test_agents_come_from_files_and_specs(tmp_path: Path) -> None:
+    (tmp_path / "ann.asl").write_text("!go. +!go : p(X) <- .print(X).", encoding="utf-8")
+
+    async def test(mas: Mas) -> None:
+        mas.add_agent("ann", beliefs="p(1)")
+        mas.add_agent("second", tmp_path / "ann.asl", beliefs="p(2)")
+        mas.add_agent(AgentSpec("third", tmp_path / "ann.asl", beliefs="p(3)"))
+        assert [agent.name for agent in mas.agents] == ["ann", "second", "third"]
+        await mas.until_idle()
+
+    lines: list[str] = []
+    run(test, lines, folder=tmp_path)
+    assert lines == ["[ann] 1", "[second] 2", "[third] 3"]
+
+
+def test_a_program_in_a_text_includes_files_of_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "greeting.asl").write_text("+!greet <- .print(hi).", encoding="utf-8")
+
+    async def test(mas: Mas) -> None:
+        await mas.add_agent("bob", '{ include("greeting.asl") }').achieve("greet")
+
+    lines: list[str] = []
+    run(test, lines, folder=tmp_path)
+    assert lines == ["[bob] hi"]
+
+
+def test_a_project_runs_inside_a_program(tmp_path: Path) -> None:
+    (tmp_path / "artifacts.py").write_text(
+        "from jacaros.env import Artifact\n\n\nclass Lamp(Artifact):\n"
+        "    def init(self) -> None:\n        self.define_property('lit', False)\n",
+        encoding="utf-8",
+    )
+    (tmp_path / "a.asl").write_text("+!stop <- .stopMAS(0, 3).", encoding="utf-8")
+    project = tmp_path / "p.jcm"
+    project.write_text(
+        "mas p {\n agent a {\n focus: lab.l\n }\n workspace lab {\n artifact l: Lamp()\n }\n}\n"
+    )
+
+    async def test(mas: Mas) -> None:
+        await mas.agent("a").until("lit(false)", timeout=1)
+        mas.send("a", "achieve", "stop")
+        assert await mas.ended() == 3
+        assert mas.exit_code == 3
+        with pytest.raises(RunEnded, match="the run has ended"):
+            mas.add_agent("late", "!go.")
+
+    assert run(test, project=project).exit_code == 3
+
+
+def test_artifacts_are_made_focused_and_used() -> None:
+    async def test(mas: Mas) -> None:
+        mas.add_artifact_types(Counter)
+        lab = mas.create_workspace("lab")
+        counter = await mas.make_artifact("counter", Counter, [1], workspace=lab)
+        program = '+!go <- inc; makeArtifact(mine, "Counter", [7], Id); focus(Id); double(4, X); +doubled(X).'
+        bob = mas.add_agent("bob", program, focus=[counter], join=["/main"])
+        await bob.achieve("go")
+        assert bob.answers("count(X)[artifact_name(N)]") == [
+            {"X": 7, "N": Atom("mine")},
+            {"X": 2, "N": Atom("counter")},
+        ]
+        assert bob.ask("doubled(X)") == {"X": 8}
+
+    run(test)
+
+
+def test_focus_takes_names_paths_and_specs() -> None:
+    async def test(mas: Mas) -> None:
+        mas.create_workspace("lab")
+        for workspace in ("/main", "lab"):
+            await mas.make_artifact("counter", Counter, [len(workspace)], workspace=workspace)
+        for name, wanted, count in (
+            ("a", "counter", 5),
+            ("b", "lab/counter", 3),
+            ("c", "/main/lab/counter", 3),
+            ("d", FocusSpec("counter", "lab"), 3),
+        ):
+            agent = mas.add_agent(name, "!look. +!look : count(X) <- +seen(X).", focus=[wanted])
+            assert await agent.until("seen(X)", timeout=1) == {"X": count}
+        with pytest.raises(OperationFailed, match="no artifact conter; did you mean counter"):
+            mas.add_agent("e", "", focus=["conter"])
+        with pytest.raises(OperationFailed, match="no workspace /main/lob"):
+            mas.add_agent("e", "", join=["lob"])
+        assert "e" not in [agent.name for agent in mas.agents]
+
+    run(test)
+
+
+def test_output_is_a_stream() -> None:
+    async def test(mas: Mas) -> None:
+        everything, bobs = mas.output(), mas.output("bob")
+        mas.add_agent("bob", "!go. +!go <- .print(a); .wait(1000); .print(b); .wait(1000); .stopMAS.")
+        mas.add_agent("ann", "!go. +!go <- .wait(500); .print(c).")
+        assert str(await bobs.get(timeout=1)) == "[bob] a"
+        assert [line.text async for line in bobs] == ["b"]
+        assert [tuple(line) for line in everything.take()] == [("bob", "a"), ("ann", "c"), ("bob", "b")]
+
+    run(test)
+
+
+def test_lines_go_to_the_standard_output_unless_told_otherwise(capsys: pytest.CaptureFixture[str]) -> None:
+    async def main() -> None:
+        async with Mas() as mas:
+            mas.add_agent("bob", "!go. +!go <- .print(hi); .log(warning, careful).")
+            await mas.until_idle()
+
+    jacaros.run(main(), clock="fast")
+    shown = capsys.readouterr()
+    assert shown.out == "[bob] hi\n"
+    assert "careful" in shown.err
+
+
+def test_a_session_works_beside_the_agents() -> None:
+    async def test(mas: Mas) -> None:
+        await mas.make_artifact("counter", Counter, [5])
+        bob = mas.add_agent("bob", "", focus=["counter"])
+        painter = mas.session("painter")
+        assert await painter.act("double", 4, Out()) == 8
+        await painter.act("inc")
+        assert await bob.until("count(X) & X > 5") == {"X": 6}
+        with pytest.raises(OperationFailed, match="no workspace /main/lab"):
+            mas.session("other", workspace="lab")
+
+    run(test)
+
+
+def test_mistakes_are_told_where_they_are_made(tmp_path: Path) -> None:
+    async def test(mas: Mas) -> None:
+        with pytest.raises(AslError, match=r"<bob>:1:16: error: a term is expected"):
+            mas.add_agent("bob", "+!go <- .print(.")
+        with pytest.raises(UsageError, match=r"there is no program carl\.asl in"):
+            mas.add_agent("carl")
+        mas.add_agent("bob", "")
+        with pytest.raises(UsageError, match="there is an agent bob already"):
+            mas.add_agent("bob", "")
+        with pytest.raises(UnknownAgent, match="there is no agent bbo; did you mean bob"):
+            mas.agent("bbo")
+        with pytest.raises(UnknownAgent, match="there is no agent x; there are bob"):
+            mas.agent("x")
+        mas.add_artifact_types(Counter)
+        with pytest.raises(OperationFailed, match="no artifact type is called Countr; did you mean Counter"):
+            await mas.make_artifact("c", "Countr")
+        with pytest.raises(OperationFailed, match="cannot be made"):
+            await mas.make_artifact("c", Counter, ["far"])
+
+    run(test, folder=tmp_path)
+    with pytest.raises(ProjectError, match=r"nothing.jcm"):
+        Mas(tmp_path / "nothing.jcm")
+    with pytest.raises(UsageError, match="there is no ROS backend 'ros3'"):
+        Mas(ros="ros3")
+
+
+def test_a_system_is_used_inside_its_block() -> None:
+    mas = Mas()
+    assert repr(mas) == "<Mas mas, not begun>"
+    with pytest.raises(RunEnded, match="use it inside `async with Mas"):
+        mas.add_agent("bob", "")
+
+    async def twice() -> None:
+        async with mas:
+            assert repr(mas) == "<Mas mas, running>"
+        async with mas:
+            pass
+
+    with pytest.raises(UsageError, match="this system has run already"):
+        jacaros.run(twice(), clock="fast")
+    assert repr(mas) == "<Mas mas, ended with exit code 0>"
+
+
+def test_two_systems_share_a_loop() -> None:
+    async def main() -> None:
+        lines: list[str] = []
+        async with (
+            Mas(name="one", on_print=lambda agent, text: lines.append(f"one {text}")) as one,
+            Mas(name="two", on_print=lambda agent, text: lines.append(f"two {text}")) as two,
+        ):
+            for mas in (one, two):
+                mas.add_agent("bob", "!go. +!go <- .wait(1000); .my_name(N); .print(N); +done.")
+            await one.agent("bob").until("done")
+            await two.agent("bob").until("done")
+            one.stop(4)
+            assert (one.exit_code, two.exit_code) == (4, None)
+            await two.agent("bob").achieve("go")
+        assert lines == ["one bob", "two bob", "two bob"]
+
+    jacaros.run(main(), clock="fast")
+
+
+def test_a_system_works_on_a_plain_loop_and_in_a_running_one() -> None:
+    async def main() -> float:
+        async with Mas(on_print=lambda agent, text: None) as mas:
+            assert isinstance(mas.clock, WallClock)
+            await mas.add_agent("bob", "+!go <- .wait(1).").achieve("go")
+            return mas.clock.now()
+
+    assert asyncio.run(main()) > VirtualClock().now()
+    assert jacaros.run(main()) > VirtualClock().now()
+
+    async def nested() -> None:
+        coroutine = main()
+        with pytest.raises(UsageError, match="await the coroutine"):
+            jacaros.run(coroutine)
+
+    asyncio.run(nested())
+    with pytest.raises(UsageError, match="no clock 'slow'"):
+        jacaros.run(main(), clock="slow")  # type: ignore[arg-type]
+
+
+def test_the_clock_of_a_loop_is_known() -> None:
+    clock = VirtualClock()
+    loop = new_event_loop(clock)
+    assert clock_of(loop) is clock
+    loop.close()
+
+
+def test_a_callback_for_prints_that_raises_harms_no_agent() -> None:
+    async def test(mas: Mas) -> None:
+        def refuse(agent: str, text: str) -> None:
+            raise ValueError("no printing")
+
+        mas.on_print(refuse)
+        await mas.add_agent("bob", "+!go <- .print(a); .print(b).").achieve("go")
+
+    lines: list[str] = []
+    logs: list[str] = []
+    run(test, lines, logs)
+    assert lines == ["[bob] a", "[bob] b"]
+    assert "ValueError: no printing" in logs[0]

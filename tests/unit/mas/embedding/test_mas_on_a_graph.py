@@ -1,0 +1,68 @@
+"""A system in a Python program and its ROS graph: what is given to `Mas` as on the command line."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from embedding_lab import run
+
+import jacaros
+from jacaros import Mas
+from jacaros.errors import UsageError
+from jacaros.mas.deployment import ProjectError
+
+
+def test_a_virtual_clock_and_a_real_graph_do_not_go_together() -> None:
+    async def main() -> None:
+        async with Mas(ros="ros1"):
+            pytest.fail("it began")
+
+    with pytest.raises(UsageError, match="the virtual clock"):
+        jacaros.run(main(), clock="fast")
+
+
+def test_a_mapping_and_other_names_are_given_as_on_the_command_line(tmp_path: Path) -> None:
+    mapping = tmp_path / "wheels.yaml"
+    mapping.write_text(
+        "properties:\n  odom: {topic: odom, type: nav_msgs/msg/Odometry, fields: [pose.pose.position.x]}\n"
+    )
+    lines: list[str] = []
+
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "+!go <- .wait(odom(X)); .print(X).", focus=["wheels"])
+        await bob.achieve("go")
+        assert mas.ros.resolve("odom") == "/odom"
+        assert mas.ros.resolve("scan") == "/somebody/scan"
+
+    run(
+        test,
+        lines,
+        mappings=[mapping],
+        world="empty",
+        remap={"/somebody/odom": "/odom"},
+        namespace="somebody",
+    )
+    assert lines == ["[bob] 0"]
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"domain_id": 3}, "--domain-id goes with --ros ros2"),
+        ({"ros": "ros2", "domain_id": 1000}, "--domain-id is a whole number"),
+        ({"master": "http://robot.lab.example:11311"}, "--master goes with --ros ros1"),
+        ({"ros": "ros1", "master": "robot"}, "--master is an address"),
+        ({"bridge": "ws://robot.lab.example:9090"}, "--bridge goes with --ros rosbridge"),
+        ({"ros_clock": True}, "--clock ros follows"),
+        ({"node_name": "my node"}, "my node"),
+        ({"remap": {"a b": "c"}}, "a b"),
+    ],
+)
+def test_options_of_the_graph_are_checked_when_they_are_given(options: dict[str, Any], text: str) -> None:
+    with pytest.raises(UsageError, match=text):
+        Mas(**options)
+
+
+def test_a_missing_mapping_is_told_when_it_is_given() -> None:
+    with pytest.raises(ProjectError, match=r"there is no mapping file nowhere\.yaml"):
+        Mas(mappings=["nowhere.yaml"])

@@ -1,0 +1,81 @@
+"""Projects with agents in Python: what they use, and how they are run."""
+
+from pathlib import Path
+
+from jacaros import Literal, PythonAgent
+from jacaros.testing import RunResult, run_project
+
+ARTIFACTS = """
+from jacaros.env import Artifact, Out, operation
+
+
+class Counter(Artifact):
+    def init(self, start: int = 0):
+        self.define_property("count", start)
+
+    @operation
+    def inc(self, by: int = 1):
+        self.update_property("count", self.value("count") + by)
+        self.signal("tick", self.value("count"))
+
+    @operation
+    def read(self, out: Out):
+        out.set(self.value("count"))
+
+
+class Wheels(Artifact):
+    def init(self):
+        self.define_property("speed", 0.0)
+
+    @operation(name="moveForward")
+    async def move_forward(self, metres: float):
+        try:
+            self.update_property("speed", 1.0)
+            await self.sleep(metres)
+        finally:
+            self.update_property("speed", 0.0)
+            self.log("still")
+"""
+
+
+BOTH = """mas m {{
+    agent a: a.py {{ focus: w.{0} }}
+    agent bob {{ focus: w.{0} }}
+    workspace w {{ artifact {0}: {1} }}
+}}"""
+
+
+def run(folder: Path, *, idle: bool = True, seconds: float | None = 60, **files: str) -> RunResult:
+    """Write files (``a_asl`` is a.asl) and run the first until nothing is left to do."""
+    (folder / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
+    paths = []
+    for name, text in files.items():
+        stem, _, suffix = name.rpartition("_")
+        paths.append(folder / f"{stem}.{suffix}")
+        head = "from jacaros import OperationFailed, Out, PythonAgent, UnknownAgent, Atom, Literal\n"
+        paths[-1].write_text(head + text if suffix == "py" else text, encoding="utf-8")
+    return run_project(paths[0], until_idle=idle, seconds=seconds)
+
+
+def alone(folder: Path, body: str, **options: object) -> RunResult:
+    """Run one agent in Python; *body* is that of its class."""
+    indented = "\n".join(f"    {line}" for line in body.strip("\n").splitlines())
+    return run(folder, a_py=f"class A(PythonAgent):\n{indented}\n", **options)  # type: ignore[arg-type]
+
+
+TALK = "MAS m { agents: a a.py; bob; }"
+
+
+def talk(folder: Path, body: str, bob: str, **options: object) -> RunResult:
+    indented = "\n".join(f"    {line}" for line in body.strip("\n").splitlines())
+    text = f"class A(PythonAgent):\n{indented}\n"
+    return run(folder, m_mas2j=TALK, a_py=text, bob_asl=bob, **options)  # type: ignore[arg-type]
+
+
+class Echo(PythonAgent):
+    async def run(self) -> None:
+        async for message in self.messages():
+            if message.performative == "tell":
+                self.send(message.sender, "tell", Literal("heard", (message.content.functor,)))
+            else:
+                raise ValueError(message.performative)

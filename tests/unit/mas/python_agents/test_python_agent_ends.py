@@ -1,0 +1,211 @@
+"""How agents written in Python end: with the run, when they are killed, by an exception of their own."""
+
+from pathlib import Path
+
+import pytest
+from python_agents_lab import BOTH, Echo, alone, run, talk
+
+import jacaros
+from jacaros import Mas
+
+
+@pytest.mark.parametrize("end", [".stopMAS", ".kill_agent(a)"])
+def test_at_its_end_its_operations_are_cancelled_and_finally_runs(tmp_path: Path, end: str) -> None:
+    result = run(
+        tmp_path,
+        m_jcm=BOTH.format("wheels", "Wheels"),
+        a_py="""
+class A(PythonAgent):
+    async def run(self):
+        self.begin("moveForward", 100)
+        try:
+            await self.act("moveForward", 50)
+        finally:
+            self.print("leaving")
+            await self.act("moveForward", 1)
+            self.print("still ", self.value("speed"))
+""",
+        bob_asl=f"!go. +!go <- .wait(1000); {end}; .print(ended). +speed(X) <- .print(X).",
+    )
+    assert result.of("a") == ["leaving", "still 0"]
+    assert [line for line in result.errors if "still" in line] == ["[wheels] still"] * 3
+    assert result.seconds < 3
+
+
+def test_an_exception_ends_this_agent_only(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    try:
+        await self.sleep(1)
+        self.compute(0)
+    finally:
+        self.print("finally")
+
+def compute(self, x):
+    return 1 / x
+""",
+        "!go. +!go <- .wait(2000); .all_names(L); .print(L).",
+    )
+    assert result.lines == ["[a] finally", "[bob] [bob]"]
+    assert result.errors == [
+        f"[a] error: the agent has ended: ZeroDivisionError: division by zero ({tmp_path}/a.py:11, in compute)",
+        f"[a]   called from {tmp_path}/a.py:6, in run",
+    ]
+    assert result.exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("raise SystemExit(3)", "SystemExit: 3"),
+        ("raise ValueError", "ValueError"),
+        (
+            "self.value('count')",
+            "UnknownProperty: no observable property count is known: no artifact is focused",
+        ),
+        ("self.send('x', 'tell', 'p')", "UnknownAgent: there is no agent x; there are a"),
+        ("await self.act('x')", "OperationFailed: no artifact of workspace /main has an operation x/0"),
+        (
+            "A.on_message = print; self.messages()",
+            "JacarosError: A has on_message, which is called with every message",
+        ),
+        ("self.focus('x')", "UnknownArtifact: workspace /main has no artifact x"),
+        ("self.join('x')", "UnknownWorkspace: there is no workspace /main/x; did you mean /main?"),
+    ],
+)
+def test_what_is_raised_is_told_with_its_place(tmp_path: Path, code: str, told: str) -> None:
+    result = alone(tmp_path, f"async def run(self):\n    {code}")
+    assert result.errors[0].startswith(f"[a] error: the agent has ended: {told}")
+    assert result.errors[0].endswith(f" ({tmp_path}/a.py:4, in run)")
+    assert len(result.errors) == 1
+    assert result.exit_code == 0
+
+
+def test_an_exception_in_a_started_task_or_a_handler_ends_the_agent(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    self.start(self.other())
+    await self.receive()
+
+async def other(self):
+    await self.sleep(1)
+    raise KeyError("other")
+""",
+        "",
+    )
+    assert result.errors == [
+        f"[a] error: the agent has ended: KeyError: 'other' ({tmp_path}/a.py:9, in other)"
+    ]
+    result = talk(tmp_path, "def on_message(self, message):\n    message.x", "!g. +!g <- .send(a, tell, p).")
+    assert "AttributeError" in result.errors[0]
+    assert f"({tmp_path}/a.py:4, in on_message)" in result.errors[0]
+
+
+def test_tasks_of_a_group_that_fail_are_told(tmp_path: Path) -> None:
+    result = alone(
+        tmp_path,
+        """
+async def run(self):
+    import asyncio
+    async with asyncio.TaskGroup() as group:
+        group.create_task(self.fail())
+
+async def fail(self):
+    raise KeyError("x")
+""",
+    )
+    assert result.errors[1:] == [f"[a]   KeyError: 'x' ({tmp_path}/a.py:9, in fail)"]
+
+
+def test_it_may_refuse_to_be_killed(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+def accept_kill(self, killer):
+    return killer != "bob"
+
+async def run(self):
+    await self.receive()
+    self.print("alive")
+""",
+        "!go. +!go <- .kill_agent(a); .send(a, tell, p). -!go <- .print(refused); .send(a, tell, p).",
+    )
+    assert result.of("a") == ["alive"]
+
+
+def test_it_may_be_ended_before_its_first_step(tmp_path: Path) -> None:
+    async def main() -> None:
+        async with Mas(folder=tmp_path) as mas:
+            mas.add_agent("echo", Echo).kill()
+            assert mas.agents == ()
+
+    jacaros.run(main(), clock="fast")
+
+
+def test_who_does_not_accept_its_end_is_told_of_and_ended(tmp_path: Path) -> None:
+    body = """
+async def run(self):
+    import asyncio
+    while True:
+        try:
+            await self.sleep(1)
+        except asyncio.CancelledError:
+            self.print("no")
+"""
+    result = alone(tmp_path, body, seconds=3, idle=False)
+    assert result.lines == ["[a] no"]
+    assert result.errors[0] == "[a] warning: the agent did not end within 5 s of its cancellation"
+
+
+def test_what_it_may_not_do_in_its_constructor_is_told(tmp_path: Path) -> None:
+    result = alone(tmp_path, "def __init__(self):\n    self.print(1)")
+    assert (
+        "A cannot be made: JacarosError: A does not live yet: it can do this in run, not in __init__"
+        in result.errors[0]
+    )
+    assert f"({tmp_path}/a.py:4, in __init__)" in result.errors[0]
+    result = alone(tmp_path, "async def run(self):\n    self.prin(12345)")
+    assert "AttributeError: A has no attribute 'prin'" in result.errors[0]
+
+
+def test_who_is_killed_has_five_seconds(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    try:
+        await self.receive()
+    finally:
+        await self.sleep(1)
+        self.print("one")
+        await self.sleep(10)
+        self.print("eleven")
+        await self.sleep(1)
+        self.print("twelve")
+""",
+        "!go. +!go <- .kill_agent(a).",
+    )
+    assert result.lines == ["[a] one"]
+    assert result.errors == ["[a] warning: the agent did not end within 5 s of its cancellation"]
+
+
+def test_an_error_when_it_is_asked_whether_it_may_be_killed_is_told(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    await self.receive()
+
+def accept_kill(self, killer):
+    return self.friends
+""",
+        "!go. +!go <- .kill_agent(a); .all_names(L); .print(L).",
+    )
+    assert result.lines == ["[bob] [bob]"]
+    assert result.errors == [
+        f"[a] error: accept_kill: AttributeError: A has no attribute 'friends' ({tmp_path}/a.py:7, in accept_kill)"
+    ]

@@ -1,0 +1,199 @@
+"""Agents written in Python tell and ask, and are told and asked."""
+
+from pathlib import Path
+
+from python_agents_lab import BOTH, alone, run, talk
+
+
+def test_it_tells_and_achieves(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    self.send("bob", "tell", "painted(wall)")
+    self.send("bob", "tell", Literal("painted", (Atom("door"), "red", [1, 2])))
+    self.send("bob", "achieve", "paint(X)")
+    self.send(["bob"], "tellHow", "+!clean <- .print(cleaned).")
+    self.broadcast("achieve", Atom("clean"))
+    self.send("bob", "untell", "painted(wall)")
+""",
+        """+painted(X)[source(S)] <- .print(X, " ", S).  -painted(X) <- .print("not ", X).
+           +painted(A, B, C) <- .print(A, B, C).  +!paint(_) <- .print(paint).""",
+    )
+    assert sorted(result.of("bob")) == ["cleaned", "doorred[1,2]", "not wall", "paint", "wall a"]
+    assert result.errors == []
+
+
+def test_it_asks(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    one = await self.ask("bob", "colour(X)")
+    self.print(one.functor, " ", one.arguments)
+    self.print(await self.ask("bob", "colour(X)", "askAll"), await self.ask("bob", "size(X)", "askAll"))
+    self.print(await self.ask("bob", "size(X)"))
+    self.print(len(await self.ask("bob", "+!go", "askHow")))
+    try:
+        await self.ask("bob", "slow(X)", timeout=0.5)
+    except TimeoutError as error:
+        self.print(error, " ", self.clock.now() % 1)
+    await self.sleep(1)
+    self.print((await self.ask("bob", "slow(X)")).arguments[0])
+""",
+        "colour(red). colour(blue). !go. +!go. +?slow(1) <- .wait(700).",
+    )
+    assert result.of("a") == [
+        "colour [red]",
+        "[colour(red),colour(blue)][]",
+        "None",
+        "1",
+        "no answer from bob within 0.5 s 0.5",
+        "1",
+    ]
+    assert result.errors == []
+
+
+def test_it_is_told_and_asked(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    async for message in self.messages():
+        self.print(message.performative, " ", message.content, " ", message.sender)
+        if message.performative == "askAll":
+            message.reply(["size(1)", Literal("size", (2,))])
+        elif message.is_question:
+            message.reply(None if message.content.functor == "weight" else "size(3)")
+""",
+        """!go. +!go <- .send(a, tell, [p(1), "x"]); .send(a, askOne, size(X), A); .print(A);
+             .send(a, askOne, weight(X), B); .print(B); .send(a, askAll, size(X), C); .print(C);
+             .send(a, achieve, g(f(2)[s])); .send(a, askOne, size(Z)).
+           +size(N)[source(S)] <- .print(N, S).""",
+    )
+    assert result.of("bob") == [
+        "size(3)[source(a)]",
+        "false",
+        "[size(1)[source(a)],size(2)[source(a)]]",
+        "3a",
+    ]
+    assert result.of("a")[0] == 'tell [p(1),"x"] bob'
+    assert result.of("a")[4] == "achieve g(f(2)) bob"
+    assert result.errors == []
+
+
+def test_handlers_are_called_one_after_the_other(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        m_jcm=BOTH.format("counter", "Counter"),
+        a_py="""
+class A(PythonAgent):
+    async def on_message(self, message):
+        await self.sleep(0.5)
+        self.print(message)
+        if message.is_question:
+            return Literal("size", (3,))
+
+    def on_signal(self, signal):
+        self.print(signal.name, signal.arguments)
+
+    def on_property(self, change):
+        self.print(change.name, " ", change.before, " ", change.now)
+""",
+        bob_asl="""!go. +!go <- inc; .send(a, tell, hello); .send(a, askOne, size(X), A); inc; .print(A);
+            .send(a, achieve, clean).""",
+    )
+    assert result.of("a") == [
+        "count None [0]",
+        "tick[1]",
+        "count [0] [1]",
+        "tell from bob: hello",
+        "askOne from bob: size(X)",
+        "tick[2]",
+        "count [1] [2]",
+        "achieve from bob: clean",
+    ]
+    assert result.of("bob") == ["size(3)[source(a)]"]
+    assert result.errors == []
+
+
+def test_who_is_over_gives_no_answers(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        'async def run(self):\n    await self.sleep(1)\n    self.print("over")',
+        """!go. +!go <- .send(a, tell, p); .send(a, askOne, size(X), A); .print(A);
+             .send(a, askOne, size(X), B); .print(B); .all_names(L); .print(L).""",
+    )
+    assert result.lines == ["[a] over", "[bob] false", "[bob] false", "[bob] [a,bob]"]
+
+
+def test_a_message_to_nobody_is_an_error_in_python(tmp_path: Path) -> None:
+    body = """
+async def run(self):
+    for receiver in ("nobody", "a"):
+        try:
+            self.send(receiver, "tell", "p")
+        except UnknownAgent as error:
+            self.print(error)
+    self.print((await self.receive()).sender)
+    try:
+        await self.receive(timeout=1.5)
+    except TimeoutError as error:
+        self.print(error)
+    try:
+        self.send("a", "tell", "p(")
+    except Exception as error:
+        self.print(type(error).__name__)
+"""
+    assert alone(tmp_path, body).of("a") == [
+        "there is no agent nobody; there are a",
+        "self",
+        "no message within 1.5 s",
+        "AslError",
+    ]
+
+
+def test_the_directory_facilitator_knows_it(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    self.register_service("paint")
+    self.subscribe_to_service("sell")
+    self.print(await self.receive())
+    self.print(self.providers("sell"), self.providers("paint"))
+    self.deregister_service("paint")
+    self.print(self.providers("paint"))
+""",
+        """!go. +!go <- .df_search(paint, L); .print(L); .df_register(sell).""",
+    )
+    assert result.of("bob") == ["[a]"]
+    assert result.of("a") == ['tell from df: provider(bob,"sell")', '["bob"]["a"]', "[]"]
+
+
+def test_all_kinds_of_contents_are_heard(tmp_path: Path) -> None:
+    result = talk(
+        tmp_path,
+        """
+async def run(self):
+    async for message in self.messages():
+        self.print(message.performative, " ", repr(message.content))
+        if message.performative == "askHow":
+            message.reply(["+!g(X) <- .print(X)."])
+""",
+        """!go. +!go <- .send(a, tellHow, {+!g(X) : p(X) <- .print(x)}); .send(a, untellHow, "l1");
+            .send(a, askHow, {+!g(_)}, P); .print(P); .send(a, signal, s(1)); .send(a, unachieve, g(2));
+            .send(a, tell, [1, "text", b]); .send(a, tell, "text"); .send(a, tell, 7); .send(a, unknown, ~n::f(3)).""",
+    )
+    assert result.of("bob") == ['["+!g(X) <- .print(X)."]']
+    assert result.of("a") == [
+        "tellHow '{ +!g(X) : p(X) <- .print(x) }'",
+        "untellHow 'l1'",
+        "askHow '{ +!g(_1) }'",
+        "signal Literal(functor='s', arguments=(1,), annotations=(), negated=False, namespace=None)",
+        "unachieve Literal(functor='g', arguments=(2,), annotations=(), negated=False, namespace=None)",
+        "tell [1, 'text', Literal(functor='b', arguments=(), annotations=(), negated=False, namespace=None)]",
+        "tell 'text'",
+        "tell 7",
+        "unknown Literal(functor='f', arguments=(3,), annotations=(), negated=True, namespace='n')",
+    ]
