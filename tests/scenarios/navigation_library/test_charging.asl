@@ -39,6 +39,31 @@ place(b, 2, 0, 0).
      .drop_desire(patrol(_));
      .drop_desire(keep_charged(_)).
 
+@goes_on_when_the_last_reason_to_rest_has_gone[test]
++!test_reasons
+  <- !fakes;
+     +battery(50);
+     !!patrol([a, b]);
+     !!keep_charged(patrol(_));
+     .wait(100);
+     -+battery(20);
+     .wait(1000);
+     !hold(patrol(_), person);
+     !hold(patrol(_), person);
+     !release(patrol(_), person);
+     .wait(2000);
+     !assert_did(navigate_to(_, _, _), 1);
+     !hold(patrol(_), person);
+     -+battery(100);
+     .wait(2000);
+     !assert_did(undock, 1);
+     !assert_did(navigate_to(_, _, _), 1);
+     !release(patrol(_), person);
+     .wait(1500);
+     !assert_did(navigate_to(2, 0, 0), 1);
+     .drop_desire(patrol(_));
+     .drop_desire(keep_charged(_)).
+
 @charges_again_and_again[test]
 +!test_again
   <- !fakes;

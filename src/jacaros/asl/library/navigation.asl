@@ -138,14 +138,29 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 +!arrived(_).
 
+/* Rest: several plans may want the same goal to rest at the same time, each for a reason of its own */
+
+@navigation__hold[atomic]
++!hold(Goal, Reason)
+  <- +held(Goal, Reason);
+     .suspend(Goal).
+
+// It goes on when the last reason has gone.
+@navigation__release[atomic]
++!release(Goal, Reason)
+  <- .abolish(held(Goal, Reason));
+     if (not held(Goal, _)) {
+        .resume(Goal);
+     }.
+
 /* The battery, which is known as battery(Percent, _) or battery(Percent) */
 
 // As long as this goal is pursued, another one, such as patrol(_), rests whenever the battery is low, until it is full.
 +!keep_charged(Goal)
   <- .wait(battery_low);
-     .suspend(Goal);
+     !hold(Goal, battery);
      !dock_and_charge;
-     .resume(Goal);
+     !release(Goal, battery);
      !keep_charged(Goal).
 
 // To the dock, wait there until the battery is full, and out again.
