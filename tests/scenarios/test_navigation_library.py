@@ -47,7 +47,7 @@ def test_the_plans_with_faked_robots() -> None:
     suites = collect([TESTS])
     assert [suite.error for suite in suites if suite.error is not None] == []
     outcomes = [outcome for suite in run_suites(suites) for outcome in suite.outcomes]
-    assert len(outcomes) == 37
+    assert len(outcomes) == 38
     assert [outcome.test.name for outcome in outcomes if not outcome.passed] == []
 
 
