@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import pytest
-from test_navigation import NAVIGATE, Lab, bumps, in_world, near, pose
+from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
 
 from jacaros.errors import UsageError
 from jacaros.ros.action import GoalStatus

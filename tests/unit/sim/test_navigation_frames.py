@@ -1,0 +1,117 @@
+"""Where robots are and goals lie: the frames of the tf tree, and a pose that the robot is told."""
+
+import math
+
+import pytest
+from navigation_lab import Lab, in_world, near, pose
+
+from jacaros.ros.action import GoalStatus
+from jacaros.sim.trigonometry import PI
+
+FROM_START = """
+name: from start
+bounds: {from: [-3, -3], to: [3, 3]}
+border: walls
+robots:
+  - namespace: robot_1
+    pose: {x: 1, y: 0, yaw_degrees: 90}
+    odometry: {origin: start}
+"""
+
+
+@pytest.mark.parametrize(
+    ("frame", "x", "y"),
+    [("robot_1/odom", -1, 1), ("odom", -1, 1), ("robot_1/base_link", -1, 1), ("map", 0, -1)],
+)
+def test_goals_may_be_in_any_frame_of_the_robot(frame: str, x: float, y: float) -> None:
+    """At the start odometry and base are the same frame: one metre to the right of the map's middle, looking up."""
+
+    async def body(lab: Lab) -> None:
+        goal = (x, y, 0.0) if frame != "map" else (0.0, -1.0, PI / 2)
+        outcome = await lab.go(*goal, frame, "/robot_1")
+        assert outcome.status == GoalStatus.SUCCEEDED
+        near(lab.world, 0, -1, PI / 2)
+
+    in_world(FROM_START, body)
+
+
+def test_the_tf_tree_joins_map_odometry_and_base() -> None:
+    async def body(lab: Lab) -> None:
+        lab.backend.tf_listen()
+        assert (await lab.go(-1, 1, 0, "robot_1/odom", "/robot_1")).status == GoalStatus.SUCCEEDED
+        await lab.stands()
+        found = lab.backend.tf_lookup("map", "robot_1/base_scan")
+        robot = lab.world.robot()
+        assert found.translation == pytest.approx((robot.x, robot.y, 0.0), abs=1e-6)
+        assert found.yaw == pytest.approx(robot.yaw, abs=1e-6)
+        start = lab.backend.tf_lookup("map", "robot_1/odom")
+        assert start.translation == pytest.approx((1.0, 0.0, 0.0), abs=1e-6)
+        assert lab.backend.tf_lookup("robot_1/map", "map").translation == pytest.approx((0, 0, 0))
+
+    in_world(FROM_START, body)
+
+
+def test_goals_in_foreign_frames_go_through_tf() -> None:
+    async def body(lab: Lab) -> None:
+        table = {
+            "header": {"frame_id": "map"},
+            "child_frame_id": "table",
+            "transform": {"translation": {"x": 1.0, "y": 1.0}, "rotation": {"z": 1.0, "w": 0.0}},
+        }
+        lab.backend.tf_broadcast(table, static=True)
+        outcome = await lab.go(1, 0, 0.0, "table")
+        assert outcome.status == GoalStatus.SUCCEEDED
+        near(lab.world, 0, 1, PI)
+
+    in_world("empty", body)
+
+
+def tell_pose(
+    lab: Lab, x: float, y: float, yaw: float = 0.0, frame: str = "map", spread: float = 0.0
+) -> None:
+    """As rviz's "2D Pose Estimate", whose spread is 0.25."""
+    publisher = lab.backend.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped")
+    told = pose(x, y, yaw, frame)
+    covariance = [0.0] * 36
+    covariance[0] = covariance[7] = spread
+    publisher.publish({"header": told["header"], "pose": {"pose": told["pose"], "covariance": covariance}})
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "yaw", "frame", "spread", "lost"),
+    [
+        (0.1, 0.1, 0.1, "map", 0.0, False),
+        (0.6, 0.5, 0.0, "map", 0.25, False),
+        (0.6, 0.5, 0.0, "map", 0.0, True),
+        (0.0, 0.0, 2.0, "map", 0.25, True),
+        (2.0, 0.0, 0.0, "", 0.25, True),
+        (2.0, 0.0, 0.0, "odom", 0.25, False),
+        (math.nan, 0.0, 0.0, "map", 0.25, False),
+        (2.0, 0.0, 0.0, "map", -1.0, False),
+    ],
+)
+def test_a_pose_that_the_robot_is_told_is_believed(
+    x: float, y: float, yaw: float, frame: str, spread: float, lost: bool
+) -> None:
+    async def body(lab: Lab) -> None:
+        lab.backend.tf_listen()
+        tell_pose(lab, x, y, yaw, frame, spread)
+        await lab.clock.sleep(2.0)
+        believed = lab.backend.tf_lookup("map", "base_link")
+        expected = (x, y, yaw) if lost else (0.0, 0.0, 0.0)
+        assert (*believed.translation[:2], believed.yaw) == pytest.approx(expected, abs=1e-6)
+
+    in_world("empty", body)
+
+
+def test_a_robot_that_is_lost_goes_wrong_until_it_is_told_better() -> None:
+    async def body(lab: Lab) -> None:
+        tell_pose(lab, 1, 0)
+        assert (await lab.go(2, 0)).status == GoalStatus.SUCCEEDED
+        near(lab.world, 1, 0, 0)
+        tell_pose(lab, 1.1, 0.1, spread=0.25)
+        await lab.clock.sleep(1.0)
+        assert (await lab.go(2, 0)).status == GoalStatus.SUCCEEDED
+        near(lab.world, 2, 0, 0)
+
+    in_world("empty", body)

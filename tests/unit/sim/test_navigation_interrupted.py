@@ -1,0 +1,149 @@
+"""Goals that do not have their way: cancelled, taken over, without power, and with robots in the way."""
+
+import asyncio
+
+import pytest
+from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
+
+from jacaros.ros.action import GoalStatus
+from jacaros.ros.errors import GoalRejected
+
+
+def test_cancelling_stops_the_robot() -> None:
+    async def body(lab: Lab) -> None:
+        handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+        await lab.clock.sleep(3.0)
+        assert lab.world.robot().speed > 0.2
+        assert await handle.cancel()
+        assert (await handle.outcome()).status == GoalStatus.CANCELED
+        await lab.stands()
+
+    in_world("house", body)
+
+
+def test_a_newer_goal_takes_over_also_from_another_action() -> None:
+    async def body(lab: Lab) -> None:
+        first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+        await lab.clock.sleep(2.0)
+        second = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
+        assert (await first.outcome()).status == GoalStatus.ABORTED
+        await lab.clock.sleep(2.0)
+        third = await lab.do("/move_base", "move_base_msgs/action/MoveBase", target_pose=pose(0, 2))
+        outcome = await second.outcome()
+        assert outcome.status == GoalStatus.ABORTED
+        assert "newer goal" in outcome.text
+        assert third.status == GoalStatus.SUCCEEDED
+        await lab.stands()
+        near(lab.world, 0, 2, 0)
+
+    in_world("house", body)
+
+
+def test_nav2s_two_navigators_do_not_take_over_from_each_other() -> None:
+    async def body(lab: Lab) -> None:
+        through = "nav2_msgs/action/NavigateThroughPoses"
+        first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+        await lab.clock.sleep(1.0)
+        with pytest.raises(GoalRejected, match="navigate_to_pose is at work"):
+            await lab.send("/navigate_through_poses", through, poses=[pose(0, 1)])
+        second = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
+        assert (await first.outcome()).status == GoalStatus.ABORTED
+        with pytest.raises(GoalRejected, match="navigate_to_pose is at work"):
+            await lab.send("/navigate_through_poses", through, poses=[pose(0, 1)])
+        await second.cancel()
+        assert (await second.outcome()).status == GoalStatus.CANCELED
+        third = await lab.send("/navigate_through_poses", through, poses=[pose(0, 1)])
+        with pytest.raises(GoalRejected, match="navigate_through_poses is at work"):
+            await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+        assert (await third.outcome()).status == GoalStatus.SUCCEEDED
+        assert (await lab.go(0, 0)).status == GoalStatus.SUCCEEDED
+        empty = await lab.do("/navigate_through_poses", through)
+        assert (empty.status, empty.result.error_code) == (GoalStatus.ABORTED, 309)
+
+    in_world("house", body)
+
+
+def test_a_goal_that_comes_while_the_robot_docks_takes_over() -> None:
+    async def body(lab: Lab) -> None:
+        for wait in (1.0, 5.5):  # on the way to the dock, and close before it
+            docking = await lab.send("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dock")
+            await lab.clock.sleep(wait)
+            assert (await lab.go(0, 0)).status == GoalStatus.SUCCEEDED
+            outcome = await docking.outcome()
+            assert (outcome.status, outcome.result.success) == (GoalStatus.ABORTED, False)
+            assert "newer goal" in outcome.text
+            await lab.stands()
+
+    in_world("house", body)
+
+
+def test_closing_the_servers_stops_the_robot() -> None:
+    async def body(lab: Lab) -> None:
+        handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+        await lab.clock.sleep(3.0)
+        for navigation in lab.node.navigation:
+            navigation.close()
+        assert (await handle.outcome()).status == GoalStatus.ABORTED
+        await lab.stands()
+
+    in_world("house", body)
+
+
+def test_a_battery_that_runs_empty_ends_the_goal() -> None:
+    async def body(lab: Lab) -> None:
+        lab.world.robot().battery.level = 2.0
+        outcome = await lab.go(2, 2)
+        assert outcome.status == GoalStatus.ABORTED
+        assert (outcome.result.error_code, outcome.result.error_msg) == (105, "the battery is empty")
+
+    in_world("house", body)
+
+
+PARKED = """
+name: corridor
+bounds: {from: [-3, -0.4], to: [3, 0.4]}
+border: walls
+robots:
+  - {name: one, namespace: one, pose: {x: -2, y: 0, yaw_degrees: 0}}
+  - {name: two, namespace: two, pose: {x: 0.5, y: 0, yaw_degrees: 0}}
+"""
+
+
+def test_a_robot_that_never_moves_blocks_a_corridor() -> None:
+    async def body(lab: Lab) -> None:
+        outcome = await lab.go(2, 0, robot="/one")
+        assert outcome.status == GoalStatus.ABORTED
+        assert outcome.result.error_code == 208
+        assert "another robot stands in the way" in outcome.result.error_msg
+        assert lab.feedback[-1].number_of_recoveries == 3
+        assert 15.0 < lab.clock.elapsed < 45.0
+        await lab.stands("one")
+
+    assert bumps(in_world(PARKED, body).world) == []
+
+
+def test_a_robot_that_goes_away_in_time_is_waited_for() -> None:
+    async def body(lab: Lab) -> None:
+        first = await lab.send("/one/navigate_to_pose", NAVIGATE, pose=pose(1.4, 0))
+        await lab.clock.sleep(8.0)
+        assert (await lab.go(2.5, 0, robot="/two")).status == GoalStatus.SUCCEEDED
+        assert (await first.outcome()).status == GoalStatus.SUCCEEDED
+
+    assert bumps(in_world(PARKED, body).world) == []
+
+
+def test_robots_pass_each_other() -> None:
+    async def body(lab: Lab) -> None:
+        async def shuttle(robot: str, ends: list[tuple[float, float]]) -> None:
+            for x, y in ends * 2:
+                outcome = await lab.go(x, y, robot=f"/{robot}")
+                assert outcome.status == GoalStatus.SUCCEEDED, outcome.text
+
+        await asyncio.gather(
+            shuttle("robot_1", [(3, 0.2), (-3, 0)]),
+            shuttle("robot_2", [(-3, -0.2), (3, 2.2)]),
+            shuttle("robot_3", [(3, -2.2), (0, 2.2)]),
+        )
+
+    done = in_world("three_robots", body)
+    assert bumps(done.world) == []
