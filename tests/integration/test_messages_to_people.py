@@ -144,7 +144,9 @@ def test_an_unknown_artifact_class_in_a_program(project: Project) -> None:
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
         "no artifact type is called ArtOdometri; "
-        "did you mean ArtOdometry or ArtOdometryOnDemand or ArtCmdVelAndOdometry? (robot.asl:3)\n",
+        "did you mean ArtOdometry or ArtOdometryOnDemand or ArtCmdVelAndOdometry? (robot.asl:3)\n"
+        '  step: makeArtifact("odom","ArtOdometri")\n'
+        '  reason: env_failure_reason(makeArtifactFailure("unknown_artifact_template","ArtOdometri"))\n',
     )
 
 
@@ -179,7 +181,8 @@ def test_an_unknown_operation(project: Project) -> None:
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
         "no artifact of workspace /main has an operation chek/1; did you mean check/1 of 'visitors'? "
-        "(robot.asl:4)\n",
+        "(robot.asl:4)\n"
+        '  step: chek(3)\n  reason: env_failure_detail(unknown_operation("chek/1"))\n',
     )
 
 
@@ -188,6 +191,8 @@ def test_an_unknown_internal_action(project: Project) -> None:
     assert project.run_file("robot.asl")[2].endswith(
         "action_failed, no artifact of workspace /main has an operation .nosuchaction/1; there is no internal action "
         ".nosuchaction (robot.asl:3)\n"
+        "  step: .nosuchaction(3)\n"
+        '  reason: env_failure_detail(unknown_operation(".nosuchaction/1"))\n'
     )
 
 
@@ -198,7 +203,8 @@ def test_an_argument_of_the_wrong_type(project: Project) -> None:
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
         'operation check/1 of artifact c: parameter limit (number 1) wants an integer, got "many" '
-        "(robot.asl:4)\n",
+        "(robot.asl:4)\n"
+        '  step: check("many")\n  reason: env_failure_reason(wrong_op_arguments(cobj_3,"check/1"))\n',
     )
 
 
@@ -235,7 +241,9 @@ def test_an_unknown_option_of_an_artifact(project: Project) -> None:
         0,
         "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
         "artifact battery (ArtSimBattery) cannot be made: ArtSimBattery has no option 'drian'; "
-        "it knows dock_timeout, drain, expire, level, namespace, source, topic, watch_connection (robot.asl:3)\n",
+        "it knows dock_timeout, drain, expire, level, namespace, source, topic, watch_connection (robot.asl:3)\n"
+        '  step: makeArtifact("battery","ArtSimBattery",[drian(2)],_)\n'
+        '  reason: env_failure_reason(makeArtifactFailure("init_failed","battery"))\n',
     )
 
 

@@ -4,7 +4,8 @@ from typing import Any
 
 from jacaros.bdi import goals
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.failure import error_terms, nowhere
+from jacaros.bdi.failure import error_terms
+from jacaros.bdi.failure_reason import nowhere
 from jacaros.bdi.intention import Intention
 from jacaros.compiler.runtime import literal_of
 from jacaros.terms.unifier import rename

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from jacaros.bdi import failure, meta_events, subplans
+from jacaros.bdi import failure, lost_goals, meta_events, subplans
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
-from jacaros.bdi.failure import FailureReason
+from jacaros.bdi.failure_reason import FailureReason
 from jacaros.bdi.forks import branch_failed
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.terms.values import atom
@@ -60,11 +60,19 @@ def fail_goal(
         if agent.meta:
             meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
         return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
-    return fail_intention(agent, intention, reason)
+    return fail_intention(agent, intention, reason, goal)
 
 
-def fail_intention(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:
-    """The nearest handler down the stack takes over; without one the intention ends with a warning."""
+def fail_intention(
+    agent: Circumstance,
+    intention: Intention,
+    reason: FailureReason,
+    goal: tuple[Any, ...] | None = None,
+) -> Posted | None:
+    """The nearest handler down the stack takes over; without one the intention ends with a warning.
+
+    *goal* is the one that failed, when it is not on the stack.
+    """
     while intention.forks and not failure.has_handler(agent, intention, intention.forks[-1][0].depth):
         if not branch_failed(agent, intention):
             agent.finish(intention)
@@ -77,9 +85,10 @@ def fail_intention(agent: Circumstance, intention: Intention, reason: FailureRea
             meta_events.goal_state(agent, failed[GOAL], failed[2], "executing", _HAS_FAILURE_PLAN)
         return posted
     if intention.on_failed is not None:
+        lost_goals.note_goals(agent, intention, reason, goal)
         intention.on_failed(reason)
     else:
-        _warn_lost(agent, intention, reason)
+        _tell_people(agent, lost_goals.loss(agent, intention, reason, goal))
     if agent.meta:
         _tell_failed(agent, intention, reason)
     agent.finish(intention)
@@ -95,38 +104,22 @@ def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReaso
 
 
 def _tell(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, reason: FailureReason) -> None:
-    meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()), reason.message())
+    why = lost_goals.why(reason) if agent.goal_observer is not None else ""
+    meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()), why)
 
 
-def _warn_lost(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
-    bottom = next((frame[GOAL] for frame in intention.frames if frame[GOAL][0].kind), None)
-    what = "an intention" if bottom is None else f"the goal !{failure.goal_text(bottom)}"
-    told = lost_text(what, reason)
-    agent.architecture.log("warning", told)
+def _tell_people(agent: Circumstance, loss: lost_goals.Loss) -> None:
+    agent.architecture.log("warning", loss.text())
     if agent.probe is not None:
-        agent.probe.lost(told, reason.span())
-
-
-def lost_text(what: str, reason: FailureReason) -> str:
-    """What people are told of *what* has failed when nobody saved it."""
-    where = reason.where()
-    place = f" ({where})" if where else ""
-    return f"{what} failed and has no plan for its failure: {reason.error()}, {reason.message()}{place}"
+        agent.probe.lost(loss.told, loss.details, loss.span)
 
 
 def _lost_in_handler(
     agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
 ) -> None:
+    reason = annotations if isinstance(annotations, FailureReason) else None
     if intention.on_failed is not None:
-        intention.on_failed(annotations if isinstance(annotations, FailureReason) else None)
-        agent.finish(intention)
-        return
-    shown = f"-{goal[0].kind}{failure.goal_text(goal)}"
-    told = (
-        f": {annotations.error()}, {annotations.message()}" if isinstance(annotations, FailureReason) else ""
-    )
-    lost = f"no applicable plan for the failure event {shown}; the intention is dropped{told}"
-    agent.architecture.log("warning", lost)
-    if agent.probe is not None:
-        agent.probe.lost(lost, annotations.span() if isinstance(annotations, FailureReason) else None)
+        intention.on_failed(reason)
+    else:
+        _tell_people(agent, lost_goals.lost_in_handler(agent, intention, goal, reason))
     agent.finish(intention)

@@ -14,7 +14,8 @@ from jacaros.bdi.event import (
     Posted,
     event_literal,
 )
-from jacaros.bdi.failure import FailureReason, nowhere, release_bindings
+from jacaros.bdi.failure import release_bindings
+from jacaros.bdi.failure_reason import FailureReason, nowhere
 from jacaros.bdi.finishing import pop_finished
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.stack import achieve, cut, pending_event, remove_event
@@ -298,6 +299,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
             continue
         own = own or intention is agent.current
         frame = intention.frames[index]
+        ended = reason.interrupted(intention.frames[index:])
         release_bindings(frame[GOAL], frame[SERIAL])
         cut(agent, intention, index)
         if intention in agent.intentions:
@@ -305,7 +307,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         _post(
             agent,
             intention,
-            goal_failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], reason),
+            goal_failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], ended),
         )
     for event in goal_events(agent, goal):
         remove_event(agent, event)

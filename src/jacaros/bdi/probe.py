@@ -60,8 +60,9 @@ class Probe(Protocol):
     def asserted(self, assertion: Assertion) -> None:
         """The program made an assertion."""
 
-    def lost(self, text: str, span: Span | None) -> None:
-        """An intention that nobody watches ended in failure; *text* tells it to people, *span* is the place."""
+    def lost(self, text: str, details: Sequence[str], span: Span | None) -> None:
+        """An intention that nobody watches ended in failure; *text* and *details* tell it to people, *span* is the
+        place."""
 
     def fake(self, action: Term, outcome: Term) -> None:
         """From now on the test answers external actions that match *action*.

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from jacaros.asl import nodes
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.failure import FailureReason
+from jacaros.bdi.failure_reason import FailureReason
 from jacaros.bdi.intention import GOAL, Frame, Intention
 from jacaros.bdi.internal_action import ActionError
 from jacaros.compiler.plan import Plan

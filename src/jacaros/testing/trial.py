@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from jacaros.asl.source import Span
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.failure import FailureReason
+from jacaros.bdi.failure_reason import FailureReason
 from jacaros.bdi.goals import describe
 from jacaros.bdi.intention import PLAN, STEP, Intention
+from jacaros.bdi.lost_goals import details
 from jacaros.bdi.probe import Assertion
 from jacaros.bdi.waiting import is_action
 from jacaros.bdi.watched import WatchedGoal
@@ -334,18 +335,15 @@ class Trial:
         if not assertion.passed:
             self._outcome.problems.append(Problem.of(assertion))
 
-    def lost(self, agent: str, told: str, span: Span | None) -> None:
+    def lost(self, agent: str, told: str, details: Sequence[str], span: Span | None) -> None:
         """An intention of an agent failed, and nobody took care of that."""
         outcome = self._outcome
-        if (
-            outcome.output
-            and outcome.output[-1].startswith(f"[{agent}] ")
-            and outcome.output[-1].endswith(told)
-        ):
+        if outcome.output and outcome.output[-1].startswith(f"[{agent}] ") and told in outcome.output[-1]:
             # The warning about it says the same.
             outcome.output.pop()
         first, _, rest = told.partition(": ")
-        outcome.problems.append(Problem(f"agent {agent}: {first}", (rest,) if rest else (), span))
+        told_further = (rest, *details) if rest else tuple(details)
+        outcome.problems.append(Problem(f"agent {agent}: {first}", told_further, span))
 
     def print(self, agent: str, text: str) -> None:
         """Keep a line that an agent prints."""
@@ -369,8 +367,8 @@ class _AgentProbe:
     def asserted(self, assertion: Assertion) -> None:
         self._trial.asserted(assertion)
 
-    def lost(self, text: str, span: Span | None) -> None:
-        self._trial.lost(self._name, text, span)
+    def lost(self, text: str, details: Sequence[str], span: Span | None) -> None:
+        self._trial.lost(self._name, text, details, span)
 
     def fake(self, action: Term, outcome: Term) -> None:
         self.fakes.add(action, outcome)
@@ -391,15 +389,8 @@ def _failure(test: AgentTest, reason: FailureReason | None) -> Problem:
     if reason is None:
         return Problem("the goal of the test failed", (), test.span)
     place = reason.span() or test.span
-    told = reason.message()
-    others = [text(term) for term in reason.terms if _is_told(term)]
-    return Problem(
-        f"the goal of the test failed: {reason.error()}", tuple(filter(None, (told, *others))), place
-    )
-
-
-def _is_told(term: Term) -> bool:
-    return not (term.__class__ is tuple and term[0].name in ("error", "error_msg"))
+    told = filter(None, (reason.message(), *details(reason)))
+    return Problem(f"the goal of the test failed: {reason.error()}", tuple(told), place)
 
 
 def _stuck(told: str, intentions: Sequence[Intention], test: AgentTest) -> Problem:

@@ -100,7 +100,11 @@ def test_a_lost_intention_is_reported_with_its_place() -> None:
     assert host.logged == [
         (
             "warning",
-            "the goal !g failed and has no plan for its failure: test_goal_failed, a test found no answer (lost.asl:3)",
+            (
+                "the goal !g failed and has no plan for its failure: "
+                "test_goal_failed, a test found no answer (lost.asl:3)\n"
+                "  step: ?nothing(1)"
+            ),
         )
     ]
 
@@ -171,7 +175,9 @@ def test_an_observer_hears_why_a_goal_failed() -> None:
     heard: list[tuple[str, str, str]] = []
     observe_goals(host.agent, lambda state, goal, number, why: heard.append((state, goal, why)))
     host.run()
-    assert [(goal, why) for state, goal, why in heard if state == "failed"] == [("!b", "no way")]
+    assert [(goal, why) for state, goal, why in heard if state == "failed"] == [
+        ("!b", 'internal_action, no way (tester.asl:1)\nstep: .fail(error_msg("no way"))')
+    ]
     assert not any(why for state, goal, why in heard if state != "failed")
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from jacaros.asl.source import Span
 from jacaros.bdi.context import Context
-from jacaros.bdi.failure import place_of_call
+from jacaros.bdi.failure_reason import place_of_call
 from jacaros.bdi.intention import GOAL, PLAN
 from jacaros.bdi.internal_action import ActionError, internal_action
 from jacaros.bdi.probe import Assertion, Probe

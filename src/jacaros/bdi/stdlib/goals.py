@@ -9,6 +9,7 @@ from jacaros.bdi import goals
 from jacaros.bdi.body_terms import is_body_frame
 from jacaros.bdi.context import Context
 from jacaros.bdi.event import EVENT_GOAL
+from jacaros.bdi.failure_reason import nowhere, shown_goal
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.plan_terms import bindings_of, variables_of
@@ -258,8 +259,16 @@ def succeed_goal(ctx: Context, goal: Term) -> Any:
 @internal_action(".fail_goal", arity=1, suspends=True)
 def fail_goal(ctx: Context, goal: Term) -> Any:
     """``.fail_goal(G)``: matching goals end as failed; the failure event carries no ``error``."""
-    own = _on_goal(ctx, goal, lambda wanted: goals.fail_goal(ctx.agent, wanted))
+    reason = nowhere(told=f".fail_goal{_caller(ctx)} ended it")
+    own = _on_goal(ctx, goal, lambda wanted: goals.fail_goal(ctx.agent, wanted, reason))
     return SUSPENDED if own else None
+
+
+def _caller(ctx: Context) -> str:
+    """Of which plan the calling step is, for people."""
+    if ctx.intention is None or not ctx.intention.frames:
+        return ""
+    return f" in the plan of {shown_goal(ctx.intention.frames[-1][GOAL])}"
 
 
 def _ended(ctx: Context, own: bool) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.asl.loader import parse_term
 from jacaros.bdi import goals
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.goal_failure import lost_text
+from jacaros.bdi.lost_goals import loss_of
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.watched import WatchedGoal
 from jacaros.body.values import to_value
@@ -241,7 +241,7 @@ class Goal(PursuedGoal):
     def _tell_failure(self) -> None:
         if not self._awaited:
             what, reason = f"the goal !{self._written}", self._watched.reason
-            told = lost_text(what, reason) if reason is not None else f"{what} failed"
+            told = loss_of(what, reason).text() if reason is not None else f"{what} failed"
             self._mind.architecture.log("warning", told)
 
     def _not_achieved(self) -> str:

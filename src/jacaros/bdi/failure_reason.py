@@ -1,0 +1,312 @@
+"""Why a goal failed: the annotations of its failure event, and what people are told of it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.asl.formatter import format_term
+from jacaros.asl.source import Span
+from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame
+from jacaros.bdi.step_text import step_text
+from jacaros.compiler.body_compiler import StepInfo
+from jacaros.compiler.lowering import lower
+from jacaros.compiler.runtime import annotations_of_event, literal_of
+from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.order import annotation_set
+from jacaros.terms.text import text
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import Functor, String, Term, Var, functor, functor_of
+
+ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
+CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
+UNNAMED = Var("_")
+_REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
+
+
+class FailureReason:
+    """The annotations of a failure event; they are put together when a plan first asks for them.
+
+    Attributes:
+        terms: ``error(..)``, ``error_msg(..)`` and what else was given.
+        goal_annotations: those of the goal that failed.
+        goals: those of the intention that was lost, as people read them, the one that failed first; noted when it ends.
+        candidates: of a goal without applicable plan, the plans that there were; noted at the same time.
+    """
+
+    __slots__ = ("_made", "_place", "candidates", "goal_annotations", "goals", "terms")
+
+    def __init__(self, terms: tuple[Term, ...], place: Any, goal_annotations: Any = ()) -> None:
+        self.terms = terms
+        self._place = place
+        self.goal_annotations = goal_annotations
+        self.goals: tuple[str, ...] = ()
+        self.candidates: tuple[str, ...] = ()
+        self._made: tuple[Term, ...] | None = None
+
+    def with_goal(self, annotations: Any) -> "FailureReason":
+        """The same reason, for the failure event of another goal."""
+        return FailureReason(self.terms, self._place, annotations)
+
+    def annotations(self) -> tuple[Term, ...]:
+        """All annotations, sorted."""
+        if self._made is None:
+            goal = self.goal_annotations
+            own = goal if isinstance(goal, tuple) else goal.annotations() if goal is not None else ()
+            self._made = annotation_set((*self.terms, *self._place.annotations(), *own))
+        return self._made
+
+    def error(self) -> str:
+        """The id of the error, for messages."""
+        return self.known_error() or "unknown"
+
+    def known_error(self) -> str:
+        """The id of the error, or an empty text: failures by ``.fail_goal`` have none."""
+        for term in self.terms:
+            if term.__class__ is tuple and term[0] is ERROR:
+                return text(term[1])
+        return ""
+
+    def message(self) -> str:
+        """The text for people, or an empty one."""
+        for term in self.terms:
+            if term.__class__ is tuple and term[0] is ERROR_MSG:
+                return str(term[1])
+        return str(self._place.told())
+
+    def others(self) -> list[Term]:
+        """The terms besides ``error`` and ``error_msg``, such as ``env_failure_reason(..)``."""
+        return [t for t in self.terms if not (t.__class__ is tuple and t[0] in (ERROR, ERROR_MSG))]
+
+    def step(self) -> str:
+        """The step that failed, with the values of its variables; empty when a goal without plan is the reason."""
+        return str(self._place.step())
+
+    def inner_goals(self) -> tuple[str, ...]:
+        """The goals for which the step was made, as far as they are not on the stack any more."""
+        found: tuple[str, ...] = self._place.inner_goals()
+        return found
+
+    def unplanned(self) -> tuple[Any, ...] | None:
+        """The goal that no plan fits, None when that is not the reason."""
+        found: tuple[Any, ...] | None = self._place.unplanned()
+        return found
+
+    def interrupted(self, frames: list[Frame]) -> "FailureReason":
+        """The same reason, for goals that were ended from outside: *frames* served them, the last one was at work."""
+        return FailureReason(self.terms, _Interrupted(self._place.told(), frames), self.goal_annotations)
+
+    def where(self) -> str:
+        """``file:line``, or an empty text."""
+        return str(self._place.where())
+
+    def span(self) -> Span | None:
+        """The place of the formula that failed, or of the call of the goal without plan; None when there is none."""
+        found: Span | None = self._place.span()
+        return found
+
+
+class _Nowhere:
+    """No formula: something from outside ended the goal; *told* says what, where no ``error_msg`` does."""
+
+    def __init__(self, told: str = "") -> None:
+        self._told = told
+
+    def told(self) -> str:
+        return self._told
+
+    def step(self) -> str:
+        return ""
+
+    def inner_goals(self) -> tuple[str, ...]:
+        return ()
+
+    def unplanned(self) -> tuple[Any, ...] | None:
+        return None
+
+    def annotations(self) -> tuple[Term, ...]:
+        return ()
+
+    def span(self) -> Span | None:
+        return None
+
+    def where(self) -> str:
+        return ""
+
+
+class StepPlace(_Nowhere):
+    """The formula of a step that failed.  The frame stays as it is: its plan goes no further."""
+
+    __slots__ = ("_frame", "_info", "_slots")
+
+    def __init__(self, frame: Frame, info: StepInfo) -> None:
+        super().__init__()
+        self._frame, self._info = frame, info
+        self._slots = frame[PLAN].slots
+
+    @property
+    def node(self) -> nodes.Node:
+        return _failed_formula(self._info.node)
+
+    @property
+    def plan(self) -> Any:
+        return self._frame[PLAN]
+
+    def annotations(self) -> tuple[Term, ...]:
+        return _code(self._term(self._value), self.node.span, self.plan.file)
+
+    def step(self) -> str:
+        return step_text(
+            self._info.node, self._term(lambda name: UNNAMED if name[0] == "_" else self._value(name))
+        )
+
+    def _term(self, value: Callable[[str], Term]) -> Term:
+        """The formula, with the values of its variables."""
+        node = self.node
+        term = lower(node, value)
+        try:
+            term = resolve(term)
+        except (ArithmeticFault, CyclicTerm, RecursionError):
+            # The formula holds the very expression that has no value: it is shown as it is written.
+            term = String(format_term(node)) if isinstance(node, nodes.Term) else String("")
+        return term
+
+    def _value(self, name: str) -> Term:
+        """The value of a variable, as far as it has one."""
+        slot = self._slots.get(name, len(self._frame))
+        value = self._frame[slot] if slot < len(self._frame) else None
+        return Var(name) if value is None else value
+
+    def span(self) -> Span | None:
+        return self.node.span
+
+    def where(self) -> str:
+        span = self.node.span
+        return f"{span.file.name}:{span.line}" if span is not None else self.plan.file
+
+
+def _failed_formula(node: nodes.Node) -> nodes.Node:
+    """What ``code(..)`` shows of a step: the formula, without the operator of a test."""
+    if isinstance(node, nodes.Test):
+        return node.formula
+    if isinstance(node, nodes.Constraint):
+        return node.formula
+    if isinstance(node, nodes.ExternalAction):
+        return node.action
+    if isinstance(node, (nodes.If, nodes.While, nodes.For)):
+        return node.condition
+    if isinstance(node, nodes.Achieve):
+        return node.goal
+    if isinstance(node, nodes.BeliefChange):
+        return node.operand
+    return node
+
+
+class _Interrupted(_Nowhere):
+    """What an intention was at when a goal of it was ended from outside; plans are not told of it."""
+
+    def __init__(self, told: str, frames: list[Frame]) -> None:
+        super().__init__(told)
+        self._frames = frames
+        info: StepInfo | None = getattr(frames[-1][STEP], "info", None)
+        self._step = StepPlace(frames[-1], info) if info is not None else _Nowhere()
+
+    def step(self) -> str:
+        return self._step.step()
+
+    def inner_goals(self) -> tuple[str, ...]:
+        return tuple(shown_goal(frame[GOAL]) for frame in reversed(self._frames[1:]))
+
+    def span(self) -> Span | None:
+        return self._step.span()
+
+    def where(self) -> str:
+        return self._step.where()
+
+
+class GoalPlace(_Nowhere):
+    """A goal without plan: ``code`` is the goal, the line is that of the call."""
+
+    def __init__(self, goal: tuple[Any, ...], annotations: Any, caller: Frame | None) -> None:
+        super().__init__()
+        self.goal, self.goal_annotations = goal, annotations
+        self.caller = caller
+
+    def annotations(self) -> tuple[Term, ...]:
+        # A goal that was posted again by its handler has the reasons of its last failure: they would double each time.
+        shown = tuple(a for a in annotations_of_event(self.goal_annotations) if functor_of(a) not in _REASONS)
+        try:
+            term = resolve(literal_of(self.goal, shown))
+        except (ArithmeticFault, CyclicTerm):
+            term = String(goal_text(self.goal))
+        span, file = self._call()
+        return _code(term, span, file)
+
+    def span(self) -> Span | None:
+        return self._call()[0]
+
+    def unplanned(self) -> tuple[Any, ...] | None:
+        return self.goal
+
+    def _call(self) -> tuple[Span | None, str]:
+        if self.caller is None:
+            return None, ""
+        return place_of_call(self.caller, self.goal[0].functor), self.caller[PLAN].file
+
+    def where(self) -> str:
+        span, file = self._call()
+        return f"{file}:{span.line}" if span is not None else file
+
+
+def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
+    """Where the plan of a frame called the goal that it now waits for; *symbol* is the functor of the goal.
+
+    Steps do not know the ones before them.  Several may come before the present one, as at the ends of two branches:
+    those that call a goal of that functor are taken first.
+    """
+    plan = caller[PLAN]
+    following = caller[STEP].__name__ if caller[STEP] is not None else "None"
+    steps: dict[str, StepInfo] = getattr(caller[STEP], "steps", plan.steps)
+    calls = [
+        info.node
+        for info in steps.values()
+        if isinstance(info.node, (nodes.Achieve, nodes.Test)) and info.next == following
+    ]
+    for node in calls:
+        goal = node.goal if isinstance(node, nodes.Achieve) else node.formula
+        if (
+            symbol is not None
+            and isinstance(goal, nodes.Literal)
+            and (goal.functor, len(goal.arguments)) == (symbol.name, symbol.arity)
+        ):
+            return node.span
+    return calls[0].span if calls else plan.node.span
+
+
+def _code(term: Term, span: Any, file: str) -> tuple[Term, ...]:
+    found: list[Term] = [(CODE, term)]
+    if file:
+        found.append((CODE_SRC, String(f"file:{file}")))
+    if span is not None:
+        found.append((CODE_LINE, float(span.line)))
+    return tuple(found)
+
+
+def goal_text(goal: tuple[Any, ...]) -> str:
+    """A goal for people; one whose arguments have no value (``g(1 div 0)``) by its name."""
+    try:
+        return text(literal_of(goal, ()))
+    except (ArithmeticFault, CyclicTerm):
+        return f"{goal[0].functor.name}(...)"
+
+
+def shown_goal(goal: tuple[Any, ...]) -> str:
+    """A goal or another event for people, with its signs: ``!go(home)``, ``-!go(home)``, ``+low(9)``."""
+    trigger = goal[0]
+    sign = "" if trigger.operator == "+" and trigger.kind else trigger.operator
+    return f"{sign}{trigger.kind}{goal_text(goal)}"
+
+
+def nowhere(*terms: Term, told: str = "") -> FailureReason:
+    """A reason without a formula, as ``.fail_goal`` gives it; *told* is for people."""
+    return FailureReason(terms, _Nowhere(told))

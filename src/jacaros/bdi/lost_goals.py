@@ -1,0 +1,183 @@
+"""What people are told of a goal that failed and that no plan saved: where, at which step, for which goals, and why."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from jacaros.asl.formatter import format_term
+from jacaros.asl.source import Span
+from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.failure_reason import FailureReason, shown_goal
+from jacaros.bdi.intention import GOAL, Intention
+from jacaros.bdi.step_text import unbracketed
+from jacaros.compiler.plan import Plan
+from jacaros.terms.text import text
+from jacaros.terms.values import functor, functor_of
+
+ENV_FAILURE_REASON, ENV_FAILURE_DETAIL = functor("env_failure_reason", 1), functor("env_failure_detail", 1)
+
+MOST_GOALS = 6
+"""So many goals of a deeper stack are told, those next to the failure."""
+MOST_PLANS = 3
+"""So many of the plans that did not fit are told."""
+LONGEST = 120
+"""Characters of a term that are shown, as of a list with all ranges of a laser."""
+
+
+class Loss(NamedTuple):
+    """A goal that is lost, in words.
+
+    Attributes:
+        told: the first line: what failed, with what error, and where.
+        details: further lines: the step and the goals it served, the plans that did not fit, the reasons for plans.
+        span: where in the program, None when that is unknown.
+    """
+
+    told: str
+    details: tuple[str, ...]
+    span: Span | None
+
+    def text(self) -> str:
+        """All of it; details are indented."""
+        return "\n  ".join((self.told, *self.details))
+
+
+def loss(
+    agent: Circumstance, intention: Intention, reason: FailureReason, goal: tuple[Any, ...] | None
+) -> Loss:
+    """What is told of an intention without a plan for its failure.
+
+    Args:
+        agent: whose intention it is.
+        intention: with the stack as it was.
+        reason: of the failure.
+        goal: the goal that failed, when it is not on the stack.
+    """
+    note_goals(agent, intention, reason, goal)
+    what = next((g for g in reversed(reason.goals) if g[:1] in "!?"), None)
+    if what is not None:
+        what = f"the goal {what}"
+    else:
+        what = f"the plan for {reason.goals[-1]}" if reason.goals else "an intention"
+    return loss_of(what, reason)
+
+
+def note_goals(
+    agent: Circumstance, intention: Intention, reason: FailureReason, goal: tuple[Any, ...] | None
+) -> None:
+    """Keep with a reason what only the stack of the intention and the plans of the agent tell, before they change."""
+    failed = [] if goal is None else [shown_goal(goal)]
+    reason.goals = (*reason.inner_goals(), *failed, *goals_below(intention))
+    reason.candidates = _candidates(agent, reason.unplanned())
+
+
+def loss_of(what: str, reason: FailureReason) -> Loss:
+    """What is told of *what*, such as ``the goal !go``, whose goals were noted in the reason."""
+    told = f"{what} failed and has no plan for its failure{_why(reason)}{_place(reason)}"
+    return Loss(told, details(reason, what), reason.span())
+
+
+def lost_in_handler(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], reason: FailureReason | None
+) -> Loss:
+    """What is told of a failure event whose plans do not fit."""
+    told = f"no applicable plan for the failure event {shown_goal(goal)}; the intention is dropped"
+    if reason is None:
+        return Loss(told, (), None)
+    below = tuple(goals_below(intention))
+    reason.goals = below
+    reason.candidates = _candidates(agent, goal)
+    return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.span())
+
+
+def why(reason: FailureReason) -> str:
+    """A reason for records of a run, in lines: error, message and place; the step; the terms for plans."""
+    told = ", ".join(filter(None, (reason.known_error(), reason.message())))
+    step = reason.step()
+    return "\n".join(
+        (f"{told}{_place(reason)}", *([f"step: {_short(step)}"] if step else ()), *_terms(reason))
+    )
+
+
+def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
+    """What is to be told besides message and place; *what*, such as ``the goal !go``, has been named already."""
+    goals = [_short(goal) for goal in reason.goals]
+    if len(goals) == 1 and what.endswith(f" {goals[0]}"):
+        goals = []
+    lines = []
+    step = _short(reason.step())
+    if step:
+        lines.append(f"step: {step}{', for ' if goals else ''}{_chain(goals)}")
+    elif len(goals) > 2:  # the first and the last are named in the message
+        lines.append(f"for: {_chain(goals[1:])}")
+    lines += _limited([f"does not fit: {each}" for each in reason.candidates], MOST_PLANS, "plans")
+    return (*lines, *_terms(reason))
+
+
+def _terms(reason: FailureReason) -> list[str]:
+    """The line with the annotations that plans can ask for.
+
+    Where CArtAgO's reason holds no more than the action itself, there is another one that tells more.
+    """
+    terms = reason.others()
+    if any(functor_of(term) is ENV_FAILURE_DETAIL for term in terms):
+        terms = [term for term in terms if functor_of(term) is not ENV_FAILURE_REASON]
+    return [f"reason: {', '.join(_short(text(term)) for term in terms)}"] if terms else []
+
+
+def goals_below(intention: Intention) -> Iterator[str]:
+    """What the stack of an intention is for, the goal on top first; for a handler the failure event that it handles."""
+    frames = intention.frames
+    handlers = len(intention.handlers)
+    index = len(frames) - 1
+    while index >= 0:
+        goal = frames[index][GOAL]
+        if goal[0].functor.namespace != "jacaros":
+            yield shown_goal(goal)
+        if goal[0].failing:
+            handlers -= 1
+            index = intention.handlers[handlers]
+        index -= 1
+
+
+def _chain(goals: list[str]) -> str:
+    left = len(goals) - MOST_GOALS
+    if left <= 1:
+        return ", ".join(goals)
+    return ", ".join((*goals[: MOST_GOALS - 1], f"{left} more", goals[-1]))
+
+
+def _limited(lines: list[str], most: int, of_what: str) -> list[str]:
+    left = len(lines) - most
+    return lines if left <= 0 else [*lines[:most], f"and {left} more {of_what}"]
+
+
+def _why(reason: FailureReason) -> str:
+    told = ", ".join(filter(None, (reason.known_error(), reason.message())))
+    return f": {told}" if told else ""
+
+
+def _place(reason: FailureReason) -> str:
+    where = reason.where()
+    return f" ({where})" if where else ""
+
+
+def _short(told: str) -> str:
+    return told if len(told) <= LONGEST else f"{told[: LONGEST - 3]}..."
+
+
+def _candidates(agent: Circumstance, goal: tuple[Any, ...] | None) -> tuple[str, ...]:
+    """The plans that there were for a goal."""
+    if goal is None:
+        return ()
+    return tuple(_head(plan) for plan in agent.library.relevant(goal[0]))
+
+
+def _head(plan: Plan) -> str:
+    """Trigger and context of a plan, with its place."""
+    node = plan.node
+    trigger = node.trigger
+    told = f"{trigger.operator}{trigger.kind}{format_term(trigger.literal)}"
+    if node.context is not None:
+        told += f" : {unbracketed(format_term(node.context))}"
+    line = f":{node.span.line}" if node.span is not None else ""
+    return f"{_short(told)} ({plan.file}{line})"
