@@ -22,7 +22,7 @@ from jacaros.ros.errors import (
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import goal_type
 from jacaros.ros.serving import checked_message
-from jacaros.ros.waiting import Waiting, within
+from jacaros.ros.waiting import Absence, Waiting, within
 
 
 class GoalWire(Protocol):
@@ -153,6 +153,7 @@ class GoalSender:
         self._goals: dict[str, PendingGoal] = {}
         self._arrivals: list[asyncio.Future[None]] = []
         self._losing: Timer | None = None
+        self._absence = Absence()
         self._closed = False
 
     @property
@@ -318,8 +319,10 @@ class GoalSender:
         if self._closed:
             raise CallFailed(f"the client of action {self.name} was closed")
         if self.wire.offered:
+            self._absence.end(self._log, self._described)
             return
-        with Waiting(self.clock, self._log, self._described, "Is the node that offers it running?"):
+        cure = "Is the node that offers it running?"
+        with Waiting(self.clock, self._log, self._described, cure, absence=self._absence):
             while not self.wire.offered:
                 arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
                 self._arrivals.append(arrival)

@@ -11,7 +11,7 @@ from jacaros.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnav
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import request_type
 from jacaros.ros.serving import checked_message
-from jacaros.ros.waiting import Waiting
+from jacaros.ros.waiting import Absence, Waiting
 
 LOOK = 1.0
 """Seconds between two looks whether the server of a call is still there."""
@@ -52,6 +52,7 @@ class AttemptingClient:
         self._node = node
         self._type_name = type_name
         self._pending = PendingCalls(name)
+        self._absence = Absence()
 
     def request(self, **fields: Any) -> Any:
         """Make a request message."""
@@ -66,7 +67,9 @@ class AttemptingClient:
         async def attempt(rest: float | None) -> Any:
             return await self._attempt(message, rest)
 
-        return await call_when_offered(node.clock, node.log, what, attempt, timeout, self._may_be_called)
+        return await call_when_offered(
+            node.clock, node.log, what, attempt, timeout, self._may_be_called, self._absence
+        )
 
     def _may_be_called(self) -> bool:
         """Whether an attempt without an answer may have reached a server, see `call_when_offered`."""
@@ -84,6 +87,7 @@ async def call_when_offered(
     attempt: Callable[[float | None], Awaitable[Any]],
     timeout: float | None,
     may_be_called: Callable[[], bool] = lambda: True,
+    absence: Absence | None = None,
 ) -> Any:
     """Call a service whose arrival cannot be awaited: try, and try again while nobody offers it.
 
@@ -96,6 +100,7 @@ async def call_when_offered(
         timeout: seconds for everything; None tries for ever.
         may_be_called: whether an attempt without an answer may have reached a server.  Where others have to be asked for
             the server, the last of several attempts can run out of time before they have said again that there is none.
+        absence: in how many calls before nobody offered it, see `Waiting`.
 
     Raises:
         ServiceUnavailable: nobody offered the service in time.
@@ -110,7 +115,7 @@ async def call_when_offered(
     try:
         while True:
             try:
-                return await attempt(None if deadline is None else deadline - clock.elapsed)
+                response = await attempt(None if deadline is None else deadline - clock.elapsed)
             except TimeoutError:
                 if waiting is not None and not may_be_called():
                     raise nobody() from None
@@ -118,8 +123,13 @@ async def call_when_offered(
             except ServiceUnavailable:
                 if deadline is not None and clock.elapsed + RETRY > deadline:
                     raise nobody() from None
+            else:
+                if waiting is None and absence is not None:
+                    absence.end(log, what)
+                return response
             if waiting is None:
-                waiting = Waiting(clock, log, what, "Is the node that offers it running?").__enter__()
+                cure = "Is the node that offers it running?"
+                waiting = Waiting(clock, log, what, cure, absence=absence).__enter__()
             await clock.sleep(RETRY)
     finally:
         if waiting is not None:

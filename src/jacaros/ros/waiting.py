@@ -13,6 +13,30 @@ MISSING_AFTER = 3.0
 """Seconds after which something awaited is called missing.  First discovery on ROS 2 can take two."""
 
 
+class Absence:
+    """Waits in vain for one thing: who tries again and again tells people of the first, the tenth, the hundredth ..."""
+
+    def __init__(self) -> None:
+        self._told = False
+        self._waits = 0
+
+    def wait(self) -> bool:
+        """Count a wait; gives whether people are to be told of it."""
+        self._waits += 1
+        return str(self._waits).strip("0") == "1"
+
+    def tell(self, log: Callable[[str], None], what: str) -> None:
+        """Tell people that it is awaited."""
+        self._told = True
+        log(f"waiting for the {what}")
+
+    def end(self, log: Callable[[str], None], what: str) -> None:
+        """It is there: people hear so if they were told of waiting, and the next wait is the first again."""
+        if self._told:
+            log(f"found the {what}")
+        self._told, self._waits = False, 0
+
+
 class Waiting:
     """A report about something that is not there yet; a context manager around the wait.
 
@@ -22,20 +46,29 @@ class Waiting:
         what: the thing, as in ``service /add (example_interfaces/srv/AddTwoInts)``.
         cure: what a person can do about it.
         quiet: seconds in which nothing is said: for what is awaited again and again, and comes soon as a rule.
+        absence: what was waited in vain before.
     """
 
     def __init__(
-        self, clock: Clock, log: Callable[[str], None], what: str, cure: str, quiet: float = 0.0
+        self,
+        clock: Clock,
+        log: Callable[[str], None],
+        what: str,
+        cure: str,
+        quiet: float = 0.0,
+        absence: Absence | None = None,
     ) -> None:
         self._clock = clock
         self._log = log
         self._what = what
         self._cure = cure
         self._quiet = quiet
-        self._told = False
+        self._absence = absence if absence is not None else Absence()
         self._timer: Timer | None = None
 
     def __enter__(self) -> "Waiting":
+        if not self._absence.wait():
+            return self
         if self._quiet > 0.0:
             self._timer = self._clock.call_later(self._quiet, self._tell)
         else:
@@ -47,12 +80,11 @@ class Waiting:
     ) -> None:
         if self._timer is not None:
             self._timer.cancel()
-        if kind is None and self._told:
-            self._log(f"found the {self._what}")
+        if kind is None:
+            self._absence.end(self._log, self._what)
 
     def _tell(self) -> None:
-        self._told = True
-        self._log(f"waiting for the {self._what}")
+        self._absence.tell(self._log, self._what)
         self._timer = self._clock.call_later(MISSING_AFTER, self._missing)
 
     def _missing(self) -> None:

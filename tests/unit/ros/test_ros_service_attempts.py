@@ -5,6 +5,7 @@ import pytest
 from jacaros.clock import VirtualClock, run
 from jacaros.ros.calling import call_when_offered
 from jacaros.ros.errors import CallTimedOut, ServiceUnavailable
+from jacaros.ros.waiting import Absence
 
 
 def end_of_call(takes: float, offered: bool) -> str:
@@ -40,3 +41,41 @@ def test_who_came_meanwhile_and_did_not_answer_timed_out() -> None:
 
 def test_one_attempt_without_an_answer_timed_out() -> None:
     assert end_of_call(7.0, offered=False) == "service /x did not answer within 1 s"
+
+
+def test_people_are_told_of_the_first_the_tenth_and_the_hundredth_wait_in_vain() -> None:
+    clock = VirtualClock()
+    said: list[str] = []
+    there = False
+    absence = Absence()
+
+    async def attempt(_: float | None) -> str:
+        if not there:
+            raise ServiceUnavailable("nobody is there")
+        return "answer"
+
+    async def call(seconds: float) -> None:
+        await call_when_offered(clock, said.append, "service /x", attempt, seconds, absence=absence)
+
+    async def in_vain(times: int) -> None:
+        for _ in range(times):
+            with pytest.raises(ServiceUnavailable):
+                await call(1.0)
+
+    async def main() -> None:
+        nonlocal there
+        await in_vain(9)
+        assert said == ["waiting for the service /x"]
+        await in_vain(90)
+        assert said == ["waiting for the service /x"] * 2
+        await in_vain(1)
+        assert said == ["waiting for the service /x"] * 3
+        there = True
+        await call(1.0)
+        assert said[3:] == ["found the service /x"]
+        await call(1.0)
+        there = False
+        await in_vain(1)
+        assert said[4:] == ["waiting for the service /x"]
+
+    run(main, clock)

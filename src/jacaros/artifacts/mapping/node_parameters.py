@@ -7,7 +7,7 @@ from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.parameter_values import parameter_converter
 from jacaros.artifacts.mapping.taking import Unshowable
 from jacaros.ros.backend import PARAMETER_EVENTS
-from jacaros.ros.errors import CapabilityMissing, ParameterUnknown, RosError
+from jacaros.ros.errors import CapabilityMissing, ParameterUnknown, RosError, ServiceUnavailable
 from jacaros.ros.parameter import ParameterValue
 
 PATIENCE = 2.0
@@ -15,6 +15,10 @@ PATIENCE = 2.0
 
 RETRY = 1.0
 """Seconds between two attempts."""
+
+
+PATIENT = 2
+"""So many attempts at a node that is not there are nothing to tell of: it may be starting."""
 
 
 class NodeParameter:
@@ -32,6 +36,7 @@ class NodeParameter:
         self._reading = host.reading_of(part.name, part.policy)
         self._node = host.ros.resolve(host.robot_topic(part.node))
         self._closed = False
+        self._vain = 0
         try:
             self._parameters = host.ros.parameters(self._node)
             self._events = PARAMETER_EVENTS in host.ros.capabilities
@@ -51,6 +56,7 @@ class NodeParameter:
                 self._lose(error)
                 await host.sleep(RETRY)
                 continue
+            self._vain = 0
             self._take(value)
             if self._events:
                 return
@@ -77,10 +83,19 @@ class NodeParameter:
 
     def _lose(self, error: RosError) -> None:
         self._withdraw()
+        part = self._part
         if isinstance(error, ParameterUnknown):
-            part = self._part
             self._host.tell_once(
                 part.name, part.place, f"{part.name} is not known: {error}", "write another name"
+            )
+        if isinstance(error, ServiceUnavailable):
+            self._vain += 1
+        if self._vain == PATIENT:
+            self._host.tell_once(
+                (part.name, "node"),
+                part.place,
+                f"{part.name} is not known so far: nobody answers for node {self._node}; still trying",
+                "is that node running, and is this its name?",
             )
 
     def close(self) -> None:

@@ -8,6 +8,7 @@ from jacaros.ros.backends.memory_services import come
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
+from jacaros.ros.waiting import Absence
 
 
 class MemoryParameters:
@@ -16,6 +17,7 @@ class MemoryParameters:
     def __init__(self, asker: MemoryNode, node: str) -> None:
         self.node = node
         self._asker = asker
+        self._absence = Absence()
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Declare a parameter of our own node."""
@@ -55,7 +57,9 @@ class MemoryParameters:
             return self._asker.declared
         graph = self._asker.graph
         node = graph.node(self.node)
+        what = f"parameters of node {self.node}"
         while node is None:
-            await come(self._asker, f"node {self.node}", f"parameters of node {self.node}", timeout)
+            await come(self._asker, f"node {self.node}", what, timeout, self._absence)
             node = graph.node(self.node)
+        self._absence.end(self._asker.log, what)
         return node.declared

@@ -12,7 +12,7 @@ from jacaros.ros.calling import PendingCalls, server_gone, settle
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceUnavailable
 from jacaros.ros.names import request_type
 from jacaros.ros.serving import Responder, checked_message
-from jacaros.ros.waiting import Waiting, within
+from jacaros.ros.waiting import Absence, Waiting, within
 
 
 class MemoryService:
@@ -67,6 +67,7 @@ class MemoryClient:
         self._node = node
         self._type_name = type_name
         self._pending = PendingCalls(name)
+        self._absence = Absence()
 
     @property
     def ready(self) -> bool:
@@ -97,8 +98,9 @@ class MemoryClient:
         what = f"service {self.name} ({self._type_name})"
         server = graph.server(self.name)
         while server is None:
-            await come(self._node, f"service {self.name}", what, timeout)
+            await come(self._node, f"service {self.name}", what, timeout, self._absence)
             server = graph.server(self.name)
+        self._absence.end(self._node.log, what)
         return server
 
     def close(self) -> None:
@@ -107,7 +109,7 @@ class MemoryClient:
         self._node.forget(self)
 
 
-async def come(node: MemoryNode, thing: str, what: str, timeout: float | None) -> None:
+async def come(node: MemoryNode, thing: str, what: str, timeout: float | None, absence: Absence) -> None:
     """Wait until something has come to the graph, with a report.
 
     Args:
@@ -115,11 +117,12 @@ async def come(node: MemoryNode, thing: str, what: str, timeout: float | None) -
         thing: what `MemoryGraph.arrival` calls it.
         what: what people call it.
         timeout: seconds.
+        absence: how often it was awaited before, see `Waiting`.
 
     Raises:
         ServiceUnavailable: it has not come in time.
     """
-    with Waiting(node.clock, node.log, what, "Is the node that offers it running?"):
+    with Waiting(node.clock, node.log, what, "Is the node that offers it running?", absence=absence):
         try:
             await within(node.clock, node.graph.arrival(thing), timeout)
         except TimeoutError:

@@ -482,6 +482,20 @@ def test_frames_get_the_prefix_of_the_robot() -> None:
     talk(text, body, "r1")
 
 
+def test_parameters_of_a_node_that_is_not_there_are_told_of_once() -> None:
+    async def body(t: Talk) -> None:
+        await t.lab.sleep(25)
+        [told] = t.lab.logged
+        assert told.endswith(
+            "m.yaml:1:14: a is not known so far: nobody answers for node /lob; still trying\n"
+            "    1 | parameters: {a: {node: lob, parameter: speed}}\n"
+            "                     ^\n"
+            "  cure: is that node running, and is this its name?"
+        )
+
+    talk("parameters: {a: {node: lob, parameter: speed}}", body)
+
+
 def test_parameters_of_nodes_are_properties_that_follow() -> None:
     from jacaros.ros.parameter import Declaration
 
