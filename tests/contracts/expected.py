@@ -23,8 +23,8 @@ BEYOND = {
     # A goal is accepted by the bridge, which aborts it when its server goes; it has parameters for nodes alone.
     "rosbridge-ros2": _SERVED_OVER_A_BRIDGE | {"events"},
     "rosbridge-ros2-right": _SERVED_OVER_A_BRIDGE | {"events", "failing services"},
-    "rosbridge-ros2-left": {"events", "own parameters", "dying servers"},
-    "rosbridge-ros1": {"events"},
+    "rosbridge-ros2-left": {"events", "own parameters", "given parameters", "dying servers"},
+    "rosbridge-ros1": {"events", "given parameters"},
     # The graph behind the bridge is one of ROS 2 without actionlib and without a master.
     "rosbridge-ros1-left": {"events", "actions", "parameters", "contents", "failing services", "rosout"},
 }

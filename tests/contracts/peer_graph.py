@@ -34,6 +34,9 @@ class GraphCommands:
     def withdraw(self, name: str, node: str | None = None) -> None:
         self._backend.parameters(node).withdraw(name)
 
+    def given_parameters_without_use(self) -> list[str]:
+        return self._backend.given_parameters.untaken()
+
     def parameter_node(self, node: str | None = None) -> str:
         return self._backend.parameters(node).node
 

@@ -177,6 +177,15 @@ def test_a_parameter_stays_in_its_range(graph: Any, pair: Pair, name: str) -> No
         assert left.get_parameter(name, node, timeout=60) == 1.0
 
 
+def test_an_empty_list_has_a_type(graph: Any, pair: Pair, name: str) -> None:
+    if (declared := declaring(pair, name, [])) is not None:  # alone it is one of texts
+        left, node = declared
+        left.set_parameter(name, ["a"], node, timeout=20)
+        with pytest.raises(ParameterRefused, match=name):
+            left.set_parameter(name, [1], node, timeout=20)
+        assert left.get_parameter(name, node, timeout=20) == ["a"]
+
+
 def test_a_range_may_be_open(graph: Any, pair: Pair, name: str) -> None:
     if (declared := declaring(pair, name, 5, minimum=1)) is not None:
         left, node = declared
@@ -209,6 +218,35 @@ def test_a_default_that_breaks_its_declaration_is_refused(graph: Any, pair: Pair
     error = ParameterRefused if "declared parameters" in right.capabilities() else CapabilityMissing
     with pytest.raises(error):
         right.declare(name, 7, minimum=0, maximum=5)
+
+
+@pytest.mark.needs("given parameters")
+def test_given_values_take_the_place_of_defaults(graph: Any, pair: Pair, name: str) -> None:
+    """Of a launch file: where parameters are declared they count when that is done, else they are there at once."""
+    given = {f"{name}_a": 0.25, f"{name}_b": ["x", "y"], f"{name}_c": 1, f"{name}_d": 7, f"{name}_e": []}
+    tuned = graph.peer("tuned", parameters=given)
+    left, _ = pair
+    node = graph.node_of(tuned)
+    if "declared parameters" not in tuned.capabilities():
+        # The master is told in a thread.
+        graph.wait_until(lambda: f"{name}_d" in left.parameter_names(node, timeout=20), "all are given")
+        assert [left.get_parameter(each, node, timeout=20) for each in given] == [*given.values()]
+        assert tuned.given_parameters_without_use() == []
+        return
+    assert f"{name}_a" not in tuned.parameter_names(timeout=20)
+    assert tuned.declare(f"{name}_a", 0.5) == 0.25
+    assert tuned.declare(f"{name}_b", ["z"], read_only=True) == ["x", "y"]
+    assert tuned.declare(f"{name}_e", [1, 2]) == []
+    with pytest.raises(ParameterRefused, match=r"of type float; 1 is of type int; write 1\.0"):
+        tuned.declare(f"{name}_c", 0.5)
+    with pytest.raises(ParameterRefused, match="from 0 to 5, not 7"):
+        tuned.declare(f"{name}_d", 2, minimum=0, maximum=5)
+    assert left.get_parameter(f"{name}_a", node, timeout=20) == 0.25
+    assert left.get_parameter(f"{name}_b", node, timeout=20) == ["x", "y"]
+    assert tuned.given_parameters_without_use() == []
+    left.set_parameter(f"{name}_a", 0.75, node, timeout=20)
+    tuned.withdraw(f"{name}_a")
+    assert tuned.declare(f"{name}_a", 0.5) == 0.25
 
 
 def test_changes_are_told(graph: Any, pair: Pair, name: str) -> None:

@@ -447,3 +447,8 @@ def test_no_thread_of_ours_is_left_behind_and_no_signal_handler_taken(robot_of_r
     assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)] == handlers
     names = {thread.name for thread in threading.enumerate() if thread.name.startswith("roslibpy")}
     assert names <= {"roslibpy-asyncio"}, "roslibpy keeps one thread, a daemon, for the next connection"
+
+
+def test_parameters_of_our_own_cannot_be_given() -> None:
+    with pytest.raises(CapabilityMissing, match="speed cannot be given: over rosbridge we are no node"):
+        open_backend("rosbridge", WallClock(), "node", url="ws://127.0.0.1:9090", parameters={"speed": 0.5})

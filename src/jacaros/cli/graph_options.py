@@ -1,6 +1,7 @@
 """Options of commands that join a ROS graph: which one, and under which names."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -38,6 +39,22 @@ _NAMES = (
     ),
 )
 
+_PARAMETERS = (
+    click.option(
+        "--param",
+        multiple=True,
+        metavar="NAME:=VALUE",
+        help="Value of a parameter that a mapping file or an artifact declares; may be given more often.",
+    ),
+    click.option(
+        "--params-file",
+        multiple=True,
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="File of ROS 2 with the parameters of nodes, ours among them; may be given more often.",
+    ),
+)
+
 
 def graph_options(command: F) -> F:
     """Give a command the options that name a graph, our node in it, and other names for topics."""
@@ -47,6 +64,11 @@ def graph_options(command: F) -> F:
 def world_options(command: F) -> F:
     """The same without a namespace: a world file says those of its robots."""
     return _with(command, (*_ADDRESS, *_NAMES))
+
+
+def parameter_options(command: F) -> F:
+    """Give a command the options that give parameters to our node."""
+    return _with(command, _PARAMETERS)
 
 
 def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:

@@ -5,9 +5,8 @@ Arguments"); rosrun and roslaunch write ``name:=value`` between the others (wiki
 """
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 from jacaros.errors import UsageError
 
@@ -59,10 +58,43 @@ def as_options(arguments: Sequence[str], warn: Callable[[str], None]) -> list[st
     places = set(_ros1_arguments(own))
     of_ros1 = [own[place] for place in sorted(places)]
     own = [each for place, each in enumerate(own) if place not in places]
-    added = [*_ros1_options(of_ros1, warn), *_Ros2Arguments(of_ros2).options(own, warn)]
+    added = [*_ros1_options(of_ros1), *_Ros2Arguments(of_ros2).options()]
+    if own[:1] == ["sim"]:
+        added = _without_parameters(added, warn)
     if not _given(own, "--ros") and not os.environ.get("JACAROS_ROS"):
         added += ["--ros", "ros1" if of_ros1 and "--ros-args" not in arguments else "ros2"]
     return [*own, *added]
+
+
+def _without_parameters(options: list[str], warn: Callable[[str], None]) -> list[str]:
+    """Leave out parameters: a world declares none, and its time is nobody else's."""
+    from jacaros.cli.given_parameters import read_parameters  # here: few worlds are given any
+
+    kept: dict[str, list[str]] = {
+        "--param": [],
+        "--params-file": [],
+        "--namespace": [""],
+        "--node-name": ["world"],
+    }
+    rest = []
+    for option, value in _paired(options):
+        if option in kept:
+            kept[option].append(value)
+        if option not in ("--param", "--params-file"):
+            rest += [option, value] if value else [option]
+    node = f"{kept['--namespace'][-1]}/{kept['--node-name'][-1]}"
+    given = read_parameters(kept["--param"], [Path(file) for file in kept["--params-file"]], node)
+    for name in given:
+        if name != "use_sim_time":
+            warn(f"the parameter {name} has no effect: a world declares none, its file says how it is")
+    return rest
+
+
+def _paired(options: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Give options with their values; flags have none."""
+    rest = iter(options)
+    for option in rest:
+        yield option, "" if option in _ROS2_FLAGS.values() else next(rest)
 
 
 def _divided(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -85,15 +117,20 @@ def _given(own: Sequence[str], option: str) -> bool:
 
 
 def _ros1_arguments(arguments: Sequence[str]) -> Iterator[int]:
-    """Give the places of ``name:=value`` that are no values of options such as ``--remap``."""
+    """Give the places of ``name:=value`` that are no values of ``--remap`` or ``--param``."""
     for place, each in enumerate(arguments):
         if each == "--ros-args":
             return
-        if _SIGN in each and not each.startswith("-") and not (place and arguments[place - 1] == "--remap"):
+        if _SIGN in each and not each.startswith("-") and not _is_value(arguments, place):
             yield place
 
 
-def _ros1_options(written: Iterable[str], warn: Callable[[str], None]) -> Iterator[str]:
+def _is_value(arguments: Sequence[str], place: int) -> bool:
+    """Whether an argument is the value of an option of ours."""
+    return place > 0 and arguments[place - 1] in ("--remap", "--param")
+
+
+def _ros1_options(written: Iterable[str]) -> Iterator[str]:
     for each in written:
         name, _, value = each.partition(_SIGN)
         if name in _NAMES:
@@ -105,7 +142,7 @@ def _ros1_options(written: Iterable[str], warn: Callable[[str], None]) -> Iterat
                 f"{each} is not known here; addresses stand in the variables ROS_IP and ROS_HOSTNAME"
             )
         elif name.startswith("_"):
-            warn(_no_effect(name[1:]))
+            yield from ("--param", each[1:])
         else:
             yield from ("--remap", each)
 
@@ -116,8 +153,8 @@ class _Ros2Arguments:
     def __init__(self, written: Sequence[str]) -> None:
         self._options: list[str] = []
         self._rules: list[str] = []
-        self._parameters: list[tuple[str, Any]] = []
-        self._files: list[Path] = []
+        self._parameters: list[str] = []
+        self._files: list[str] = []
         rest = iter(written)
         for each in rest:
             if each in _ROS2_FLAGS:
@@ -134,7 +171,7 @@ class _Ros2Arguments:
         if value is None:
             raise UsageError(f"a value is missing behind {written} of --ros-args")
         if name == "--params-file":
-            self._files.append(Path(value))
+            self._files.append(value)
         elif name:
             left, sign, right = value.partition(_SIGN)
             if not sign or not left:
@@ -144,67 +181,17 @@ class _Ros2Arguments:
                     f"{written} {value}: leave out the name of the node; this process has one node"
                 )
             if name == "--param":
-                self._parameters.append((left, _yaml(right)))
+                self._parameters.append(value)
             elif left in _NAMES:
                 self._options += [_NAMES[left], right]
             else:
                 self._rules.append(value)
 
-    def options(self, own: Sequence[str], warn: Callable[[str], None]) -> list[str]:
+    def options(self) -> list[str]:
         """Give our options for all of it."""
-        given = dict(self._in_files())
-        given.update(self._parameters)
-        options = [*self._options, *(part for rule in self._rules for part in ("--remap", rule))]
-        simulated = given.pop("use_sim_time", False)
-        if simulated is True and own[:1] != ["sim"] and not _given(own, "--clock"):
-            options += ["--clock", "ros"]
-        for name in given:
-            warn(_no_effect(name))
-        return options
-
-    def _in_files(self) -> Iterator[tuple[str, Any]]:
-        names = dict(zip(self._options[::2], self._options[1::2], strict=False))
-        node = [*names.get("--namespace", "").strip("/").split("/"), names.get("--node-name", "")]
-        tokens = [token for token in node if token]
-        for file in self._files:
-            try:
-                content = _yaml(file.read_text(encoding="utf-8"))
-            except OSError as error:
-                raise UsageError(f"--params-file {file}: {error.strerror}") from None
-            yield from _parameters_of(content, [], tokens)
-
-
-def _parameters_of(content: Any, path: list[str], node: list[str]) -> Iterator[tuple[str, Any]]:
-    """Give the parameters of *node* in the content of a parameter file, below names of namespaces and nodes."""
-    if not isinstance(content, Mapping):
-        return
-    for key, value in content.items():
-        if key == "ros__parameters":
-            if isinstance(value, Mapping) and _suits(path, node):
-                yield from ((str(name), each) for name, each in value.items())
-        else:
-            yield from _parameters_of(value, [*path, *filter(None, str(key).split("/"))], node)
-
-
-def _suits(pattern: list[str], node: list[str]) -> bool:
-    """Whether a node's name suits a pattern: ``*`` is one part of it, ``**`` any number of them."""
-    if not pattern:
-        return not node
-    if pattern[0] == "**":
-        return any(_suits(pattern[1:], node[begin:]) for begin in range(len(node) + 1))
-    return bool(node) and pattern[0] in ("*", node[0]) and _suits(pattern[1:], node[1:])
-
-
-def _yaml(text: str) -> Any:
-    # Here: only for those who have parameters.
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
-    try:
-        return YAML(typ="safe", pure=True).load(text)
-    except YAMLError as error:
-        raise UsageError(f"a parameter is no YAML: {error}") from None
-
-
-def _no_effect(name: str) -> str:
-    return f"the parameter {name} has no effect on agents; options and beliefs say how they run"
+        return [
+            *self._options,
+            *(part for rule in self._rules for part in ("--remap", rule)),
+            *(part for parameter in self._parameters for part in ("--param", parameter)),
+            *(part for file in self._files for part in ("--params-file", file)),
+        ]

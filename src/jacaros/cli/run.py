@@ -1,15 +1,18 @@
 """``jacaros run FILE``."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import graph_options, read_remaps
+from jacaros.cli.graph_options import graph_options, parameter_options, read_remaps
 from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
 from jacaros.mas.console import Console, StandardConsole
+from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import ROS_KINDS, RunOptions
 from jacaros.mas.system import System
 
@@ -22,11 +25,10 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option(
     "--clock",
     type=click.Choice(["real", "fast", "ros"]),
-    default="real",
     envvar="JACAROS_CLOCK",
-    show_default=True,
     show_envvar=True,
-    help="In real time; as fast as the machine can (not with a real ROS graph); or as /clock of a real ROS graph says.",
+    help="In real time, unless another is said; as fast as the machine can (not with a real ROS graph); or as /clock of a "
+    "real ROS graph says.",
 )
 @click.option("--seed", type=int, help="Makes random numbers repeatable; with --clock fast the whole run.")
 @click.option(
@@ -55,6 +57,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option("--until-idle", is_flag=True, help="End when no agent has anything to do or to wait for.")
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds of the run's clock.")
 @graph_options
+@parameter_options
 @click.option(
     "--rosout/--no-rosout",
     default=None,
@@ -84,7 +87,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.option("--quiet", is_flag=True, help="Tell warnings and errors only.")
 def command(
     file: Path,
-    clock: str,
+    clock: str | None,
     seed: int | None,
     ros: str,
     world: str | None,
@@ -97,6 +100,8 @@ def command(
     namespace: str,
     node_name: str | None,
     remap: tuple[str, ...],
+    param: tuple[str, ...],
+    params_file: tuple[Path, ...],
     rosout: bool | None,
     diagnostics: bool | None,
     record: Path | None,
@@ -111,6 +116,13 @@ def command(
     output.
     """  # fmt: skip
     check_file(file)
+    project: Path | Deployment = file
+    parameters: dict[str, Any] = {}
+    if param or params_file:
+        project = load_deployment(file)
+        parameters = _parameters(project, param, params_file, ros, f"{namespace}/{node_name or ''}")
+        if parameters.pop("use_sim_time", None) is True and clock is None and ros != "memory":
+            clock = "ros"
     watched = view or any(output is not None for output in (record, replay, ground_truth))
     options = RunOptions(
         fast=clock == "fast",
@@ -127,17 +139,28 @@ def command(
         bridge=bridge,
         node_name=node_name,
         remap=read_remaps(remap) if remap else {},
+        parameters=parameters,
         rosout=rosout,
         diagnostics=diagnostics,
         mappings=mappings,
     )
     console = StandardConsole("warning" if quiet else "info")
     if not watched:
-        return launch(file, options, console)
-    return _launch_watched(file, options, console, Outputs(record, replay, ground_truth, view))
+        return launch(project, options, console)
+    return _launch_watched(project, options, console, Outputs(record, replay, ground_truth, view))
 
 
-def _launch_watched(file: Path, options: RunOptions, console: Console, outputs: Outputs) -> int:
+def _parameters(
+    project: Deployment, written: Sequence[str], files: Sequence[Path], ros: str, node: str
+) -> dict[str, Any]:
+    from jacaros.cli.given_parameters import read_parameters  # here: few runs are given any
+    from jacaros.mas.ros_graph import node_name
+
+    name = node + node_name(project.name) if node.endswith("/") else node
+    return read_parameters(written, files, name, "/" if ros == "ros1" else ".")
+
+
+def _launch_watched(file: Path | Deployment, options: RunOptions, console: Console, outputs: Outputs) -> int:
     # Imported here: numpy, rich and the simulator are for those who want to see something.
     from jacaros.cli.watching import Watching
 

@@ -9,6 +9,7 @@ from jacaros.errors import UsageError
 
 if TYPE_CHECKING:
     from jacaros.ros.address import GraphAddress
+    from jacaros.ros.parameter import ParameterValue
 
 ROS_KINDS = ("memory", "ros1", "ros2", "rosbridge")
 
@@ -27,7 +28,7 @@ class RunOptions:
         until_idle: end when no agent has anything to do and no operation is under way.
         seconds: end after so many seconds of the run's clock.
         ros_clock: time is that of the graph's ``/clock``, as a simulator publishes it.
-        domain_id, master, bridge, node_name, remap: see `jacaros.ros.address.GraphAddress`.
+        domain_id, master, bridge, node_name, remap, parameters: see `jacaros.ros.address.GraphAddress`.
         rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
         mappings: mapping files whose artifacts are made at the start.
         diagnostics: publish the state of agents and connection on ``/diagnostics``; None: on real graphs.
@@ -47,6 +48,7 @@ class RunOptions:
     bridge: str | None = None
     node_name: str | None = None
     remap: Mapping[str, str] = field(default_factory=dict)
+    parameters: "Mapping[str, ParameterValue]" = field(default_factory=dict)
     rosout: bool | None = None
     diagnostics: bool | None = None
     mappings: tuple[str, ...] = ()
@@ -72,7 +74,14 @@ class RunOptions:
         from jacaros.ros.address import GraphAddress  # here: a program without robots needs none of it
 
         return GraphAddress(
-            self.ros, self.domain_id, self.master, self.bridge, self.namespace, self.node_name, self.remap
+            self.ros,
+            self.domain_id,
+            self.master,
+            self.bridge,
+            self.namespace,
+            self.node_name,
+            self.remap,
+            self.parameters,
         )
 
     def check(self) -> None:
@@ -100,4 +109,5 @@ class RunOptions:
 
     def _names_the_graph(self) -> bool:
         options = (self.domain_id, self.master, self.bridge, self.node_name)
-        return bool(self.namespace or self.remap or any(option is not None for option in options))
+        names = self.namespace or self.remap or self.parameters
+        return bool(names or any(option is not None for option in options))

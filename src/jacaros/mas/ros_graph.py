@@ -16,7 +16,9 @@ from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
     from jacaros.mas.empty_graph import EmptyGraph
+    from jacaros.mas.undeclared import UndeclaredParameters
     from jacaros.ros.backend import Backend
+    from jacaros.ros.given_parameters import GivenParameters
     from jacaros.ros.ros_clock import RosClock
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World
@@ -60,7 +62,7 @@ class RosGraph:
         self._hurry = hurry
         self._options = options
         self._clock = clock
-        self._name = _node_name(name)
+        self._name = node_name(name)
         self._source = options.world if options.world is not None else world
         self._log = log
         self._backend: Backend | None = None
@@ -69,6 +71,7 @@ class RosGraph:
         self._followed: RosClock | None = None
         self._time: GraphTime | None = None
         self._empty: EmptyGraph | None = None
+        self._undeclared: UndeclaredParameters | None = None
         self.world: World | None = None
 
     async def start(self) -> None:
@@ -122,6 +125,22 @@ class RosGraph:
         """Our node, None while nobody has asked for the graph."""
         return self._backend
 
+    def watch_parameters(self) -> None:
+        """Everything is made: look whether the parameters that were given are declared."""
+        if not self._options.parameters:
+            return
+        from jacaros.mas.undeclared import UndeclaredParameters  # here: few runs are given any
+
+        def given() -> "GivenParameters | None":
+            return self._backend.given_parameters if self._backend is not None else None
+
+        self._undeclared = UndeclaredParameters(self._options.parameters, given, self._clock, self._log_ros)
+
+    def ending(self) -> None:
+        """Tell what is to be told at the latest when the run ends."""
+        if self._undeclared is not None:
+            self._undeclared.tell()
+
     async def close(self) -> None:
         """Stop the robots, then the world, and leave the graph."""
         async with AsyncExitStack() as steps:  # the last one that is written goes first
@@ -137,6 +156,8 @@ class RosGraph:
                 steps.callback(self._time.close)
             if self._empty is not None:
                 steps.callback(self._empty.close)
+            if self._undeclared is not None:
+                steps.callback(self._undeclared.close)
 
     def _open(self) -> "Backend":
         return self._options.address.open(self._clock, self._name, self._log_ros)
@@ -179,7 +200,7 @@ def _finish_at_once(coroutine: Coroutine[Any, Any, None]) -> None:
     raise RuntimeError("the ROS graph inside the process must start without waiting")
 
 
-def _node_name(name: str) -> str:
+def node_name(name: str) -> str:
     """A ROS name from that of the agent system."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in name)
     return plain if plain[:1].isalpha() else f"mas_{plain}"

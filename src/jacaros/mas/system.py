@@ -176,6 +176,7 @@ class System:
             begin(host, spec, program)
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
+        self.ros.watch_parameters()
         self.idleness.look()
 
     def _publish_diagnostics(self) -> None:
@@ -246,6 +247,7 @@ class System:
         """End the run: no agent has another turn, no line is printed any more."""
         if self._ending:
             return
+        self.ros.ending()
         self._ending = True
         self._exit_code = exit_code
         self.scheduler.stop()

@@ -8,8 +8,10 @@ from urllib.parse import urlsplit
 
 from jacaros.clock import Clock
 from jacaros.errors import UsageError
-from jacaros.ros.errors import NameInvalid
+from jacaros.ros.errors import NameInvalid, ParameterRefused
 from jacaros.ros.names import NodeNames
+from jacaros.ros.parameter import ParameterValue
+from jacaros.ros.parameter_store import checked_value
 
 if TYPE_CHECKING:
     from jacaros.ros.backend import Backend
@@ -30,6 +32,7 @@ class GraphAddress:
         namespace: put before relative names; on ROS 1 ``ROS_NAMESPACE`` when it is empty.
         node_name: of our node, in place of the name that the program would give it.
         remap: names to use in place of others.
+        parameters: values of parameters of our node, in place of those that are declared.
     """
 
     kind: str = "memory"
@@ -39,6 +42,7 @@ class GraphAddress:
     namespace: str = ""
     node_name: str | None = None
     remap: Mapping[str, str] = field(default_factory=dict)
+    parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
 
     def check(self) -> None:
         """Refuse what cannot be, or cannot go together.
@@ -59,10 +63,23 @@ class GraphAddress:
             _check_address("--master", self.master, ("http", "https"), "http://robot.lab.example:11311")
         if self.bridge is not None:
             _check_address("--bridge", self.bridge, ("ws", "wss"), "ws://robot.lab.example:9090")
+        self._check_parameters()
         try:
             NodeNames(self.node_name or "node", self.namespace, self.remap)
         except NameInvalid as wrong:
             raise UsageError(str(wrong)) from None
+
+    def _check_parameters(self) -> None:
+        if self.parameters and self.kind == "rosbridge":
+            raise UsageError(
+                f"--param {next(iter(self.parameters))}: over rosbridge we are no node of the graph and have no "
+                "parameters; run on the robot itself, with --ros ros2 or --ros ros1"
+            )
+        for name, value in self.parameters.items():
+            try:
+                checked_value(value)
+            except ParameterRefused as wrong:
+                raise UsageError(f"--param {name}: {wrong}") from None
 
     def open(self, clock: Clock, node_name: str, log: Callable[[str], None], **options: Any) -> "Backend":
         """Make our node; see `jacaros.ros.open.open_backend` for the errors.
@@ -86,7 +103,14 @@ class GraphAddress:
         if not namespace and self.kind == "ros1":
             namespace = os.environ.get("ROS_NAMESPACE", "")
         return opening.open_backend(
-            self.kind, clock, self.node_name or node_name, namespace, log=log, remap=self.remap, **options
+            self.kind,
+            clock,
+            self.node_name or node_name,
+            namespace,
+            log=log,
+            remap=self.remap,
+            parameters=self.parameters,
+            **options,
         )
 
 

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.fields import FieldType
+from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import Parameters
 from jacaros.ros.qos import DEFAULT_QOS, QoS
@@ -278,6 +279,10 @@ class Backend(Protocol):
         Raises:
             NameInvalid, UnknownInterface, CapabilityMissing: as `action_client`.
         """
+
+    @property
+    def given_parameters(self) -> GivenParameters:
+        """Values for parameters of our own node that came from outside, and which of them are declared."""
 
     def parameters(self, node: str | None = None) -> Parameters:
         """Give the parameters of our own node, or of another by its name.

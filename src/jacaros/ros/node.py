@@ -13,6 +13,7 @@ from jacaros.ros.backend import DEFAULT_POLICY, Publisher, Sample, Subscription,
 from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.exit_hooks import ExitHooks
 from jacaros.ros.fields import FieldType
+from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
@@ -77,6 +78,7 @@ class Node:
         self.connected = False
         self.delivered: Callable[[], None] = lambda: None
         """Called on the loop when a message that came from outside has been delivered."""
+        self.given_parameters = GivenParameters(settings.parameters)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._on_connection: list[Callable[[bool], None]] = []
         self._transforms = TransformBroadcaster(self)

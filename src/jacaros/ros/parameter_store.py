@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
+from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.parameter import Declaration, ParameterValue
 
 _NAMES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "text", bytes: "bytes"}
@@ -16,7 +17,7 @@ class DeclaredParameters:
 
     Args:
         node: its absolute name, for texts.
-        given: values from outside (launch file, command line) that take the place of defaults.
+        given: values from outside that take the place of defaults.
         changed: is told of every declaration and change, after it.
         log: takes one line about a judgement that failed.
     """
@@ -24,7 +25,7 @@ class DeclaredParameters:
     def __init__(
         self,
         node: str,
-        given: Mapping[str, ParameterValue],
+        given: GivenParameters,
         changed: Callable[[Mapping[str, ParameterValue]], None],
         log: Callable[[str], None],
     ) -> None:
@@ -41,8 +42,10 @@ class DeclaredParameters:
             raise ParameterRefused(f"parameter {name} of {self._node} is declared already")
         if not name:
             raise ParameterRefused(f"a parameter of {self._node} has no name")
-        value = checked_value(self._given.get(name, declaration.default))
-        for candidate in (checked_value(declaration.default), value):
+        value = default = checked_value(declaration.default)
+        if (given := self._given.take(name)) is not None:
+            value = checked_value(given)
+        for candidate in (default, value):
             self._require(name, declaration, candidate)
         self._declarations[name] = declaration
         self._values[name] = value
@@ -78,14 +81,8 @@ class DeclaredParameters:
 
     def _require(self, name: str, declaration: Declaration, value: ParameterValue) -> None:
         what = f"parameter {name} of {self._node}"
-        wanted, given = kind_of(declaration.default), kind_of(value)
-        if wanted != given and not (given == "empty list" and wanted.startswith("list")):
-            raise ParameterRefused(f"{what} is of type {wanted}; {value!r} is of type {given}")
-        low, high = declaration.minimum, declaration.maximum
-        if isinstance(value, int | float) and (
-            (low is not None and value < low) or (high is not None and value > high)
-        ):
-            raise ParameterRefused(f"{what} is {_range(low, high)}, not {value!r}")
+        if (fault := fault_of(value, declaration)) is not None:
+            raise ParameterRefused(f"{what} is {fault}")
         reason = self._judged(declaration, value)
         if reason is not None:
             raise ParameterRefused(f"{what} cannot be {value!r}: {reason}")
@@ -103,6 +100,30 @@ class DeclaredParameters:
     def _unknown(self, name: str) -> str:
         known = f"it has {', '.join(self.names())}" if self._values else "it has none"
         return f"node {self._node} has no parameter {name}; {known}"
+
+
+def fault_of(value: ParameterValue, declaration: Declaration) -> str | None:
+    """What keeps *value* from being that of a declared parameter: its type or its range; None: nothing does."""
+    wanted, given = kind_of(declaration.default), kind_of(value)
+    if wanted != given and not _is_empty_of(wanted, given):
+        told = f"of type {wanted}; {value!r} is of type {given}"
+        if wanted == "float" and given == "int":
+            told += f"; write {value!r}.0"
+        return told
+    low, high = declaration.minimum, declaration.maximum
+    if isinstance(value, int | float) and (
+        (low is not None and value < low) or (high is not None and value > high)
+    ):
+        return f"{_range(low, high)}, not {value!r}"
+    return None
+
+
+def _is_empty_of(wanted: str, given: str) -> bool:
+    """Whether one of two kinds is that of an empty list, which suits the other; alone it is one of texts, as on ROS 2."""
+    return (given == "empty list" and wanted.startswith("list")) or (wanted, given) == (
+        "empty list",
+        "list of text",
+    )
 
 
 def checked_value(value: Any) -> ParameterValue:

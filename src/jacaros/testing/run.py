@@ -3,13 +3,16 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from jacaros.errors import JacarosError
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
+
+if TYPE_CHECKING:
+    from jacaros.ros.parameter import ParameterValue
 
 
 @dataclass(slots=True)
@@ -57,6 +60,7 @@ def run_project(
     ros: str = "memory",
     mappings: Iterable[str | Path] = (),
     remap: Mapping[str, str] | None = None,
+    parameters: "Mapping[str, ParameterValue] | None" = None,
     namespace: str = "",
     when_started: Callable[[System], None] | None = None,
 ) -> RunResult:
@@ -74,6 +78,7 @@ def run_project(
         ros: kind of the ROS graph.
         mappings: mapping files whose artifacts are made at the start.
         remap: ROS names to use in place of others.
+        parameters: values of parameters of our node, in place of the defaults.
         namespace: put before relative ROS names.
         when_started: called with the run before its first agent has its turn.
 
@@ -90,6 +95,7 @@ def run_project(
         seconds=seconds,
         mappings=tuple(map(str, mappings)),
         remap=dict(remap or {}),
+        parameters=dict(parameters or {}),
         namespace=namespace,
     )
     held: list[tuple[System, float]] = []

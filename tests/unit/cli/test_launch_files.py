@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from click import Context
 
+from jacaros.cli.given_parameters import read_parameters
 from jacaros.cli.main import jacaros
 from jacaros.cli.ros_arguments import as_options
 
@@ -67,6 +68,7 @@ def test_the_launch_file_starts_a_world_and_the_agents(nodes: Sequence[Node], tm
     assert told == []
     world, agents = read["world"], read["patrol"]
     assert (world["ros"], world["node_name"], world["publish_clock"]) == ("ros2", "world", True)
-    assert (agents["ros"], agents["node_name"], agents["clock"]) == ("ros2", "patrol", "ros")
+    assert (agents["ros"], agents["node_name"]) == ("ros2", "patrol")
+    assert read_parameters((), agents["params_file"], "patrol") == {"use_sim_time": True}
     assert Path(world["world"]).is_file()
     assert agents["file"].is_file()

@@ -29,9 +29,8 @@ LAUNCHED = ("run", "guard.asl", "--ros-args")
     [
         (("-r", "__node:=guard", "-r", "__ns:=/r1"), ["--node-name", "guard", "--namespace", "/r1"]),
         (("--remap", "odom:=/odometry/filtered"), ["--remap", "odom:=/odometry/filtered"]),
-        (("-p", "use_sim_time:=true"), ["--clock", "ros"]),
-        (("-p", "use_sim_time:=True"), ["--clock", "ros"]),
-        (("-p", "use_sim_time:=false"), []),
+        (("-p", "use_sim_time:=true"), ["--param", "use_sim_time:=true"]),
+        (("--params-file", "f.yaml", "-p", "a.b:=[1]"), ["--param", "a.b:=[1]", "--params-file", "f.yaml"]),
         (("--log-level", "info", "-e", "/", "--disable-stdout-logs"), []),
         (("--disable-rosout-logs",), ["--no-rosout"]),
     ],
@@ -48,39 +47,22 @@ def test_what_stands_behind_two_dashes_is_ours_again() -> None:
 
 
 def test_what_is_said_by_our_own_options_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    own = ("run", "a.asl", "--ros", "memory", "--clock", "real")
-    assert options(*own, "--ros-args", "-p", "use_sim_time:=true") == (list(own), [])
+    own = ("run", "a.asl", "--ros", "memory", "--param", "speed:=1")
+    assert options(*own, "--ros-args") == (list(own), [])
     monkeypatch.setenv("JACAROS_ROS", "rosbridge")
     assert options("run", "a.asl", "--ros-args") == (["run", "a.asl"], [])
 
 
-def test_a_world_has_no_clock_to_follow() -> None:
-    assert options("sim", "house", "--ros-args", "-p", "use_sim_time:=true")[0] == [
-        *("sim", "house", "--ros", "ros2")
-    ]
-
-
-PARAMETERS = """
-/**:
-  ros__parameters: {use_sim_time: true}
-/r1/guard:
-  ros__parameters: {speed: 1}
-r1:
-  "*":
-    ros__parameters: {turn: 2}
-other:
-  ros__parameters: {colour: red}
-"""
-
-
-def test_files_of_parameters_are_read_for_our_node(tmp_path: Path) -> None:
+def test_a_world_has_no_clock_to_follow_and_no_parameters(tmp_path: Path) -> None:
     file = tmp_path / "parameters.yaml"
-    file.write_text(PARAMETERS, encoding="utf-8")
-    names = ("-r", "__node:=guard", "-r", "__ns:=/r1")
-    read, told = options(*LAUNCHED, *names, "--params-file", str(file))
-    assert read[-4:] == ["--clock", "ros", "--ros", "ros2"]
-    assert [line.split()[2] for line in told] == ["speed", "turn"]
-    assert "has no effect" in told[0]
+    file.write_text(
+        "/**: {ros__parameters: {use_sim_time: true}}\nhouse: {ros__parameters: {b: {c: 1}}}",
+        encoding="utf-8",
+    )
+    given = ("-r", "__node:=house", "-p", "use_sim_time:=true", "-p", "a:=1", "--params-file", str(file))
+    read, told = options("sim", "house", "--ros-args", "--enable-rosout-logs", *given)
+    assert read == ["sim", "house", "--rosout", "--node-name", "house", "--ros", "ros2"]
+    assert [line.split(" has ")[0] for line in told] == ["the parameter b.c", "the parameter a"]
 
 
 def test_arguments_of_ros1_become_options() -> None:
@@ -97,14 +79,15 @@ def test_arguments_of_ros1_become_options() -> None:
     read, told = options(*written)
     assert read == [
         *("run", "a.asl", "--remap", "x:=y", "--remap", "odom:=/odometry", "--node-name", "guard"),
-        *("--ros", "ros1"),
+        *("--param", "speed:=1", "--ros", "ros1"),
     ]
-    assert [line.split()[2] for line in told] == ["speed"]
+    assert told == []
 
 
 def test_other_commands_and_options_with_such_values_are_left_alone() -> None:
     assert not has_ros_arguments(["run", "a.asl", "--remap", "x:=y"])
     assert not has_ros_arguments(["run", "a.asl", "--remap=x:=y"])
+    assert not has_ros_arguments(["run", "a.asl", "--param", "x:=1"])
     assert not has_ros_arguments(["check", "a:=b"])
     assert not has_ros_arguments([])
 
@@ -116,8 +99,7 @@ def test_other_commands_and_options_with_such_values_are_left_alone() -> None:
         (("--ros-args", "-r"), "a value is missing behind -r"),
         (("--ros-args", "-r", "odom"), "is written -r NAME:=VALUE"),
         (("--ros-args", "-r", "other:odom:=x"), "leave out the name of the node"),
-        (("--ros-args", "-p", "x:={"), "no YAML"),
-        (("--ros-args", "--params-file", "gone.yaml"), "gone.yaml: No such file"),
+        (("--ros-args", "-p", "x"), "is written -p NAME:=VALUE"),
         (("__ip:=127.0.0.1",), "ROS_IP"),
     ],
 )

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
+from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters, checked_value, kind_of
 
@@ -17,7 +18,8 @@ class Store:
     def __init__(self, **given: ParameterValue) -> None:
         self.news: list[Mapping[str, ParameterValue]] = []
         self.log: list[str] = []
-        self.parameters = DeclaredParameters("/node", given, self.news.append, self.log.append)
+        self.given = GivenParameters(given)
+        self.parameters = DeclaredParameters("/node", self.given, self.news.append, self.log.append)
 
     def declare(self, name: str, default: ParameterValue, **more: Any) -> ParameterValue:
         return self.parameters.declare(name, Declaration(default, **more))
@@ -36,6 +38,29 @@ def test_a_given_value_takes_the_place_of_the_default() -> None:
     store = Store(speed=0.25)
     assert store.declare("speed", 0.5) == 0.25
     assert store.parameters.get("speed") == 0.25
+
+
+def test_given_values_that_nobody_declares_are_known() -> None:
+    store = Store(speed=0.25, spede=1)
+    store.declare("speed", 0.5)
+    store.declare("turn", 2)
+    assert store.given.untaken() == ["spede"]
+    assert store.given.known() == ["speed", "turn"]
+    assert "spede" not in store.parameters.names()
+
+
+def test_what_to_write_for_a_whole_number_is_told() -> None:
+    store = Store(speed=1)
+    with pytest.raises(ParameterRefused, match=r"of type float; 1 is of type int; write 1\.0"):
+        store.declare("speed", 0.5)
+
+
+def test_an_empty_list_is_one_of_texts() -> None:
+    store = Store()
+    store.declare("places", [])
+    store.parameters.set("places", ["hall"])
+    with pytest.raises(ParameterRefused, match="of type empty list"):
+        store.parameters.set("places", [1])
 
 
 def test_a_given_value_has_to_fit_the_declaration() -> None:

@@ -8,7 +8,7 @@ file                                             what it holds
 `paths`, `units`, `taking`, `filling`            out of messages, and into them
 `extracting`, `interfaces`, `checking`           rows of a message; types; what does not fit them
 `artifact`, `host`, `operation_methods`          the class that is made of it
-`feeds`, `elements`, `frames`, `node_parameters` properties and signals
+`feeds`, `elements`, `frames`, `*_parameters`    properties and signals
 `operating`, `publishing`, `type_search`         operations; types that the file leaves out
 `manual`, `known_types`, `errors`, `handle`      what is told about it; big things by reference
 ================================================ =====================================================================

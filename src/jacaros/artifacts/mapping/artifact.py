@@ -13,6 +13,7 @@ from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.node_parameters import NodeParameter
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods
+from jacaros.artifacts.mapping.own_parameters import OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.artifacts.ros.options import text
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
@@ -52,6 +53,7 @@ class MappedArtifact(RosArtifact):
         self._followers: dict[str, list[Callable[[Values], None]]] = {}
         self.readings: dict[str, Reading] = {}
         self.elements: dict[str, Elements] = {}
+        self.own_parameters = self._declare_parameters()
         search = TypeSearch(self)
         self.operating = Operations(self)
         topics: dict[object, Topic] = {}
@@ -68,8 +70,20 @@ class MappedArtifact(RosArtifact):
         for frame in self.part.frames:
             self.kept(FrameFeed(self, frame))
         for parameter in self.part.parameters:
-            self.kept(NodeParameter(self, parameter))
+            if parameter.declaration is None:
+                self.kept(NodeParameter(self, parameter))
         search.begin()
+
+    def _declare_parameters(self) -> list[OwnParameter]:
+        """Declare the parameters of our own node."""
+        parts = [part for part in self.part.parameters if part.declaration is not None]
+        own = [self.kept(OwnParameter(self, part)) for part in parts]
+        problems = [problem for each in own if (problem := each.declare()) is not None]
+        if problems:
+            self.dispose()
+            error = MappingError(self.mapping.file, self.mapping.text, problems)
+            self.fail(str(error), "wrong_mapping", self.mapping.file)
+        return own
 
     @property
     def robot_prefix(self) -> str:
@@ -171,6 +185,17 @@ class MappedArtifact(RosArtifact):
         return tell
 
 
+class TunedArtifact(MappedArtifact):
+    """A mapped artifact with parameters of our own node, which it may have to ask for before it is made."""
+
+    async def init(self, *arguments: object) -> None:  # type: ignore[override]
+        """Take the robot's name and options, which may be left out; on ROS 1 ask the master for parameters."""
+        super().init(*arguments)
+        if self.own_parameters and kept_by_master(self.ros):
+            for each in self.own_parameters:
+                await each.ask()
+
+
 def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
     """The class of one artifact of a file; its operations are operations like any others."""
     part = mapping.artifacts[name]
@@ -181,7 +206,8 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         "part": part,
         **methods(part, parameter_words),
     }
-    return type(_class_name(name), (MappedArtifact,), members)
+    tuned = any(each.declaration is not None for each in part.parameters)
+    return type(_class_name(name), (TunedArtifact if tuned else MappedArtifact,), members)
 
 
 def _class_name(name: str) -> str:

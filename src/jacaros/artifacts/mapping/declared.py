@@ -8,6 +8,7 @@ from typing import NamedTuple
 from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
 from jacaros.artifacts.ros.reading import ReadingPolicy
+from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
 from jacaros.yaml_nodes import Problem
 
@@ -170,12 +171,19 @@ class FramePart:
 
 @dataclass(frozen=True, slots=True)
 class ParameterPart:
-    """A property from a parameter of a node; *rate* is for middlewares that do not tell of changes."""
+    """A property from a parameter of a node.
+
+    Attributes:
+        node: whose it is; empty for our own.
+        declaration: of a parameter of our own.
+        rate: for middlewares that do not tell of changes.
+    """
 
     name: str
     place: Place
     node: str
     parameter: str
+    declaration: Declaration | None = None
     field: FieldPart | None = None
     rate: float = 1.0
     policy: ReadingPolicy = ALWAYS
@@ -248,6 +256,7 @@ class OperationPart:
         any_success: nothing is looked at.
         duration: seconds of repeated publishing.
         at_end: fields of the last message; None: zero for velocities, else nothing.
+        node: whose parameter is set or given; empty for our own.
         properties: those that are refreshed or read.
         feedback: properties from the feedback.
         suspend: what a suspended intention means for the goal: ``go_on``, ``cancel``, or ``pause`` by two operations.

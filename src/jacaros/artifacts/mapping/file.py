@@ -18,7 +18,8 @@ from jacaros.artifacts.mapping.operation_methods import arity, is_switch
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
-from jacaros.artifacts.mapping.read_topics import read_frame, read_parameter, read_property, read_signal
+from jacaros.artifacts.mapping.read_parameters import read_parameter
+from jacaros.artifacts.mapping.read_topics import read_frame, read_property, read_signal
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text
 
@@ -170,6 +171,7 @@ def _artifact(
     node.problems += _arities(part)
     node.problems += _references(part)
     node.problems += _switches(part)
+    node.problems += _own_parameters(part)
     return part
 
 
@@ -253,6 +255,21 @@ def _switches(part: ArtifactPart) -> Iterator[Problem]:
                 else f"there is no operation '{wanted.text}'",
                 "name one without arguments that calls a service, publishes once or sets a parameter; there "
                 f"{'are: ' + ', '.join(able) if able else 'is none yet'}",
+            )
+
+
+def _own_parameters(part: ArtifactPart) -> Iterator[Problem]:
+    """Operations on parameters of our own that the artifact does not declare."""
+    own = [each.parameter for each in part.parameters if not each.node]
+    for operation in part.operations:
+        if operation.kind not in (OperationKind.SET, OperationKind.GET) or operation.node:
+            continue
+        if operation.target.text not in own:
+            yield operation.target.place.problem(
+                f"'{operation.name}' names no node, and '{operation.target.text}' is no parameter of our own",
+                f"of our own there are: {', '.join(own)}"
+                if own
+                else "write whose parameter it is: node: controller_server",
             )
 
 

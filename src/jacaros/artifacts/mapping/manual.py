@@ -10,6 +10,7 @@ from jacaros.artifacts.mapping.declared import (
     MappingFile,
     OperationKind,
     OperationPart,
+    ParameterPart,
     Source,
     TopicPart,
     ValuePart,
@@ -23,6 +24,7 @@ from jacaros.artifacts.mapping.value_words import with_unit, word_for_field, wor
 from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
+from jacaros.ros.parameter_store import kind_of
 from jacaros.yaml_nodes import Problem
 
 _TRANSFORM = {"x": "metres", "y": "metres", "z": "metres", "stamp": "seconds"}
@@ -60,14 +62,30 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
         words = [_of_transform(field) for field in frame.fields]
         yield f"{usage(frame.name, frame.fields)}: {_told(told, frame.fields, words)}."
     for parameter in part.parameters:
-        told = parameter.description or f"parameter {parameter.parameter} of {parameter.node}"
-        yield f"{parameter.name}(Value): {told}."
+        yield f"{parameter.name}(Value): {_of_parameter(parameter)}."
     for operation in part.operations:
         for feedback in operation.feedback:
             told = feedback.description or f"feedback of {operation.name}"
             typed = operation.type_name
             type_name = message_types(operation.kind, typed.text)[2] if typed is not None else ""
             yield _observed(feedback, type_name, told, interfaces)
+
+
+def _of_parameter(part: ParameterPart) -> str:
+    """What a parameter is, and of our own its type, default and range."""
+    declaration = part.declaration
+    if declaration is None:
+        return (part.description or f"parameter {part.parameter} of {part.node}").rstrip(".")
+    told = (part.description or f"parameter {part.parameter} of our own").rstrip(".")
+    low, high = declaration.minimum, declaration.maximum
+    words = [
+        kind_of(declaration.default),
+        f"{declaration.default!r} unless given",
+        f"at least {low:g}" if low is not None else "",
+        f"at most {high:g}" if high is not None else "",
+        "read-only" if declaration.read_only else "",
+    ]
+    return f"{told}. Value: {', '.join(filter(None, words))}"
 
 
 def _signals(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:

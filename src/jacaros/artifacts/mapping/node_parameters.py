@@ -1,4 +1,4 @@
-"""Parameters of nodes as properties."""
+"""Parameters of other nodes as properties."""
 
 from collections.abc import Mapping
 

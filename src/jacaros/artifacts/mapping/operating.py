@@ -10,6 +10,7 @@ from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
 from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.operation_methods import arity
+from jacaros.artifacts.mapping.own_parameters import own_name
 from jacaros.artifacts.mapping.parameter_values import parameter_converter
 from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
@@ -238,9 +239,10 @@ class _OfNode:
 
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
-        self._name = part.target.text
+        self._name = part.target.text if part.node else own_name(host, part.target.text)
         try:
-            self._parameters = host.ros.parameters(host.ros.resolve(host.robot_topic(part.node)))
+            node = host.ros.resolve(host.robot_topic(part.node)) if part.node else None
+            self._parameters = host.ros.parameters(node)
         except CapabilityMissing as error:
             host.fail(f"{part.name}: {error}", "ros_error", host.name)
 

@@ -93,8 +93,8 @@ def description(part: OperationPart) -> str:
         OperationKind.PUBLISH: f"Publishes on {part.target.text}{of_type}.",
         OperationKind.SERVICE: f"Calls the service {part.target.text}{of_type}.",
         OperationKind.ACTION: f"Pursues a goal of the action {part.target.text}{of_type}.",
-        OperationKind.SET: f"Sets the parameter {part.target.text} of {part.node}.",
-        OperationKind.GET: f"Gives the parameter {part.target.text} of {part.node}.",
+        OperationKind.SET: f"Sets the parameter {part.target.text} of {part.node or 'our own node'}.",
+        OperationKind.GET: f"Gives the parameter {part.target.text} of {part.node or 'our own node'}.",
         OperationKind.REFRESH: f"Gives {named} the newest values.",
         OperationKind.READ: f"Gives the newest values of {named}.",
     }

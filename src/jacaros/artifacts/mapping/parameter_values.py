@@ -2,7 +2,7 @@
 
 from jacaros.artifacts.mapping.declared import AS_IT_IS, Conversion
 from jacaros.artifacts.mapping.taking import Convert, Unshowable, converted
-from jacaros.env.values import text
+from jacaros.env.values import Atom, text
 from jacaros.ros.parameter import ParameterValue
 
 
@@ -15,7 +15,7 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
 
     The function raises `Unshowable` for what is no number where one is needed.
     """
-    convert = converted(conversion)
+    convert: Convert = _as_atom if conversion.kind == "atom" else converted(conversion)
     if conversion == AS_IT_IS:
         return convert
     named = {value for value, _ in conversion.names}
@@ -29,3 +29,7 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
         return convert(value)
 
     return lambda value: [element(each) for each in value] if isinstance(value, list) else element(value)
+
+
+def _as_atom(value: ParameterValue) -> object:
+    return Atom(value) if isinstance(value, str) else value

@@ -91,9 +91,7 @@ def _keys(node: Node) -> list[str]:
 
 
 def _required(kind: OperationKind) -> tuple[str, ...]:
-    if kind is OperationKind.SET:
-        return ("node", "value")
-    return ("node",) if kind is OperationKind.GET else ()
+    return ("value",) if kind is OperationKind.SET else ()
 
 
 def _parameters(node: Node) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Reads ``properties``, ``signals``, ``frames`` and ``parameters``."""
+"""Reads ``properties``, ``signals`` and ``frames``."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -6,13 +6,11 @@ from collections.abc import Iterator
 from jacaros.artifacts.mapping.declared import (
     FieldPart,
     FramePart,
-    ParameterPart,
     Place,
     RangeOfView,
     TopicPart,
     Written,
 )
-from jacaros.artifacts.mapping.paths import WHOLE
 from jacaros.artifacts.mapping.read_fields import ANGLES, path_of, place_of, read_field, read_fields, shown
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, is_type, ros_name, type_written
 from jacaros.artifacts.mapping.read_qos import read_qos
@@ -27,7 +25,6 @@ PROPERTY = (*_MESSAGE, *_POLICY, "initial", "range_of_view")
 SIGNAL = (*_MESSAGE, "rate", "when_changed")
 FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
 FRAME = ("target", "source", "fields", "annotations", "description", *_POLICY)
-PARAMETER = ("node", "parameter", "fields", "rate", "dead_band", "description")
 PLACES = ("x", "y", "z", "roll", "pitch", "yaw", "stamp")
 """What of a transform can be shown."""
 
@@ -147,15 +144,15 @@ def read_policy(
     latest = entries.get("latest_only")
     return ReadingPolicy(
         on_demand=mode == "on_demand",
-        rate=_positive(rate) if rate is not None else None,
+        rate=positive(rate) if rate is not None else None,
         dead_band=_bands(entries.get("dead_band"), fields),
         latest_only=latest.truth() if latest is not None else latest_only,
-        expire=_positive(expire) if expire is not None else None,
+        expire=positive(expire) if expire is not None else None,
         finite=False,  # fields say themselves what is to become of such numbers
     )
 
 
-def _positive(node: Node) -> float:
+def positive(node: Node) -> float:
     value = node.number(default=1.0)
     if value <= 0.0:
         node.wrong(
@@ -235,7 +232,7 @@ def _view(node: Node, each: bool) -> RangeOfView:
         at = ()
     origin = entries.get("from")
     return RangeOfView(
-        _positive(entries["metres"]) if "metres" in entries else 1.0,
+        positive(entries["metres"]) if "metres" in entries else 1.0,
         place,
         path_of(entries["distance"]) if "distance" in entries else None,
         at,
@@ -295,25 +292,3 @@ def _pose(place: Place) -> tuple[FieldPart, ...]:
     from jacaros.artifacts.mapping.paths import read_path
 
     return tuple(FieldPart(read_path(name), place, name=name) for name in ("x", "y", "yaw"))
-
-
-def read_parameter(name: Node, node: Node) -> ParameterPart:
-    """A property from a parameter of a node."""
-    entries = node.mapping(*PARAMETER, required=("node",))
-    fields = read_fields(entries["fields"]) if "fields" in entries else ()
-    if len(fields) > 1 or any(field.path.steps for field in fields):
-        entries["fields"].wrong(
-            "a parameter has one value and no fields", "write fields: {path: ., unit: degrees}"
-        )
-    policy = read_policy({key: value for key, value in entries.items() if key != "rate"}, fields or None)
-    rate = entries.get("rate")
-    return ParameterPart(
-        belief_name(name),
-        place_of(name),
-        ros_name(entries["node"]).text if "node" in entries else "",
-        entries["parameter"].text() if "parameter" in entries else str(name.value),
-        dataclasses.replace(fields[0], path=WHOLE) if fields else None,
-        _positive(rate) if rate is not None else 1.0,
-        policy,
-        entries["description"].text() if "description" in entries else "",
-    )

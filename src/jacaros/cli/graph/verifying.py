@@ -69,11 +69,11 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
         found += _of_operation(names, operation)
     for frame in part.frames:
         found += _of_frame(names, frame, frames)
-    nodes = [(each.node, each.parameter, each.place) for each in part.parameters]
+    nodes = [(each.node, each.parameter, each.place) for each in part.parameters if each.node]
     nodes += [
         (each.node, each.target.text, each.place)
         for each in part.operations
-        if each.kind in (OperationKind.SET, OperationKind.GET)
+        if each.kind in (OperationKind.SET, OperationKind.GET) and each.node
     ]
     for node, parameter, place in nodes:
         found += await _of_parameter(names, node, parameter, place)

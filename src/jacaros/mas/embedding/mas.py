@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
     from jacaros.mas.surroundings import Surroundings
     from jacaros.ros.backend import Backend
+    from jacaros.ros.parameter import ParameterValue
     from jacaros.sim import World
 
 _PYTHON = "python"
@@ -61,6 +62,7 @@ class Mas(EmbeddedRun):
         namespace: put before relative ROS names.
         node_name: of our node in a real graph; that of the system unless given.
         remap: ROS names to use in place of others, ``{"/cmd_vel": "/robot_1/cmd_vel"}``.
+        parameters: values of parameters of our node that are declared, in place of the defaults: ``{"speed": 0.3}``.
         domain_id: of a ROS 2 graph; ``ROS_DOMAIN_ID`` unless given.
         master: address of the ROS 1 master; ``ROS_MASTER_URI`` unless given.
         bridge: address of the rosbridge server.
@@ -86,6 +88,7 @@ class Mas(EmbeddedRun):
         namespace: str = "",
         node_name: str | None = None,
         remap: Mapping[str, str] | None = None,
+        parameters: "Mapping[str, ParameterValue] | None" = None,
         domain_id: int | None = None,
         master: str | None = None,
         bridge: str | None = None,
@@ -106,6 +109,7 @@ class Mas(EmbeddedRun):
             bridge=bridge,
             node_name=node_name,
             remap=dict(remap or {}),
+            parameters=dict(parameters or {}),
             mappings=tuple(map(str, mappings)),
         )
         super().__init__(_deployment(project, name, base, options.mappings), options, on_print, on_log)

@@ -33,7 +33,7 @@ class MemoryNode(Node):
         self.graph = graph if graph is not None else MemoryGraph()
         self.declared = DeclaredParameters(
             self.node_name,
-            settings.parameters,
+            self.given_parameters,
             lambda changed: self.graph.parameters_changed(self.node_name, changed),
             self.log,
         )

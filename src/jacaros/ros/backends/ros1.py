@@ -60,7 +60,7 @@ class Ros1Backend(Ros1Node):
     def __init__(self, settings: NodeSettings) -> None:
         super().__init__(settings)
         self._feeds = Feeds(self)
-        give(self, settings.parameters)
+        give(self)
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Ros1Publisher:
         """Make a publisher."""

@@ -142,14 +142,19 @@ class Ros1Parameters:
             raise ServiceUnavailable(f"the {what} did not answer within {timeout:g} s") from None
 
 
-def give(node: Ros1Node, values: Mapping[str, ParameterValue]) -> None:
+def give(node: Ros1Node) -> None:
     """Set parameters of our own node that came from outside, now and after each restart of the master.
 
     Raises:
         ParameterRefused: the master cannot keep a value.
     """
-    keys = {f"{node.node_name}/{name.removeprefix('~')}": value for name, value in values.items()}
-    plain = {key: _plain(key, value) for key, value in keys.items()}
+    plain = {}
+    for name, value in node.given_parameters.items():
+        node.given_parameters.take(
+            name
+        )  # nothing is declared here: it is there for everybody, as those of rospy are
+        key = f"{node.node_name}/{name.removeprefix('~')}"
+        plain[key] = _plain(key, value)
     master = Master(node.master_uri, node.node_name)
 
     def set_all() -> None:

@@ -8,7 +8,7 @@ import asyncio
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from typing import Any, Protocol
 
@@ -62,10 +62,8 @@ class Ros2Node(Node):
         self.schema = RosidlSchema()
         super().__init__(settings, self.schema, finish=self._leave, threaded_hooks=True)
         self._domain_id = domain_id
-        self._given = dict(settings.parameters)
-        if isinstance(settings.clock, RosClock):
-            # As on every node that goes by a simulator: tools ask for it.
-            self._given.setdefault("use_sim_time", True)
+        # As on every node that goes by a simulator: tools ask for it.
+        self._simulated = {"use_sim_time": True} if isinstance(settings.clock, RosClock) else {}
         self._context: Any = rclpy.Context()
         self._executor: Any = None
         self._thread: threading.Thread | None = None
@@ -147,14 +145,20 @@ class Ros2Node(Node):
             namespace=self.names.namespace or "/",
             context=self._context,
             use_global_arguments=False,
-            parameter_overrides=[parameter(name, value) for name, value in self._given.items()],
+            parameter_overrides=[parameter(name, value) for name, value in self._overrides()],
         )
+        for name in self.rcl.list_parameters([], 0).names:  # rclpy's own
+            self.given_parameters.take(name)
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.rcl)
         self.receiver = Receiver(self._context, self._report, self._executor)
         self._take_clock()
         self._thread = threading.Thread(target=self._spin, name="rclpy executor", daemon=True)
         self._thread.start()
+
+    def _overrides(self) -> Iterator[tuple[str, Any]]:
+        """What rclpy's own parameters are to be; ours are declared with their values."""
+        yield from (self._simulated | dict(self.given_parameters.items())).items()
 
     def _take_clock(self) -> None:
         """Take the messages of ``/clock`` that rclpy follows (`use_sim_time`); simulators may send a thousand a second."""

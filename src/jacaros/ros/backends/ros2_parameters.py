@@ -28,6 +28,7 @@ from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnk
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_store import checked_value, fault_of
 
 _LARGEST = 2**63 - 1
 
@@ -54,11 +55,20 @@ class OwnParameters:
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Declare a parameter."""
-        default = parameter(name, declaration.default)
+        value = default = parameter(name, declaration.default)
+        given = self._node.given_parameters.take(name)
+        if given is not None:
+            # Of rclpy's own complaints none says what to write.
+            for candidate in (checked_value(declaration.default), given):
+                if (fault := fault_of(candidate, declaration)) is not None:
+                    raise ParameterRefused(f"parameter {name} of {self.node} is {fault}")
+            value = parameter(name, given, default.type_)
         if declaration.accept is not None and not self._node.rcl.has_parameter(name):
             self._judges[name] = declaration.accept
         try:
-            made = self._node.rcl.declare_parameter(name, default.value, _descriptor(default, declaration))
+            made = self._node.rcl.declare_parameter(
+                name, value.value, _descriptor(default, declaration), ignore_override=True
+            )
         except ParameterAlreadyDeclaredException:
             raise ParameterRefused(f"parameter {name} of {self.node} is declared already") from None
         except (
@@ -69,7 +79,18 @@ class OwnParameters:
         ) as problem:
             self._judges.pop(name, None)
             raise ParameterRefused(f"parameter {name} of {self.node}: {problem}") from None
+        if value.value == [] and value.type_ != made.type_:
+            made = self._retyped(value, declaration.read_only)
         return self._value(made)
+
+    def _retyped(self, empty: Any, read_only: bool) -> Any:
+        """Give a declared empty list its type: rclpy takes every empty list for one of octets."""
+        rcl = self._node.rcl
+        told = rcl.describe_parameter(empty.name)
+        told.type, told.read_only = empty.type_.value, False
+        rcl.set_parameters([empty])
+        told.read_only = read_only
+        return rcl.get_parameter(empty.name)
 
     def withdraw(self, name: str) -> None:
         """Take a declaration back."""

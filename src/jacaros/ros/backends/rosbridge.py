@@ -76,6 +76,11 @@ class RosbridgeBackend(Node):
     name = "rosbridge"
 
     def __init__(self, settings: NodeSettings, url: str | None = None) -> None:
+        if settings.parameters:
+            raise CapabilityMissing(
+                f"parameter {next(iter(settings.parameters))} cannot be given: over rosbridge we are no node of the graph, "
+                "and have no parameters"
+            )
         self.url = checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL)
         self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
         self.requests = Requests(self._link.send)

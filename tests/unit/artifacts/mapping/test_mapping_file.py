@@ -345,7 +345,52 @@ WRONG = {
     ),
     "node": (
         "operations: {go: {get_parameter: a}}",
-        "1:18: 'go' lacks the key 'node' | add 'node: ...'",
+        (
+            "1:34: 'go' names no node, and 'a' is no parameter of our own | write whose parameter it is: "
+            "node: controller_server"
+        ),
+    ),
+    "own parameter that is set and not declared": (
+        "parameters: {a: 1, b: {default: 2, parameter: c}}\noperations: {go: {set_parameter: b, value: 1}}",
+        "2:34: 'go' names no node, and 'b' is no parameter of our own | of our own there are: a, c",
+    ),
+    "parameter of nobody": (
+        "parameters: {a: {minimum: 1}}",
+        (
+            "1:17: nobody says whose parameter 'a' is | write the node that has it, node: controller_server, or of one "
+            "of our own its value, default: 0.5"
+        ),
+    ),
+    "parameter of another with a default": (
+        "parameters: {a: {node: n, default: 1}}",
+        "1:27: 'a' has no key 'default' | known keys: node, parameter, fields, dead_band, description, rate",
+    ),
+    "parameter without a value": (
+        "parameters: {a: }",
+        "1:14: the parameter has no default | write a number, true or false, a text, or a list of them",
+    ),
+    "parameter with mixed values": (
+        "parameters: {a: [1, 2.5]}",
+        (
+            "1:17: a parameter holds a bool, a number, a text, bytes, or a list of bools, ints, floats or texts; not "
+            "[1, 2.5] | write numbers of a list alike: [1.0, 2.5]"
+        ),
+    ),
+    "range of a text": (
+        "parameters: {a: {default: b, minimum: 1}}",
+        "1:39: only a number has a range, and the default is 'b' | leave minimum and maximum out",
+    ),
+    "default beyond its range": (
+        "parameters: {a: {default: 3, maximum: 2}}",
+        "1:27: the default is not in its range: it is at most 2, not 3 | write another default, or another range",
+    ),
+    "unit of a text": (
+        "parameters: {a: {default: fast, fields: {path: ., unit: degrees}}}",
+        '1:27: parameter default is "fast", no number | leave out its unit, scale, offset and round',
+    ),
+    "conversion for messages": (
+        "parameters: {a: {default: 3, fields: {path: ., as: yaw}}}",
+        "1:38: 'as: yaw' is for messages | of a parameter: as: atom, names, unit, scale, offset, round",
     ),
     "no artifacts": (
         "artifacts: {}",
