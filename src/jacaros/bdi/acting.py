@@ -14,7 +14,7 @@ from jacaros.bdi.goal_failure import fail_intention, has_room
 from jacaros.bdi.intention import Frame, Intention
 from jacaros.bdi.internal_action import Crashed
 from jacaros.bdi.waiting import OWN_SUSPENSION
-from jacaros.compiler.runtime import SUSPENDED, Fail
+from jacaros.compiler.outcomes import SUSPENDED, Fail
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF

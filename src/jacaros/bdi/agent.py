@@ -38,8 +38,9 @@ from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.bdi.rules import OpenFact, Rule
 from jacaros.bdi.speech_act import SpeechAct, message_id
 from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
+from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.lowering import lower_value
-from jacaros.compiler.runtime import SUSPENDED, Fail, Failure, own_annotations
+from jacaros.compiler.outcomes import SUSPENDED, Fail, Failure
 from jacaros.compiler.triggers import trigger
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import ArithmeticFault

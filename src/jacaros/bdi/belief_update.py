@@ -9,7 +9,9 @@ from jacaros.bdi.belief_base import Row, Table, literal, parts, take_away, with_
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.rules import OpenFact, Rule
-from jacaros.compiler.runtime import Failure, own_annotations, unify_rows
+from jacaros.compiler.literals import own_annotations
+from jacaros.compiler.outcomes import Failure
+from jacaros.compiler.searching import unify_rows
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.unifier import ATOMIC, free_variables, is_key, rename, resolve, undo, unify_annotations

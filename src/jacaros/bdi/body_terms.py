@@ -7,9 +7,9 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import Frame
 from jacaros.compiler.bodies import body_compiler
 from jacaros.compiler.function import Frame as Slots
+from jacaros.compiler.outcomes import Failure
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.reflection import Reflection
-from jacaros.compiler.runtime import Failure
 from jacaros.compiler.triggers import trigger
 from jacaros.compiler.unit import CodeUnit, install_body
 from jacaros.terms.plans import PLAN as PLAN_TERM

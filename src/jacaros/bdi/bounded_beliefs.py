@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.belief_base import BeliefBase, Table
-from jacaros.compiler.runtime import Failure
+from jacaros.compiler.outcomes import Failure
 from jacaros.terms.values import Functor, String, Term, atom, functor
 
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)

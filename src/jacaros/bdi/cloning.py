@@ -7,7 +7,7 @@ from jacaros.bdi.forks import copied
 from jacaros.bdi.intention import GOAL, Intention
 from jacaros.bdi.plan_changes import look_at_plans
 from jacaros.compiler.function import FIRST_SLOT
-from jacaros.compiler.runtime import Remaining
+from jacaros.compiler.searching import Remaining
 from jacaros.terms.detaching import detached
 from jacaros.terms.unifier import rename
 from jacaros.terms.values import Term

@@ -12,7 +12,7 @@ from jacaros.bdi.intention import Intention
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.lowering import Names, lower_value
 from jacaros.compiler.plan import Plan
-from jacaros.compiler.runtime import run
+from jacaros.compiler.searching import run
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term, atom

@@ -3,7 +3,7 @@
 from typing import Any, Final, NamedTuple
 
 from jacaros.bdi.intention import Intention
-from jacaros.compiler.runtime import literal_of
+from jacaros.compiler.literals import literal_of
 from jacaros.terms.values import Term
 from jacaros.trace import Cause
 

@@ -12,7 +12,7 @@ from jacaros.bdi.internal_action import ActionError, WrongArguments
 from jacaros.bdi.search_budget import SearchLimit
 from jacaros.bdi.subplans import handles
 from jacaros.compiler.body_compiler import StepInfo
-from jacaros.compiler.runtime import Fail, Failure
+from jacaros.compiler.outcomes import Fail, Failure
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm

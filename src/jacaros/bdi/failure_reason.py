@@ -9,8 +9,8 @@ from jacaros.asl.source import Span
 from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame
 from jacaros.bdi.step_text import step_text
 from jacaros.compiler.body_compiler import StepInfo
+from jacaros.compiler.literals import annotations_of_event, literal_of
 from jacaros.compiler.lowering import lower
-from jacaros.compiler.runtime import annotations_of_event, literal_of
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.order import annotation_set

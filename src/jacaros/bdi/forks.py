@@ -8,7 +8,8 @@ from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import GOAL, STEP, Frame, Intention
-from jacaros.compiler.runtime import SUSPENDED, Remaining
+from jacaros.compiler.outcomes import SUSPENDED
+from jacaros.compiler.searching import Remaining
 from jacaros.terms.unifier import ATOMIC, rename
 from jacaros.terms.values import Annotated, Term, Var
 

@@ -9,19 +9,9 @@ from typing import Any
 from jacaros.bdi.belief_base import literal
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.rules import OpenFact
-from jacaros.compiler.runtime import (
-    answers_of,
-    cannot_wait,
-    deconstruct,
-    exists,
-    holds,
-    refuse_quietly,
-    run,
-    solve,
-    solve_annotated,
-    takes_time,
-    unknown,
-)
+from jacaros.compiler.calls import answers_of, cannot_wait, holds, refuse_quietly, takes_time, unknown
+from jacaros.compiler.deconstruction import deconstruct
+from jacaros.compiler.searching import exists, run, solve, solve_annotated
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.order import annotation_set, at_most, less
 from jacaros.terms.unifier import Trail, equal, rename, resolve, undo, unify
@@ -46,7 +36,7 @@ Search = Generator[Any, Any, None]
 
 
 def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Search:
-    """Answers of any formula given as a term (see `jacaros.compiler.runtime.run` for the protocol)."""
+    """Answers of any formula given as a term (see `jacaros.compiler.searching.run` for the protocol)."""
     formula = settle(formula)
     kind = formula.__class__
     if kind is tuple:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from jacaros.asl.functions import FunctionNames
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
-from jacaros.compiler.runtime import run
+from jacaros.compiler.searching import run
 from jacaros.terms.arithmetic import AGENT, ArithmeticFault, settle
 from jacaros.terms.text import text
 from jacaros.terms.unifier import free_variables, resolve, undo

@@ -19,7 +19,7 @@ from jacaros.bdi.failure_reason import FailureReason, nowhere
 from jacaros.bdi.finishing import pop_finished
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.stack import achieve, cut, pending_event, remove_event
-from jacaros.compiler.runtime import literal_of
+from jacaros.compiler.literals import literal_of
 from jacaros.terms.unifier import rename, undo, unify
 from jacaros.terms.values import Term
 

@@ -6,7 +6,7 @@ from typing import Any
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
-from jacaros.compiler.runtime import annotations_of_event, literal_of
+from jacaros.compiler.literals import annotations_of_event, literal_of
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text

@@ -12,7 +12,8 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, Frame, Intention
 from jacaros.bdi.plan_terms import bindings_of, plan_term
-from jacaros.compiler.runtime import literal_of, run
+from jacaros.compiler.literals import literal_of
+from jacaros.compiler.searching import run
 from jacaros.terms.plans import trigger
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import Term, Var, functor

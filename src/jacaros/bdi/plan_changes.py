@@ -10,22 +10,13 @@ from jacaros.bdi.functions import known_names
 from jacaros.bdi.internal_action import ActionError
 from jacaros.bdi.rules import Rule
 from jacaros.compiler.lowering import fresh_names, lower
+from jacaros.compiler.outcomes import Failure
 from jacaros.compiler.plan import Plan, label_of, with_subplans
 from jacaros.compiler.reflection import Reflection
-from jacaros.compiler.runtime import Failure
 from jacaros.terms.plans import PLAN, RULE, TRIGGERS, is_body
 from jacaros.terms.text import text
 from jacaros.terms.unifier import resolve
-from jacaros.terms.values import (
-    SELF,
-    String,
-    Term,
-    atom,
-    functor,
-    functor_of,
-    is_list,
-    list_items,
-)
+from jacaros.terms.values import SELF, String, Term, atom, functor, functor_of, is_list, list_items
 
 ERROR = functor("error", 1)
 

@@ -8,7 +8,7 @@ from jacaros.bdi.search_budget import SearchBudget
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.lowering import fresh_names, lower, lower_value
 from jacaros.compiler.predicates import given_positions
-from jacaros.compiler.runtime import run, solve
+from jacaros.compiler.searching import run, solve
 from jacaros.compiler.unit import compile_rule_function, compile_search_function
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, rename, unify
@@ -39,7 +39,7 @@ class Rule:
         self._function: Any = None
 
     def search(self, agent: Any, arguments: tuple[Term, ...], trail: Trail) -> Generator[Any, Any, None]:
-        """A generator of the answers, see `jacaros.compiler.runtime.run`."""
+        """A generator of the answers, see `jacaros.compiler.searching.run`."""
         if self._function is None:
             self._function = self._shared_function()
         budget = agent.beliefs.budget

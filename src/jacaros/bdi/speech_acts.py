@@ -11,7 +11,7 @@ from jacaros.bdi.formulas import solve_formula
 from jacaros.bdi.meta_events import post_new_goal
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import fresh_names, lower_plan
-from jacaros.compiler.runtime import run
+from jacaros.compiler.searching import run
 from jacaros.compiler.triggers import ACHIEVED, trigger
 from jacaros.compiler.unit import Select
 from jacaros.errors import InternalError

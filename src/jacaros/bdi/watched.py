@@ -8,8 +8,8 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.failure_reason import FailureReason
 from jacaros.bdi.intention import GOAL, Frame, Intention
 from jacaros.bdi.internal_action import ActionError
+from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.plan import Plan
-from jacaros.compiler.runtime import own_annotations
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.unifier import rename
 from jacaros.terms.values import BY_SELF, Term, atom, functor

@@ -3,9 +3,9 @@
 from jacaros.asl import nodes
 from jacaros.compiler.answers import undoing
 from jacaros.compiler.building import build, resolved
+from jacaros.compiler.calls import takes_time
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.matching import Then, settle_fresh
-from jacaros.compiler.runtime import takes_time
 from jacaros.compiler.variables import names_in
 
 

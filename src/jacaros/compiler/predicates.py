@@ -3,7 +3,7 @@
 What a generator is made for is a *pattern of use*: which arguments are given.  ``search(agent, t, d, *given)`` yields a
 row for each answer, whose other arguments are computed and never go through a variable.  Rules call the generators of
 other predicates directly, as loops, down to ``NESTED`` of them inside one another (*d* counts down).  What lies deeper is
-searched by `jacaros.compiler.runtime.run` without Python recursion, and so is what goes on while beliefs change: for both
+searched by `jacaros.compiler.searching.run` without Python recursion, and so is what goes on while beliefs change: for both
 there is a second function, which does not call, but yields the generators that it wants to have run.
 """
 

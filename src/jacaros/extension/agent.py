@@ -9,7 +9,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.body.values import to_value
 from jacaros.compiler.lowering import Names, lower
-from jacaros.compiler.runtime import run
+from jacaros.compiler.searching import run
 from jacaros.extension.literal import Literal, literal_of, literal_term, term_of
 from jacaros.extension.views import Event, Intention, Message, Option, Percept
 from jacaros.terms.text import text

@@ -15,7 +15,7 @@ from jacaros.bdi.intention import PLAN, Frame
 from jacaros.bdi.internal_action import ActionError
 from jacaros.bdi.option_selection import options
 from jacaros.bdi.plan_library import PlanLibrary, Selects
-from jacaros.compiler.runtime import Failure
+from jacaros.compiler.outcomes import Failure
 from jacaros.compiler.triggers import Trigger
 from jacaros.compiler.unit import Select
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden

@@ -6,7 +6,7 @@ from jacaros.bdi import act, event, intention, speech_act
 from jacaros.bdi.intention import GOAL, PLAN, Frame
 from jacaros.body.values import to_value
 from jacaros.compiler import plan as compiled
-from jacaros.compiler.runtime import annotations_of_event, literal_of
+from jacaros.compiler.literals import annotations_of_event, literal_of
 from jacaros.env.values import Structure
 from jacaros.extension.literal import Literal
 from jacaros.extension.literal import literal_of as as_literal

@@ -8,8 +8,8 @@ from types import FrameType
 from jacaros.asl.formatter import format_term
 from jacaros.bdi import cycle
 from jacaros.bdi.agent import Agent
+from jacaros.compiler.outcomes import Fail
 from jacaros.compiler.plan import Plan
-from jacaros.compiler.runtime import Fail
 from jacaros.mas.agent_host import AgentHost
 
 _LOOP = "asyncio.events"

@@ -9,8 +9,8 @@ from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.rules import Rule
 from jacaros.bdi.stdlib.terms import without_sources
+from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.lowering import fresh_names, lower
-from jacaros.compiler.runtime import own_annotations
 from jacaros.terms.order import compare
 from jacaros.terms.plans import RULE
 from jacaros.terms.text import text

@@ -15,8 +15,9 @@ from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.plan_terms import bindings_of, variables_of
 from jacaros.bdi.stack import achieve
 from jacaros.bdi.waiting import OWN_SUSPENSION, Waiting
+from jacaros.compiler.literals import literal_of
 from jacaros.compiler.lowering import lower
-from jacaros.compiler.runtime import SUSPENDED, Failure, literal_of
+from jacaros.compiler.outcomes import SUSPENDED, Failure
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.text import text
 from jacaros.terms.unifier import rename, resolve

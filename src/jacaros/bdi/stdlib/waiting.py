@@ -9,8 +9,8 @@ from jacaros.bdi.context import Context
 from jacaros.bdi.event_waits import EventWait
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.waiting import Waiting
+from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.lowering import fresh_names, lower_trigger
-from jacaros.compiler.runtime import own_annotations
 from jacaros.compiler.triggers import Trigger, trigger
 from jacaros.terms.plans import TRIGGERS, body_steps, is_body, step_parts, trigger_parts
 from jacaros.terms.text import text

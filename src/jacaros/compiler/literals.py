@@ -1,0 +1,77 @@
+"""Literals that are put together at run time: of goals and events, with annotations, in namespaces."""
+
+from typing import Any
+
+from jacaros.terms.negation import positive_form
+from jacaros.terms.order import annotation_set
+from jacaros.terms.unifier import resolve
+from jacaros.terms.values import (
+    SOURCE,
+    SOURCE_SELF,
+    Annotated,
+    Functor,
+    Term,
+    annotations_of,
+    atom,
+    bare,
+    functor,
+    list_items,
+)
+
+
+def literal_of(goal: tuple[Any, ...], annotations: Any) -> Term:
+    """The literal of a goal or event, with its annotations."""
+    symbol = goal[0].functor
+    term = (symbol, *goal[1:]) if len(goal) > 1 else symbol
+    found = annotations_of_event(annotations)
+    return Annotated(term, found) if found else term
+
+
+def annotations_of_event(annotations: Any) -> tuple[Term, ...]:
+    """The annotations of an event; those of failure events are made when first asked for."""
+    found: tuple[Term, ...] = annotations if annotations.__class__ is tuple else annotations.annotations()
+    return found
+
+
+def own_annotations(items: tuple[Term, ...], tail: Term = None) -> tuple[Term, ...]:
+    """The annotations of a belief or goal of one's own: ``source(self)`` is added when no source is named."""
+    found = [resolve(i) for i in items]
+    if tail is not None:
+        found.extend(resolve(i) for i in list_items(tail))
+    if not any((a.__class__ is tuple and a[0] is SOURCE) or _is_source(a) for a in found):
+        found.append(SOURCE_SELF)
+    return annotation_set(tuple(found))
+
+
+def _is_source(term: Term) -> bool:
+    inner = bare(term)
+    return inner.__class__ is tuple and inner[0] is SOURCE
+
+
+def resolve_all(terms: tuple[Term, ...]) -> tuple[Term, ...]:
+    """Apply all bindings to each."""
+    return tuple(resolve(t) for t in terms)
+
+
+def positive(term: Term) -> Term:
+    """A negated literal without its negation; annotations are kept."""
+    plain = positive_form(bare(term))
+    annotations = annotations_of(term)
+    return Annotated(plain, annotations) if annotations else plain
+
+
+def namespace_of(symbol: Functor) -> Term:
+    """The name of a functor's namespace, as programs see it."""
+    return atom(symbol.namespace or "default")
+
+
+def namespace_name(term: Term) -> str | None:
+    """The namespace that an atom names."""
+    name = getattr(bare(term), "name", None)
+    return None if name == "default" else name
+
+
+def literal_in(name: str, negated: bool, namespace: str | None, *arguments: Term) -> Term:
+    """A literal whose namespace became known at run time."""
+    symbol = functor(name, len(arguments), negated, namespace)
+    return (symbol, *arguments) if arguments else symbol

@@ -1,0 +1,183 @@
+"""Searches that generated code makes among facts and rules."""
+
+from collections.abc import Generator, Iterator
+from typing import Any, NoReturn
+
+from jacaros.terms.unifier import Trail, each_annotation_match, resolve, undo, unify
+from jacaros.terms.values import Term
+
+Answers = Generator[Any, Any, None]
+
+
+def run(question: Answers, limit: int, allowed: int | None = None) -> Iterator[Any]:
+    """Drive a search generator: a tuple it yields is an answer, a generator is to be run for it.
+
+    The stack of generators is a list, so depth costs no Python recursion.
+
+    Args:
+        question: the generator.
+        limit: how many rules and conditions may be open at the same time.
+        allowed: the limit to name when it is passed, where *limit* is what is left of it.
+
+    Raises:
+        RecursionError: more of them are open.
+    """
+    stack: list[Answers] = []
+    opened = [question]
+    current, answer = question, None
+    try:
+        while True:
+            try:
+                item = current.send(answer)
+            except StopIteration:
+                # Whatever was opened after it was opened on its behalf.
+                while (last := opened.pop()) is not current:
+                    last.close()
+                if not stack:
+                    return
+                current, answer = stack.pop(), None
+                continue
+            if item.__class__ is tuple:
+                if stack:
+                    current, answer = stack.pop(), item
+                else:
+                    yield item
+                    answer = None
+            else:
+                stack.append(current)
+                if not item.gi_suspended:
+                    opened.append(item)
+                    if len(opened) > limit:
+                        too_many_open(limit if allowed is None else allowed)
+                current, answer = item, None
+    finally:
+        # A generator holds the one it asks: freed from the first on, a long chain would overflow the C stack.
+        while opened:
+            opened.pop().close()
+
+
+def deeper(agent: Any, trail: Trail, question: Answers) -> Iterator[Any]:
+    """The rest of a search that is nested too deeply to go on by Python's stack."""
+    return run(question, trail.room, agent.rule_depth)
+
+
+def too_many_open(limit: int) -> NoReturn:
+    """A search has no room left.
+
+    Raises:
+        RecursionError: always.
+    """
+    raise RecursionError(f"more than {limit} rules and conditions are open at once (option rule_depth)")
+
+
+def exists(answers: Iterator[Any], trail: Trail) -> bool:
+    """Whether there is an answer; bindings are taken back."""
+    mark, room = len(trail), trail.room
+    for _ in answers:
+        undo(trail, mark)
+        trail.room = room
+        return True
+    return False
+
+
+def solve(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
+    """Answers of a predicate in the order of its base: facts by unification, rules by their functions."""
+    for entry, _ in list(table.candidates(arguments)):
+        mark = len(trail)
+        if entry.__class__ is tuple:
+            if unify_rows(arguments, entry, trail):
+                yield arguments
+        else:
+            search = entry.search(agent, arguments, trail)
+            while (yield search) is not None:
+                yield arguments
+        undo(trail, mark)
+
+
+def solve_annotated(
+    agent: Any, table: Any, arguments: tuple[Term, ...], items: tuple[Term, ...], tail: Term, trail: Trail
+) -> Answers:
+    """Answers of a predicate that is asked with annotations."""
+    for entry, annotations in list(table.candidates(arguments)):
+        mark = len(trail)
+        if entry.__class__ is tuple:
+            if unify_rows(arguments, entry, trail):
+                for _ in each_annotation_match(items, tail, annotations, None, trail):
+                    yield arguments
+        else:
+            search = entry.search(agent, arguments, trail)
+            while (answer := (yield search)) is not None:
+                held = answer[0] if answer else annotations
+                for _ in each_annotation_match(items, tail, held, None, trail):
+                    yield arguments
+        undo(trail, mark)
+
+
+def solve_held(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
+    """Answers of a predicate as `solve` has them, each as a pair with the annotations that go with it."""
+    for entry, annotations in table.candidates(arguments):
+        mark = len(trail)
+        if entry.__class__ is tuple:
+            if unify_rows(arguments, entry, trail):
+                yield arguments, annotations
+        else:
+            search = entry.search(agent, arguments, trail)
+            while (answer := (yield search)) is not None:
+                yield arguments, (answer[0] if answer else annotations)
+        undo(trail, mark)
+
+
+def facts(
+    table: Any, arguments: tuple[Term, ...], trail: Trail, lasting: bool = False
+) -> Iterator[tuple[Term, ...]]:
+    """The answers of a predicate that are facts, by unification; *lasting* ones stay when beliefs change."""
+    rows = table.rows_like(arguments)
+    for row in list(rows) if lasting else rows:
+        if row.__class__ is tuple:
+            mark = len(trail)
+            if unify_rows(arguments, row, trail):
+                yield arguments
+            undo(trail, mark)
+
+
+def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) -> bool:
+    """Unify arguments pairwise."""
+    for a, b in zip(left, right, strict=True):  # noqa: SIM110 - a generator would cost as much as the rest
+        if a is not b and not unify(a, b, trail):
+            return False
+    return True
+
+
+def still_held(table: Any, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term, ...]]:
+    """The rows of a loop over beliefs: one is fixed ahead, those that are deleted before their turn are left out."""
+    source = iter(rows)
+    ahead = next(source, None)
+    while ahead is not None:
+        current = ahead
+        ahead = next((row for row in source if row in table.rows), None)
+        yield current
+
+
+class Remaining:
+    """The answers of a ``for`` that are still to come: searched for one by one, and plain data when asked for.
+
+    Whoever copies or stores an intention takes `items`; the search is over then.
+    """
+
+    __slots__ = ("_search",)
+
+    def __init__(self, search: Iterator[tuple[Term, ...]]) -> None:
+        self._search = search
+
+    def __iter__(self) -> Iterator[tuple[Term, ...]]:
+        return self._search
+
+    def items(self) -> list[tuple[Term, ...]]:
+        """All answers to come, with the values of the variables that the loop binds."""
+        found = [tuple(resolve(value) for value in answer) for answer in self._search]
+        self._search = iter(found)
+        return found
+
+    def copy(self) -> "Remaining":
+        """The same answers, for a copy of the intention."""
+        return Remaining(iter(self.items()))
