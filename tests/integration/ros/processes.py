@@ -62,8 +62,14 @@ class Program:
 
     @property
     def complaints(self) -> list[str]:
-        """The lines of standard error; that a topic or a message was late on a busy machine is none."""
-        late = ("still listening", "later after its stamp")
+        """The lines of standard error; that something of the graph or a message was late on a busy machine is none."""
+        late = (
+            "[ros] waiting for",
+            "still trying",
+            "[ros] found",
+            "still listening",
+            "later after its stamp",
+        )
         return [line for line in self.errors if not any(text in line for text in late)]
 
     def until(self, condition: Callable[[], object], what: str) -> None:

@@ -42,7 +42,8 @@ def test_a_robot_that_is_killed_and_started_anew_is_navigated_again(
         # A server whose end the graph has not noticed yet may be asked once more, in vain.
         assert failures <= {"action_failed server_lost", "action_failed timeout(5)"}
         # While the server is missing each try has three lines: waiting, missing, found.
-        assert len(agents.complaints) <= 3 * told.count("on my way") + 4, agents.complaints
+        reports = [line for line in agents.errors if line.startswith("[ros]")]
+        assert len(reports) <= 3 * told.count("on my way") + 4, reports
         truth = second.close()
         assert distance(truth.latest(), (3.0, 0.0)) <= 0.3
         assert truth.events_of("bump") == []
@@ -70,6 +71,6 @@ def test_an_agent_that_is_slower_than_its_odometry_thinks_of_what_is_now(
     answers = [answer["data"] for answer in robot.received("/answers")]
     assert all(earlier < later for earlier, later in pairwise(answers)), "never a place from before"
     assert len(answers) < messages / 2, "the agent is slower than its odometry"
-    assert len(answers) - before <= 30, "what was on the way at the end, not what had piled up"
+    assert len(answers) - before <= messages / 10, "what was on the way at the end, not what had piled up"
     agents.stop()
     assert agents.complaints == []

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from processes import Agents, WorldProcess
 
+from jacaros.errors import JacarosError
 from jacaros.inspector import Recording
 
 
@@ -16,11 +17,13 @@ def test_a_recording_has_the_map_and_the_robot(
     agents = run_agents("patrol.asl", "--record", str(record), "--replay", str(replay))
 
     def has_seen_it_drive() -> bool:
-        if not record.exists() or not record.stat().st_size:
+        try:
+            seen = Recording.read(record)
+        except (FileNotFoundError, JacarosError):  # no world in it yet: the graph has not told of one
             return False
-        seen = Recording.read(record)
-        places = {frame.robots[0][:2] for frame in seen.frames if frame.robots}
-        return seen.world.get("bounds") == [-1, -1, 4, 2] and len(places) > 5
+        rows = [frame.robots[0] for frame in seen.frames if frame.robots]
+        places = {row[:2] for row in rows}
+        return seen.world.get("bounds") == [-1, -1, 4, 2] and len(places) > 5 and rows[-1][3] > 0
 
     agents.until(has_seen_it_drive, "the robot's way is recorded")
     agents.stop()
@@ -29,5 +32,5 @@ def test_a_recording_has_the_map_and_the_robot(
     assert recording.robots == ["robot"]
     x, y, _, battery, *_ = recording.frames[-1].robots[0]
     assert min(math.hypot(x - sample.x, y - sample.y) for sample in truth.path()) < 0.3
-    assert 0 < battery <= 75
+    assert 0 < battery <= 100
     assert replay.read_text(encoding="utf-8").startswith("<!doctype html>")

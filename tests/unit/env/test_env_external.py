@@ -79,7 +79,7 @@ def test_a_thread_waits_until_the_artifact_is_free(play):
 
         thread = threading.Thread(target=work)
         thread.start()
-        assert ready.wait(10.0)
+        assert ready.wait(60.0)
         await holding.wait()
         await asyncio.get_running_loop().run_in_executor(None, thread.join)
         assert stage.property(sensor, "level") == (10,)
@@ -95,11 +95,11 @@ def test_operations_wait_for_the_end_of_a_session(play):
         def work():
             with it.external_session():
                 inside.set()
-                assert go.wait(10.0)
+                assert go.wait(60.0)
                 it.update_property("level", 7)
 
         working = in_a_thread(work)
-        await in_a_thread(inside.wait, 10.0)
+        await in_a_thread(inside.wait, 60.0)
         call = stage.call(sensor, "hold", 0)
         assert call.outcome is None
         go.set()

@@ -23,7 +23,7 @@ class Blocking(Artifact):
         self.signal_to("bob", "psst")
         self.commit()
         self.inside.set()
-        assert self.gate.wait(10.0)
+        assert self.gate.wait(60.0)
         self.update_property("count", self.value("count") + 1)
         self.define_property("done", True)
         self.start("inc")
@@ -51,7 +51,7 @@ def blocking_of(stage):
 
 async def until_inside(stage):
     """Let the worker thread come to its gate; virtual time stands still meanwhile."""
-    await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 10.0)
+    await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 60.0)
 
 
 def test_it_runs_in_another_thread_and_publishes_once_when_it_ends(play):

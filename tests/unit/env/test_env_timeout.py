@@ -40,7 +40,7 @@ class Slow(Artifact):
 
     @operation(threaded=True)
     def block(self):
-        assert self.gate.wait(10.0)
+        assert self.gate.wait(60.0)
 
     @operation
     def open(self):
