@@ -15,25 +15,24 @@ def test_names_are_resolved_in_the_namespace(graph: Any) -> None:
     assert robot.resolve("~x") == "/robot1/y"
 
 
-def test_namespaces_reach_the_graph(graph: Any, pair: Pair) -> None:
+def test_namespaces_reach_the_graph(graph: Any, pair: Pair, own_name: str) -> None:
     _, right = pair
-    robot = graph.peer("brain2", namespace="/robot2", remap={"scan": "/other/scan"})
-    assert robot.advertise("odom", "std_msgs/msg/Int32") == "/robot2/odom"
-    assert robot.advertise("scan", "std_msgs/msg/Int32") == "/other/scan"
-    assert robot.serve("~add") == "/robot2/brain2/add"
-    right.subscribe("/robot2/odom", "std_msgs/msg/Int32")
-    right.subscribe("/other/scan", "std_msgs/msg/Int32")
-    for written, absolute in (("odom", "/robot2/odom"), ("scan", "/other/scan")):
+    robot = graph.peer("brain2", namespace=f"/{own_name}", remap={"scan": f"/other/{own_name}"})
+    assert robot.advertise("odom", "std_msgs/msg/Int32") == f"/{own_name}/odom"
+    assert robot.advertise("scan", "std_msgs/msg/Int32") == f"/other/{own_name}"
+    assert robot.serve("~add") == f"/{own_name}/brain2/add"
+    for written, absolute in (("odom", f"/{own_name}/odom"), ("scan", f"/other/{own_name}")):
+        right.subscribe(absolute, "std_msgs/msg/Int32")
         graph.wait_until(lambda w=written: robot.subscription_count(w) == 1, "they know each other")
         graph.wait_until(lambda a=absolute: right.publisher_count(a) == 1, "they know each other")
         robot.publish(written, {"data": 5})
         graph.wait_until(lambda a=absolute: right.received(a), "the message arrives")
-    assert right.call("/robot2/brain2/add", {"a": 1, "b": 2}, timeout=60) == {"sum": 3}
+    assert right.call(f"/{own_name}/brain2/add", {"a": 1, "b": 2}, timeout=60) == {"sum": 3}
 
 
-def test_two_robots_do_not_hear_each_other(graph: Any) -> None:
-    one = graph.peer("one", namespace="r1")
-    two = graph.peer("two", namespace="r2")
+def test_two_robots_do_not_hear_each_other(graph: Any, own_name: str) -> None:
+    one = graph.peer("one", namespace=f"{own_name}/r1")
+    two = graph.peer("two", namespace=f"{own_name}/r2")
     for robot in (one, two):
         robot.advertise("cmd", "std_msgs/msg/String")
         robot.subscribe("cmd", "std_msgs/msg/String")

@@ -20,9 +20,9 @@ def having(peer: Any, name: str, value: Any) -> str:
 
 
 @pytest.fixture
-def name(request: pytest.FixtureRequest) -> str:
+def name(own_name: str) -> str:
     """The name of a parameter that belongs to this test."""
-    return str(request.node.originalname)
+    return own_name
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,9 @@ HALF = math.sqrt(0.5)
 
 
 @pytest.fixture
-def frame(request: pytest.FixtureRequest) -> str:
+def frame(own_name: str) -> str:
     """The beginning of names of frames that belong to this test."""
-    return str(request.node.originalname)
+    return own_name
 
 
 def hearing(graph: Any, pair: Pair, frame: str) -> Pair:
