@@ -45,7 +45,8 @@ from jacaros.compiler.triggers import trigger
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.plans import is_body
-from jacaros.terms.unifier import ATOMIC, free_variables, rename, resolve, undo, unify
+from jacaros.terms.substitution import ATOMIC, free_variables, rename, resolve
+from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import (
     BY_SELF,
     Functor,

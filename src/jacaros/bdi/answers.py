@@ -7,7 +7,7 @@ from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.speech_acts import answer
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import trigger
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import BY_SELF, Functor, Term, atom, functor
 
 _ANSWER = trigger("+", "", functor("answer", 0, namespace="jacaros"))

@@ -7,7 +7,8 @@ from typing import Any
 from jacaros.bdi.rules import OpenFact, Search, Searches
 from jacaros.bdi.search_budget import SearchBudget
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import ATOMIC, Trail, equal, is_key, resolve
+from jacaros.terms.substitution import ATOMIC, equal, is_key, resolve
+from jacaros.terms.unifier import Trail
 from jacaros.terms.values import (
     BY_SELF,
     SOURCE,

@@ -14,7 +14,8 @@ from jacaros.compiler.outcomes import Failure
 from jacaros.compiler.searching import unify_rows
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import ATOMIC, free_variables, is_key, rename, resolve, undo, unify_annotations
+from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
+from jacaros.terms.unifier import undo, unify_annotations
 from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, atom, bare, functor
 
 Annotations = tuple[Term, ...]

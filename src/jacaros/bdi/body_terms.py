@@ -14,7 +14,7 @@ from jacaros.compiler.triggers import trigger
 from jacaros.compiler.unit import CodeUnit, install_body
 from jacaros.terms.plans import PLAN as PLAN_TERM
 from jacaros.terms.plans import RULE, TRIGGERS, is_body
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import (
     ACTION,
     BY_SELF,

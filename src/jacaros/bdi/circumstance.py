@@ -21,7 +21,8 @@ from jacaros.bdi.search_budget import SearchBudget
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.triggers import Trigger
-from jacaros.terms.unifier import Trail, rename, unify
+from jacaros.terms.substitution import rename
+from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import Term, functor
 
 

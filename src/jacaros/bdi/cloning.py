@@ -9,7 +9,7 @@ from jacaros.bdi.plan_changes import look_at_plans
 from jacaros.compiler.function import FIRST_SLOT
 from jacaros.compiler.searching import Remaining
 from jacaros.terms.detaching import detached
-from jacaros.terms.unifier import rename
+from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term
 
 

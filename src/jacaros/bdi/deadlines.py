@@ -8,7 +8,7 @@ from jacaros.bdi.failure import error_terms
 from jacaros.bdi.failure_reason import nowhere
 from jacaros.bdi.intention import Intention
 from jacaros.compiler.literals import literal_of
-from jacaros.terms.unifier import rename
+from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term, bare, functor
 
 HARD_DEADLINE = functor("hard_deadline", 1)

@@ -16,8 +16,8 @@ from jacaros.compiler.outcomes import Fail, Failure
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import display, text
-from jacaros.terms.unifier import resolve
 from jacaros.terms.values import String, Term, Var, atom, functor
 
 _ENV_FAILURE_REASON, _BIND_PARAM_ERROR = functor("env_failure_reason", 1), functor("bind_param_error", 2)

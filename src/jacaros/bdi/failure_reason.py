@@ -14,8 +14,8 @@ from jacaros.compiler.lowering import lower
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.order import annotation_set
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import resolve
 from jacaros.terms.values import Functor, String, Term, Var, functor, functor_of
 
 ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)

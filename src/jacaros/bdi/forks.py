@@ -10,7 +10,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import GOAL, STEP, Frame, Intention
 from jacaros.compiler.outcomes import SUSPENDED
 from jacaros.compiler.searching import Remaining
-from jacaros.terms.unifier import ATOMIC, rename
+from jacaros.terms.substitution import ATOMIC, rename
 from jacaros.terms.values import Annotated, Term, Var
 
 

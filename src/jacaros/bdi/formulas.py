@@ -14,7 +14,8 @@ from jacaros.compiler.deconstruction import deconstruct
 from jacaros.compiler.searching import exists, run, solve, solve_annotated
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.order import annotation_set, at_most, less
-from jacaros.terms.unifier import Trail, equal, rename, resolve, undo, unify
+from jacaros.terms.substitution import equal, rename, resolve
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import (
     ACTION,
     FALSE,

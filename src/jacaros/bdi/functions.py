@@ -9,8 +9,9 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
 from jacaros.compiler.searching import run
 from jacaros.terms.arithmetic import AGENT, ArithmeticFault, settle
+from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import free_variables, resolve, undo
+from jacaros.terms.unifier import undo
 from jacaros.terms.values import ACTION, Functor, Term, Var, functor
 
 

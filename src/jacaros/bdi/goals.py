@@ -20,7 +20,8 @@ from jacaros.bdi.finishing import pop_finished
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.stack import achieve, cut, pending_event, remove_event
 from jacaros.compiler.literals import literal_of
-from jacaros.terms.unifier import rename, undo, unify
+from jacaros.terms.substitution import rename
+from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term
 
 

@@ -6,7 +6,7 @@
             if ctx.unify(item, candidate):
                 yield
 
-The arguments arrive with all bindings applied (`jacaros.terms.unifier.resolve`); unbound ones are `Var`.  A plain
+The arguments arrive with all bindings applied (`jacaros.terms.substitution.resolve`); unbound ones are `Var`.  A plain
 function succeeds unless it returns False.  A generator (``backtracks``) yields once for every answer; bindings
 made before a yield are taken back before the next one is looked for.  A function that suspends the intention
 (``suspends``) calls `Context.suspend` and returns what that gave.

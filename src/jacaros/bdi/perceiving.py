@@ -10,7 +10,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
 from jacaros.errors import InternalError
-from jacaros.terms.unifier import ATOMIC
+from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import Functor, Term
 
 Annotations = tuple[Term, ...]

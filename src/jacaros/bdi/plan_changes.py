@@ -14,8 +14,8 @@ from jacaros.compiler.outcomes import Failure
 from jacaros.compiler.plan import Plan, label_of, with_subplans
 from jacaros.compiler.reflection import Reflection
 from jacaros.terms.plans import PLAN, RULE, TRIGGERS, is_body
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import resolve
 from jacaros.terms.values import SELF, String, Term, atom, functor, functor_of, is_list, list_items
 
 ERROR = functor("error", 1)

@@ -4,7 +4,7 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import PLAN, Frame
 from jacaros.compiler.lowering import fresh_names, lower_plan
 from jacaros.compiler.plan import Plan
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import Term, atom, make_list, structure
 
 

@@ -10,8 +10,9 @@ from jacaros.compiler.lowering import fresh_names, lower, lower_value
 from jacaros.compiler.predicates import given_positions
 from jacaros.compiler.searching import run, solve
 from jacaros.compiler.unit import compile_rule_function, compile_search_function
+from jacaros.terms.substitution import rename
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, rename, unify
+from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import BY_SELF, Annotated, Functor, Term, Var, annotations_of, arguments_of
 
 Search = Callable[..., Iterator[tuple[Term, ...]]]

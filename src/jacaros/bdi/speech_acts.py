@@ -17,8 +17,9 @@ from jacaros.compiler.unit import Select
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN, TRIGGERS, body_steps, step_parts
+from jacaros.terms.substitution import is_flat, rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import is_flat, rename, resolve, undo
+from jacaros.terms.unifier import undo
 from jacaros.terms.values import (
     BY_SELF,
     CONS,

@@ -10,7 +10,7 @@ from jacaros.bdi.belief_base import Row, literal, take_away
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.rules import OpenFact
 from jacaros.terms.detaching import detached, holds_collection
-from jacaros.terms.unifier import is_key
+from jacaros.terms.substitution import is_key
 from jacaros.terms.values import Functor, Term
 
 Annotations = tuple[Term, ...]

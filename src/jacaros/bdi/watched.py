@@ -11,7 +11,7 @@ from jacaros.bdi.internal_action import ActionError
 from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import trigger
-from jacaros.terms.unifier import rename
+from jacaros.terms.substitution import rename
 from jacaros.terms.values import BY_SELF, Term, atom, functor
 
 _WATCHED = trigger("+", "", functor("watched", 0, namespace="jacaros"))

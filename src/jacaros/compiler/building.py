@@ -9,7 +9,7 @@ from jacaros.compiler.lowering import lower
 from jacaros.compiler.variables import variables_in
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, BODY_TERM, NO_LABEL, PLAN, RULE, TRIGGER
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, Functor, Term, atom, functor
 from jacaros.terms.values import PLAN as PLAN_KIND
 

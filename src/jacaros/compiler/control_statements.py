@@ -11,7 +11,7 @@ from jacaros.compiler.conditions import question
 from jacaros.compiler.constant import Constant
 from jacaros.compiler.function import Frame, FunctionBuilder
 from jacaros.compiler.variables import names_in, nodes_in
-from jacaros.terms.unifier import ATOMIC
+from jacaros.terms.substitution import ATOMIC
 
 
 def _if(compiler: BodyCompiler, step: nodes.If, name: str, next_name: str) -> None:

@@ -4,7 +4,8 @@ from jacaros.compiler.literals import namespace_name
 from jacaros.terms import plans
 from jacaros.terms.negation import qualify
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import Trail, resolve, unify
+from jacaros.terms.substitution import resolve
+from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import (
     CONS,
     Annotated,

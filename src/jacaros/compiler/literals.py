@@ -4,7 +4,7 @@ from typing import Any
 
 from jacaros.terms.negation import positive_form
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import (
     SOURCE,
     SOURCE_SELF,

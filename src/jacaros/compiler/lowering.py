@@ -8,7 +8,7 @@ from jacaros.terms import plans
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.negation import qualify
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import (
     ACTION,
     ARITHMETIC,

@@ -5,7 +5,7 @@ from jacaros.compiler.building import as_name, build, constant_value, is_number,
 from jacaros.compiler.function import FunctionBuilder
 from jacaros.compiler.matching import Then, match_all
 from jacaros.compiler.variables import names_in
-from jacaros.terms.unifier import is_key
+from jacaros.terms.substitution import is_key
 
 
 class QueryArguments:

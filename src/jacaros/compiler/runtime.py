@@ -43,17 +43,8 @@ from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import affirm, binary, divide, integer_divide, negate, power, remainder
 from jacaros.terms.negation import qualify
 from jacaros.terms.order import annotation_set, at_most, less
-from jacaros.terms.unifier import (
-    ATOMIC,
-    Trail,
-    equal,
-    free_variables,
-    rename,
-    resolve,
-    undo,
-    unify,
-    unify_annotations,
-)
+from jacaros.terms.substitution import ATOMIC, equal, free_variables, rename, resolve
+from jacaros.terms.unifier import Trail, undo, unify, unify_annotations
 from jacaros.terms.values import BY_SELF, CONS, Annotated, Functor, String, Var, deref, make_list
 
 NESTED = 100

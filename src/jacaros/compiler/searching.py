@@ -3,7 +3,8 @@
 from collections.abc import Generator, Iterator
 from typing import Any, NoReturn
 
-from jacaros.terms.unifier import Trail, each_annotation_match, resolve, undo, unify
+from jacaros.terms.substitution import resolve
+from jacaros.terms.unifier import Trail, each_annotation_match, undo, unify
 from jacaros.terms.values import Term
 
 Answers = Generator[Any, Any, None]

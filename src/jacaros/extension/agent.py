@@ -12,8 +12,9 @@ from jacaros.compiler.lowering import Names, lower
 from jacaros.compiler.searching import run
 from jacaros.extension.literal import Literal, literal_of, literal_term, term_of
 from jacaros.extension.views import Event, Intention, Message, Option, Percept
+from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import rename, resolve, undo
+from jacaros.terms.unifier import undo
 
 
 class Agent:

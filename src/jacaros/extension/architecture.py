@@ -12,7 +12,7 @@ from jacaros.extension.agent import Agent
 from jacaros.extension.literal import Literal, literal_term, term_of
 from jacaros.extension.views import Message
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import SOURCE_PERCEPT, String, Term, Var
 
 

@@ -16,7 +16,7 @@ from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from, literal_of, literal_term
 from jacaros.terms.order import annotation_set
-from jacaros.terms.unifier import is_key
+from jacaros.terms.substitution import is_key
 from jacaros.terms.values import Functor, Term
 
 Annotations = tuple[Term, ...]

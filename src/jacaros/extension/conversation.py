@@ -9,7 +9,7 @@ from jacaros.body.values import to_value
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.extension.literal import term_of
 from jacaros.extension.views import Message, value_of
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import PLAIN, String, Term, functor_of, is_list, list_items, make_list
 
 _ABOUT_PLANS = frozenset({"tellHow", "untellHow", "askHow", "tell-how", "untell-how", "ask-how"})

@@ -7,17 +7,9 @@ from jacaros.body.values import Outputs, References, symbol_name, to_term, to_va
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.env.values import Atom, Structure
 from jacaros.terms.order import annotation_set
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import resolve
-from jacaros.terms.values import (
-    Annotated,
-    Functor,
-    Term,
-    annotations_of,
-    arguments_of,
-    functor,
-    functor_of,
-)
+from jacaros.terms.values import Annotated, Functor, Term, annotations_of, arguments_of, functor, functor_of
 
 REFERENCES = References()
 """The opaque references of Python code: to the same object always the same."""

@@ -15,7 +15,7 @@ from jacaros.errors import JacarosError
 from jacaros.extension.conversation import ReceivedMessage, content_of, heard
 from jacaros.extension.in_environment import InEnvironment
 from jacaros.extension.literal import Literal
-from jacaros.terms.unifier import rename
+from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term
 
 

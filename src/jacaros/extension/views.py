@@ -10,8 +10,8 @@ from jacaros.compiler.literals import annotations_of_event, literal_of
 from jacaros.env.values import Structure
 from jacaros.extension.literal import Literal
 from jacaros.extension.literal import literal_of as as_literal
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import resolve
 from jacaros.terms.values import Term
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.mas.ports import Mailbox
 from jacaros.terms.detaching import detached, holds_collection
-from jacaros.terms.unifier import is_ground, rename
+from jacaros.terms.substitution import is_ground, rename
 
 
 class Mailboxes:

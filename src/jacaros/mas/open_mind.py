@@ -10,8 +10,9 @@ from jacaros.bdi.agent import Agent
 from jacaros.body.values import to_value
 from jacaros.compiler.lowering import Names, lower_value
 from jacaros.terms.order import annotation_set
+from jacaros.terms.substitution import is_ground, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import is_ground, resolve, undo
+from jacaros.terms.unifier import undo
 from jacaros.terms.values import SOURCE_PERCEPT, Term, annotations_of, bare
 
 

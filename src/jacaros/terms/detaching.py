@@ -1,7 +1,7 @@
 """Copies of terms for another agent: sets, maps and queues, which are shared by reference inside one, are copied too."""
 
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import CONS, Annotated, Term, deref, list_items, make_list
 
 _COLLECTIONS = (SetValue, MapValue, QueueValue)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from jacaros.terms import arithmetic
 from jacaros.terms.arithmetic import ArithmeticFault, functions, settle
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.unifier import free_variables, resolve
+from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.values import Annotated, String, Term, is_list, list_items
 
 

@@ -17,7 +17,7 @@ from jacaros.terms.plans import (
     trigger_parts,
 )
 from jacaros.terms.plans import PLAN as PLAN_TERM
-from jacaros.terms.unifier import resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,

@@ -4,8 +4,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from jacaros.bdi.act import Act, Completion
+from jacaros.terms.substitution import free_variables, rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, free_variables, rename, resolve, undo, unify
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import ACTION, String, Term, atom, functor, functor_of
 
 ERROR_MSG = functor("error_msg", 1)

@@ -34,7 +34,8 @@ from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules
-from jacaros.terms.unifier import Trail, rename, undo, unify
+from jacaros.terms.substitution import rename
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term
 from jacaros.testing.port import HarnessPort
 from jacaros.testing.recorded import Action, RecordedAct, SentMessage

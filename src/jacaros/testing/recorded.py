@@ -7,8 +7,8 @@ from jacaros.bdi.act import Act, Completion
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.body.values import References, to_term, to_value
 from jacaros.compiler.lowering import lower_value
+from jacaros.terms.substitution import free_variables
 from jacaros.terms.text import text
-from jacaros.terms.unifier import free_variables
 from jacaros.terms.values import Term, Var
 from jacaros.testing.fakes import failed
 

@@ -6,8 +6,8 @@ from recording_host import RecordingHost, believed, mind
 from jacaros.asl.loader import parse_term
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import lower_value
+from jacaros.terms.substitution import is_flat
 from jacaros.terms.text import text
-from jacaros.terms.unifier import is_flat
 
 
 def message(performative: str, content: str, reply: str | None = None) -> SpeechAct:

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from jacaros.body.values import References, atom_of, to_term, to_value
 from jacaros.env.values import Atom, Structure, plain
 from jacaros.terms.collections import MapValue, SetValue
+from jacaros.terms.substitution import equal
 from jacaros.terms.text import text
-from jacaros.terms.unifier import equal
 from jacaros.terms.values import Reference, Term, atom, functor, make_list
 
 NAMES = st.text(min_size=1).filter(lambda name: name not in ("true", "false"))

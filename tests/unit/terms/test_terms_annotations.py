@@ -1,8 +1,9 @@
 import pytest
 
 from jacaros.terms.order import annotation_set
+from jacaros.terms.substitution import equal
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, each_annotation_match, equal, unify
+from jacaros.terms.unifier import Trail, each_annotation_match, unify
 from jacaros.terms.values import Annotated, Term, Var, atom, make_list, structure
 
 A, B, C = atom("a"), atom("b"), atom("c")

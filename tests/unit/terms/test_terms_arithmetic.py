@@ -7,8 +7,9 @@ import jacaros.terms.functions  # noqa: F401 - the functions of the language
 from jacaros.terms import arithmetic
 from jacaros.terms.arithmetic import ADD, ArithmeticFault, binary, functions, negate, settle
 from jacaros.terms.collections import MapValue, SetValue
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, resolve, unify
+from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import ARITHMETIC, FUNCTION, String, Term, Var, atom, functor, make_list, structure
 
 INFINITY = math.inf

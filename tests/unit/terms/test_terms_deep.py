@@ -8,8 +8,9 @@ from jacaros.terms.arithmetic import ADD
 from jacaros.terms.collections import MapValue, SetValue
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.order import annotation_set, compare, sorted_terms
+from jacaros.terms.substitution import equal, free_variables, is_ground, is_key, rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, equal, free_variables, is_ground, is_key, rename, resolve, unify
+from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import Annotated, Term, Var, atom, list_items, make_list, structure
 
 pytestmark = pytest.mark.whole_stack

@@ -7,8 +7,8 @@ from hypothesis import given
 from jacaros.terms.arithmetic import ADD
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.order import at_most, compare, less, sorted_terms
+from jacaros.terms.substitution import equal
 from jacaros.terms.text import text
-from jacaros.terms.unifier import equal
 from jacaros.terms.values import Annotated, Reference, String, Term, Var, atom, functor, make_list, structure
 
 

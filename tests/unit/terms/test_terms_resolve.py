@@ -1,8 +1,9 @@
 from drawn_terms import any_plans, build, ground_plans, plans
 from hypothesis import given
 
+from jacaros.terms.substitution import equal, free_variables, is_ground, rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, equal, free_variables, is_ground, rename, resolve, undo, unify
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Annotated, Var, atom, make_list, structure
 
 

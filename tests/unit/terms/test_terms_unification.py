@@ -1,8 +1,9 @@
 from drawn_terms import any_plans, build, ground_plans, plans
 from hypothesis import given
 
+from jacaros.terms.substitution import equal, free_variables, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, equal, free_variables, resolve, undo, unify
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Annotated, String, Var, atom, functor, make_list, structure
 
 

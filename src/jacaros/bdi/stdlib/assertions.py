@@ -15,8 +15,9 @@ from jacaros.bdi.internal_action import ActionError, internal_action
 from jacaros.bdi.probe import Assertion, Probe
 from jacaros.errors import InternalError
 from jacaros.terms.collections import QueueValue, SetValue
+from jacaros.terms.substitution import equal
 from jacaros.terms.text import display, text
-from jacaros.terms.unifier import Trail, equal, undo, unify
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import FALSE, TRUE, Term, functor_of, is_list, list_items
 
 _SHOWN = 8

@@ -13,8 +13,9 @@ from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.terms.order import compare
 from jacaros.terms.plans import RULE
+from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import rename, resolve, undo, unify, unify_annotations
+from jacaros.terms.unifier import undo, unify, unify_annotations
 from jacaros.terms.values import FALSE, TRUE, Term, bare, functor_of, make_list
 
 

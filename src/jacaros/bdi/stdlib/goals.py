@@ -19,8 +19,8 @@ from jacaros.compiler.literals import literal_of
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.outcomes import SUSPENDED, Failure
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
+from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import rename, resolve
 from jacaros.terms.values import (
     Annotated,
     String,

@@ -10,8 +10,9 @@ from jacaros.bdi.stdlib.java_regex import replace_all
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.deep import as_key
 from jacaros.terms.order import compare, sorted_terms
+from jacaros.terms.substitution import equal, is_ground
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, equal, is_ground, undo, unify
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import CONS, NIL, Functor, String, Term, Var, deref, is_list, list_items, make_list
 
 

@@ -7,8 +7,8 @@ from jacaros.bdi.internal_action import ActionError, Written, WrongArguments, in
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.speech_acts import from_sender
 from jacaros.bdi.waiting import Waiting
+from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import ATOMIC, is_flat, rename, resolve
 from jacaros.terms.values import (
     PLAIN,
     Functor,

@@ -8,8 +8,8 @@ from jacaros.bdi.intention import PLAN
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import characters, string, whole
 from jacaros.errors import JacarosError
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import display, text
-from jacaros.terms.unifier import resolve
 from jacaros.terms.values import FALSE, TRUE, Functor, String, Term, Var
 
 _LEVELS = {"severe": "error", "warning": "warning", "fine": "debug", "finer": "debug", "finest": "debug"}

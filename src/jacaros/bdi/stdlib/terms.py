@@ -7,7 +7,7 @@ from jacaros.bdi.intention import STEP
 from jacaros.bdi.internal_action import internal_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN, body_steps, is_body, step_parts
-from jacaros.terms.unifier import rename
+from jacaros.terms.substitution import rename
 from jacaros.terms.values import (
     SOURCE,
     Annotated,

@@ -6,7 +6,7 @@ from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import internal_action
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.plans import RULE, is_body
-from jacaros.terms.unifier import is_ground
+from jacaros.terms.substitution import is_ground
 from jacaros.terms.values import (
     ACTION,
     ARITHMETIC,

@@ -13,8 +13,8 @@ from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.lowering import fresh_names, lower_trigger
 from jacaros.compiler.triggers import Trigger, trigger
 from jacaros.terms.plans import TRIGGERS, body_steps, is_body, step_parts, trigger_parts
+from jacaros.terms.substitution import rename
 from jacaros.terms.text import text
-from jacaros.terms.unifier import rename
 from jacaros.terms.values import String, Term, atom, deref, functor
 
 ERROR = functor("error", 1)

@@ -14,7 +14,8 @@ from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.embedding.stream import Stream
 from jacaros.mas.embedding.waits import Waits
 from jacaros.mas.open_mind import question, values_of
-from jacaros.terms.unifier import Trail, rename, undo, unify
+from jacaros.terms.substitution import rename
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term, bare, is_list, list_items
 
 Send = Callable[[SpeechAct], bool]

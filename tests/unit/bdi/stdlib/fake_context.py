@@ -9,8 +9,9 @@ import jacaros.bdi.stdlib  # noqa: F401 - fills STANDARD
 from jacaros.bdi.internal_action import STANDARD
 from jacaros.bdi.options import Options
 from jacaros.errors import JacarosError
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, resolve, undo, unify
+from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import String, Term, Var, atom, make_list, structure
 
 

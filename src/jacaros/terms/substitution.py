@@ -1,0 +1,277 @@
+"""Terms with all bindings applied: their values, copies with fresh variables, and when two are the same."""
+
+from typing import Any
+
+from jacaros.terms.arithmetic import settle
+from jacaros.terms.deep import Turns, rebuild
+from jacaros.terms.order import annotation_set
+from jacaros.terms.values import (
+    ARITHMETIC,
+    CONS,
+    FUNCTION,
+    NIL,
+    Annotated,
+    Functor,
+    String,
+    Term,
+    Var,
+    deref,
+    make_list,
+)
+
+ATOMIC = frozenset({float, String, Functor})
+"""Classes of values that hold no variables and evaluate to themselves."""
+HOLDERS = frozenset({tuple, Annotated})
+"""Classes of values that may hold variables."""
+
+
+def resolve(term: Term) -> Term:
+    """Apply all bindings: variables replaced by their values, arithmetic evaluated.
+
+    The term itself is returned when there is nothing to replace.  Unbound variables stay as they are.
+    """
+    kind = term.__class__
+    if kind in ATOMIC:
+        return term
+    try:
+        if kind is Var:
+            value = deref(term)
+            return value if value.__class__ is Var else resolve(value)
+        if kind is tuple:
+            return _resolve_list(term) if term[0] is CONS else _resolve_structure(term)
+        if kind is Annotated:
+            return _resolve_annotated(term)
+    except RecursionError:
+        return rebuild(term, _itself, _settled, _annotate)
+    return term
+
+
+def _itself(term: Term) -> Term:
+    return term
+
+
+def _settled(term: Term) -> Term:
+    """A structure whose arguments are resolved; arithmetic is evaluated."""
+    return settle(term) if term[0].kind in (ARITHMETIC, FUNCTION) else term
+
+
+def _resolve_structure(term: Term) -> Term:
+    changed = False
+    parts = [term[0]]
+    for argument in term[1:]:
+        new = argument if argument.__class__ in ATOMIC else resolve(argument)
+        changed = changed or new is not argument
+        parts.append(new)
+    if changed:
+        term = tuple(parts)
+    kind = term[0].kind
+    if kind in (ARITHMETIC, FUNCTION):
+        return settle(term)
+    return term
+
+
+def _resolve_list(term: Term) -> Term:
+    heads: list[Term] = []
+    changed = False
+    cell = term
+    turns: Turns | None = None
+    while cell.__class__ is tuple and cell[0] is CONS:
+        head = cell[1]
+        new = head if head.__class__ in ATOMIC else resolve(head)
+        changed = changed or new is not head
+        heads.append(new)
+        tail = cell[2]
+        if tail.__class__ is Var:
+            if turns is None:
+                turns = Turns()
+            turns.pass_by(tail)
+            cell = deref(tail)
+            changed = changed or cell is not tail
+        else:
+            cell = tail
+    if cell.__class__ is not Functor and cell.__class__ is not Var:
+        new = resolve(cell)
+        changed = changed or new is not cell
+        cell = new
+    return make_list(heads, cell) if changed else term
+
+
+def _resolve_annotated(term: Annotated) -> Term:
+    annotations = tuple(resolve(a) for a in term.annotations)
+    return _annotate(resolve(term.term), annotations, None if term.tail is None else resolve(term.tail))
+
+
+def _annotate(inner: Term, annotations: tuple[Term, ...], tail: Term) -> Term:
+    """A resolved term with resolved annotations."""
+    if tail is not None:
+        annotations, tail = with_tail(annotations, tail)
+    if inner.__class__ is Annotated:
+        annotations += inner.annotations
+        inner = inner.term
+    annotations = annotation_set(annotations)
+    if not annotations and tail is None:
+        return inner
+    return Annotated(inner, annotations, tail)
+
+
+def with_tail(annotations: tuple[Term, ...], tail: Term) -> tuple[tuple[Term, ...], Term]:
+    """The annotations together with those of the tail, and what is unbound of it."""
+    tail = deref(tail)
+    if tail is None or tail.__class__ is Var:
+        return annotations, tail
+    more: list[Term] = []
+    while tail.__class__ is tuple and tail[0] is CONS:
+        more.append(tail[1])
+        tail = deref(tail[2])
+    return annotation_set((*annotations, *more)), tail if tail.__class__ is Var else None
+
+
+def is_flat(term: Term) -> bool:
+    """Whether the term is an atom, or a structure of atoms, numbers and strings: nothing in it can be bound or evaluated.
+
+    A quick test for the most frequent terms; False does not say that there are variables.
+    """
+    if term.__class__ is not tuple:
+        return term.__class__ is Functor and not term.kind
+    if term[0].kind:
+        return False
+    for part in term:  # noqa: SIM110 - twice as fast as `all`
+        if part.__class__ not in ATOMIC:
+            return False
+    return True
+
+
+def is_ground(term: Term) -> bool:
+    """Whether the term holds no unbound variable."""
+    return is_flat(term) or not free_variables(term)
+
+
+def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
+    """The unbound variables of a term, each once, in order of appearance."""
+    found = [] if found is None else found
+    met = {id(variable) for variable in found}
+    stack = [term]
+    while stack:
+        term = stack.pop()
+        kind = term.__class__
+        if kind in ATOMIC:
+            continue
+        if kind is Var:
+            if id(term) not in met:
+                met.add(id(term))
+                if term.ref is None:
+                    found.append(term)
+                else:
+                    stack.append(term.ref)
+        elif kind is tuple:
+            stack.extend(reversed(term[1:]))
+        elif kind is Annotated:
+            if term.tail is not None:
+                stack.append(term.tail)
+            stack.extend(reversed(term.annotations))
+            stack.append(term.term)
+    return found
+
+
+def rename(term: Term, names: dict[Var, Var] | None = None) -> Term:
+    """A copy with fresh variables in place of the unbound ones; ground terms are returned as they are."""
+    if is_flat(term):
+        return term
+    term = resolve(term)
+    if term.__class__ in ATOMIC or not free_variables(term):
+        return term
+    return _rename(term, {} if names is None else names)
+
+
+def replace_variable(term: Term, variable: Var, value: Var) -> Term:
+    """The resolved term with another variable in the place of this one."""
+    return _rename(resolve(term), _Alone({variable: value}))
+
+
+class _Alone(dict[Var, Var]):
+    """New names for the variables it holds; all others keep theirs."""
+
+    def get(self, key: Var, default: Any = None) -> Any:
+        del default
+        return dict.get(self, key, key)
+
+
+def _rename(term: Term, names: dict[Var, Var]) -> Term:
+    try:
+        return _renamed(term, names)
+    except RecursionError:
+        return rebuild(term, lambda variable: _renamed(variable, names), _itself, Annotated)
+
+
+def _renamed(term: Term, names: dict[Var, Var]) -> Term:
+    kind = term.__class__
+    if kind is Var:
+        fresh = names.get(term)
+        if fresh is None:
+            fresh = names[term] = Var(term.name)
+        return fresh
+    if kind is tuple:
+        if term[0] is CONS:
+            heads = []
+            while term.__class__ is tuple and term[0] is CONS:
+                heads.append(_rename(term[1], names))
+                term = term[2]
+            return make_list(heads, term if term is NIL else _rename(term, names))
+        return (term[0], *(_rename(a, names) for a in term[1:]))
+    if kind is Annotated:
+        tail = None if term.tail is None else _rename(term.tail, names)
+        return Annotated(_rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail)
+    return term
+
+
+def equal(left: Term, right: Term) -> bool:
+    """The relation ``==``: the same term after applying all bindings, annotations included."""
+    left, right = resolve(left), resolve(right)
+    if left.__class__ is not right.__class__:
+        return False
+    try:
+        return bool(left == right)
+    except RecursionError:
+        return _equal_by_parts(left, right)
+
+
+def _equal_by_parts(left: Term, right: Term) -> bool:
+    """Equality of resolved terms that are nested too deeply for Python's own comparison."""
+    stack = [(left, right)]
+    while stack:
+        a, b = stack.pop()
+        if a is b:
+            continue
+        if a.__class__ is not b.__class__:
+            return False
+        if a.__class__ is tuple:
+            if len(a) != len(b):
+                return False
+            stack.extend(zip(a, b, strict=True))
+        elif a.__class__ is Annotated:
+            if len(a.annotations) != len(b.annotations):
+                return False
+            stack.append((a.term, b.term))
+            stack.extend(zip(a.annotations, b.annotations, strict=True))
+        elif a != b:
+            return False
+    return True
+
+
+_KEY_DEPTH = 300
+
+
+def is_key(term: Term, depth: int = 0) -> bool:
+    """Whether a resolved term can be looked up by equality: ground, without annotations, and not nested so deeply
+    that Python could not compare or hash it."""
+    while True:
+        kind = term.__class__
+        if kind is Var or kind is Annotated or depth > _KEY_DEPTH:
+            return False
+        if kind is not tuple:
+            return True
+        depth += 1
+        for argument in term[1:-1]:
+            if argument.__class__ not in ATOMIC and not is_key(argument, depth):
+                return False
+        term = term[-1]
