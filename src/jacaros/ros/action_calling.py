@@ -6,6 +6,7 @@ Everything here happens on the loop.
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, Protocol
 
 from jacaros.clock import Clock, Timer
@@ -198,7 +199,8 @@ class GoalSender:
             return
         self._closed = True
         for goal_id in list(self._goals):
-            if self.wire.offered:
+            # Also where the server seems to have gone: it may be quiet, and the robot drive on.
+            with suppress(ServiceError):  # there is no way to anybody
                 self.wire.cancel_goal(goal_id)
         problem = CallFailed(f"the client of action {self.name} was closed")
         for goal_id in list(self._goals):

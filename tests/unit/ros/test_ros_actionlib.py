@@ -1,5 +1,6 @@
 """actionlib's topics, on a graph inside the process: goals that the server never got."""
 
+import asyncio
 from collections.abc import Callable, Coroutine
 from typing import Any
 
@@ -22,7 +23,8 @@ class Actionlib:
     """A server and a client of ``/count``; what the client publishes on its goal topic can be swallowed.
 
     Attributes:
-        began: targets of the goals that the server has begun.
+        server: the server.
+        began, stopped: targets of the goals that the server has begun, and of those that it was to cancel.
         swallowed: goal messages that are lost from now on.
         sent: goal messages that left the client.
     """
@@ -30,6 +32,7 @@ class Actionlib:
     def __init__(self) -> None:
         self.clock = VirtualClock()
         self.began: list[int] = []
+        self.stopped: list[int] = []
         self.swallowed = 0
         self.sent = 0
         self._nodes: list[MemoryBackend] = []
@@ -41,7 +44,7 @@ class Actionlib:
             schema.fields(part_type(COUNT, part))
         robot, here = await self._node(graph, "robot"), await self._node(graph, "client")
         policy = ActionPolicy(None, lambda goal: True, False)
-        ActionlibServer(robot, "/count", COUNT, self._count, policy)
+        self.server = ActionlibServer(robot, "/count", COUNT, self._count, policy)
         sender = GoalSender(self.clock, print, here.factory, "/count", COUNT)
         sender.wire = ActionlibWire(here, sender)
         goals = sender.wire._goal
@@ -70,7 +73,11 @@ class Actionlib:
 
     async def _count(self, goal: GoalUnderWay) -> Any:
         self.began.append(goal.request.target)
-        await self.clock.sleep(goal.request.period)
+        try:
+            await self.clock.sleep(goal.request.period)
+        except asyncio.CancelledError:
+            self.stopped.append(goal.request.target)
+            raise
         return {"last": goal.request.target}
 
 
@@ -141,5 +148,21 @@ def test_a_goal_that_came_twice_is_carried_out_once() -> None:
         goals.publish(sent[0])
         await graph.clock.sleep(1)
         assert graph.began == [3]
+
+    play(scene)
+
+
+def test_a_client_that_ends_cancels_its_goals_also_where_the_server_is_quiet() -> None:
+    """Its status messages may be late on a bad network, and the robot drives on meanwhile."""
+
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        await client.send({"target": 3, "period": 60.0}, timeout=20)
+        graph.server._status.publish = lambda message: None  # type: ignore[method-assign]
+        await graph.clock.sleep(1.5)
+        assert not client.ready
+        client.close()
+        await graph.clock.sleep(0.1)
+        assert graph.stopped == [3]
 
     play(scene)
