@@ -226,8 +226,8 @@ def test_a_step_that_does_not_end_is_stopped(outcomes: Outcomes) -> None:
         "@t[test] +!t <- .findall(X, .range(X, 1, 100000000000), _). @u[test] +!u <- !assert_true(true)."
     )
     before = signal.getsignal(signal.SIGALRM)
-    hanging, other = outcomes(program, replace(BRIEF, patience=0.3))
-    assert "stopped after 0.3 s of real time" in hanging.problems[0].message
+    hanging, other = outcomes(program, replace(BRIEF, patience=2.0))
+    assert "stopped after 2 s of real time" in hanging.problems[0].message
     assert other.passed
     assert signal.getsignal(signal.SIGALRM) is before
     assert signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
