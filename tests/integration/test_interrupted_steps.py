@@ -55,6 +55,7 @@ class Endless(Artifact):
 
     @operation(threaded=True)
     def thread(self):
+        print("[bob] begun", flush=True)
         while True:
             pass
 
@@ -76,18 +77,28 @@ def folder(tmp_path: Path) -> Path:
 
 
 def interrupted(
-    folder: Path, program: str, number: signal.Signals = signal.SIGINT, options: Sequence[str] = ()
+    folder: Path,
+    program: str,
+    number: signal.Signals = signal.SIGINT,
+    options: Sequence[str] = (),
+    in_the_step: bool = False,
 ) -> tuple[int, str, str]:
-    """Exit code, further output and errors of a run that gets one signal when it has printed ``begun``."""
+    """Exit code, further output and errors of a run that gets one signal when it has printed ``begun``.
+
+    Between that and the step there is a moment; *in_the_step*, the signal comes when people were told of the step.
+    """
     (folder / "bob.asl").write_text(program, encoding="utf-8")
     command = [sys.executable, "-m", "jacaros", "run", "bob.asl", *options]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, cwd=folder) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "[bob] begun\n"
+        if in_the_step:
+            assert process.stderr is not None
+            assert process.stderr.readline().startswith("warning: a step takes more than 2 seconds")
         process.send_signal(number)
         try:
-            output, errors = process.communicate(timeout=60)
+            output, errors = process.communicate(timeout=120)
         finally:
             process.kill()
     return process.returncode, output, errors
@@ -104,21 +115,24 @@ def test_one_ctrl_c_ends_a_step_without_end(folder: Path, kind: str) -> None:
 
 @pytest.mark.slow
 def test_sigterm_does_so_too_and_on_the_virtual_clock(folder: Path) -> None:
-    code, _, errors = interrupted(folder, ENDLESS["context"], signal.SIGTERM, ["--clock", "fast"])
+    code, _, errors = interrupted(
+        folder, ENDLESS["context"], signal.SIGTERM, ["--clock", "fast"], in_the_step=True
+    )
     assert code == 143
     assert "interrupted in the middle of a step: agent bob, plan +!find(X) (bob.asl:2)" in errors
 
 
 @pytest.mark.slow
 def test_people_are_told_what_was_interrupted(folder: Path) -> None:
-    _, _, errors = interrupted(folder, "!g.\n+!g\n  <- .print(begun);\n     tools.stay(1).")
+    program = "!g.\n+!g\n  <- .print(begun);\n     tools.stay(1)."
+    _, _, errors = interrupted(folder, program, in_the_step=True)
     place = f"bob.asl:4, in {folder / 'tools.py'}:"
     assert f"interrupted in the middle of a step: agent bob, plan +!g ({place}" in errors
 
 
 @pytest.mark.slow
 def test_an_operation_in_a_thread_is_left_behind(folder: Path) -> None:
-    program = '!g. +!g <- makeArtifact("a", "artifacts.Endless", [], A); focus(A); !!tell; thread. +!tell <- .print(begun).'
+    program = '!g. +!g <- makeArtifact("a", "artifacts.Endless", [], A); focus(A); thread.'
     code, _, errors = interrupted(folder, program)
     assert code == 130
     assert errors == "the run has ended; an operation that does not end is left behind\n"

@@ -25,7 +25,7 @@ def test_a_signal_ends_the_run(tmp_path: Path, number: signal.Signals, code: int
         assert process.stdout is not None
         assert process.stdout.readline() == "[driver] driving\n"
         process.send_signal(number)
-        output, errors = process.communicate(timeout=30)
+        output, errors = process.communicate(timeout=120)
     assert process.returncode == code
     assert output == ""
     assert "Traceback" not in errors
