@@ -9,6 +9,7 @@ the rest is handed to the loop.
 """
 
 import asyncio
+import contextlib
 import os
 from collections.abc import Callable
 from typing import Any
@@ -388,7 +389,8 @@ class RosbridgeBackend(Node):
     def _leave(self) -> None:
         # A server forgets what it has received and not done yet when its client leaves; an answer says that all before it
         # is done.
-        self.requests.call_blocking("/rosapi/get_time", {}, DOING)
+        with contextlib.suppress(TimeoutError):
+            self.requests.call_blocking("/rosapi/get_time", {}, DOING)
         self._link.finish(SENDING)
 
 

@@ -96,7 +96,11 @@ class Requests:
             done(values, problem)
 
     def call_blocking(self, service: str, arguments: Any, seconds: float) -> dict[str, Any] | None:
-        """Call *service* and wait for the answer in this thread; None when there is none in time, or a failure."""
+        """Call *service* and wait for the answer in this thread; None when it is a failure.
+
+        Raises:
+            TimeoutError: there is no answer in time.
+        """
         ended = threading.Event()
         answers: list[dict[str, Any] | None] = []
 
@@ -107,7 +111,9 @@ class Requests:
         number = self.begin(service, arguments, done)
         ended.wait(seconds)
         self.forget(number)
-        return answers[0] if answers else None
+        if not answers:
+            raise TimeoutError
+        return answers[0]
 
 
 def _failure(service: str, text: object) -> ServiceError:

@@ -10,7 +10,8 @@ from jacaros.ros.names import message_type
 from jacaros.ros.typestore import RosbagsSchema, is_stored
 
 Ask = Callable[[str, dict[str, Any]], dict[str, Any] | None]
-"""Calls a service of rosapi and waits for the fields of its response; None when there is none."""
+"""Calls a service of rosapi and waits for the fields of its response; None when there is none, `TimeoutError` when there is
+no answer."""
 
 _DETAILS = {
     "msg": ("message_details",),
@@ -83,7 +84,12 @@ class BridgeSchema(RosbagsSchema):
             reason = self._describe()
             if reason is not None:
                 raise UnknownInterface(f"{unknown} ({reason})") from None
-            text = self._fetch(type_name, ending)
+            try:
+                text = self._fetch(type_name, ending)
+            except TimeoutError:
+                raise UnknownInterface(
+                    f"{unknown} (the rosbridge server was asked for it, and has not answered yet)"
+                ) from None
             if text is None:
                 raise UnknownInterface(f"{unknown} (the rosbridge server does not know it either)") from None
             return text
