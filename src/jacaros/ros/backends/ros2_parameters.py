@@ -28,6 +28,7 @@ from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnk
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_news import ParameterNews
+from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.parameter_store import checked_value, fault_of
 
 _LARGEST = 2**63 - 1
@@ -172,7 +173,7 @@ class OtherParameters:
         self.node = name
         self._node = node
         self._news = news
-        self._clients: dict[str, Ros2Client] = {}
+        self._services = ParameterServices(name, self._client)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Only the node itself can do that."""
@@ -203,7 +204,7 @@ class OtherParameters:
         if isinstance(value, list | tuple) and not value:
             kind = Parameter.Type(await self._type(name, timeout) or ParameterType.PARAMETER_STRING_ARRAY)
         wanted = parameter(name, value, kind).to_parameter_msg()
-        answer = await self._call("SetParameters", {"parameters": [wanted]}, timeout)
+        answer = await self._services.call("SetParameters", {"parameters": [wanted]}, timeout)
         result = (
             answer.results[0] if answer.results else SetParametersResult(reason="the node did not say why")
         )
@@ -234,20 +235,16 @@ class OtherParameters:
         while True:
             try:
                 rest = None if deadline is None else deadline - clock.elapsed
-                return await self._call(service, request, rest)
+                return await self._services.call(service, request, rest)
             except ServerGone:
                 late = deadline is not None and clock.elapsed >= deadline
-                if late or not self._clients[service].ready:
+                if late or not self._services.client(service).ready:
                     raise
 
-    async def _call(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
-        client = self._clients.get(service)
-        if client is None:
-            name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
-            client = Ros2Client(self._node, f"{self.node}/{name[1:]}", f"rcl_interfaces/srv/{service}")
-            self._clients[service] = client
-            self._node.members.append(client)
-        return await client.call(request, timeout)
+    def _client(self, name: str, type_name: str) -> Ros2Client:
+        client = Ros2Client(self._node, name, type_name)
+        self._node.members.append(client)
+        return client
 
 
 def _descriptor(default: Any, declaration: Declaration) -> Any:

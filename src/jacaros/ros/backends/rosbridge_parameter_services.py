@@ -10,6 +10,7 @@ from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_services import BridgeClient
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
 from jacaros.ros.parameter import ParameterValue
+from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.parameter_store import checked_value
 
 _FIELDS = {
@@ -40,16 +41,16 @@ class NodeParameters:
     def __init__(self, node: BridgeNode, name: str) -> None:
         self.node = name
         self._node = node
-        self._clients: dict[str, BridgeClient] = {}
+        self._services = ParameterServices(name, self._client)
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
-        answer = await self._call("ListParameters", {"depth": 0}, timeout)
+        answer = await self._services.call("ListParameters", {"depth": 0}, timeout)
         return sorted(answer.result.names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
         """Give a parameter's value."""
-        answer = await self._call("GetParameters", {"names": [name]}, timeout)
+        answer = await self._services.call("GetParameters", {"names": [name]}, timeout)
         value = read(answer.values[0]) if len(answer.values) == 1 else None
         if value is None:
             raise ParameterUnknown(f"node {self.node} has no parameter {name}, or it has no value")
@@ -64,7 +65,7 @@ class NodeParameters:
         assert number is not None, f"checked_value has let {wanted!r} pass"
         given = list(wanted) if isinstance(wanted, bytes) else wanted
         told = {"name": name, "value": {"type": number, _FIELDS[number]: given}}
-        answer = await self._call("SetParameters", {"parameters": [told]}, timeout)
+        answer = await self._services.call("SetParameters", {"parameters": [told]}, timeout)
         if answer.results and answer.results[0].successful:
             return
         if not await self._type(name, timeout):
@@ -74,17 +75,13 @@ class NodeParameters:
 
     async def _type(self, name: str, timeout: float | None) -> int:
         """The number of a parameter's type; 0 for one that is not there."""
-        answer = await self._call("GetParameterTypes", {"names": [name]}, timeout)
+        answer = await self._services.call("GetParameterTypes", {"names": [name]}, timeout)
         return int(answer.types[0]) if len(answer.types) == 1 else _NOT_SET
 
-    async def _call(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
-        client = self._clients.get(service)
-        if client is None:
-            name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
-            client = BridgeClient(self._node, f"{self.node}/{name[1:]}", f"rcl_interfaces/srv/{service}")
-            self._clients[service] = client
-            self._node.members.add(client)
-        return await client.call(request, timeout)
+    def _client(self, name: str, type_name: str) -> BridgeClient:
+        client = BridgeClient(self._node, name, type_name)
+        self._node.members.add(client)
+        return client
 
 
 def read(told: Any) -> ParameterValue | None:
