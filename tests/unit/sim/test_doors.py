@@ -10,6 +10,8 @@ from jacaros.errors import UsageError
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
 from jacaros.sim import World, WorldError, read_world
+from jacaros.sim.navigation.placement import Placement
+from jacaros.sim.navigation.sight import Sight
 
 TWO_ROOMS = """
 name: two rooms
@@ -157,6 +159,18 @@ def test_a_door_that_was_closed_is_gone_round_until_it_is_forgotten_or_seen_open
         assert await there(-1.5, 0) < 3.2
 
     assert bumps(in_world(WAY_ROUND, body).world) == []
+
+
+def test_nobody_sees_through_a_closed_door() -> None:
+    text = TWO_ROOMS.replace("docks:", "  - {name: pantry, segment: [[1, -1], [1, 1]], open: true}\ndocks:")
+    world = World.load(text)
+    world.move_door("pantry", False)
+    robot = world.robot()
+    here = Placement.at(robot.x, robot.y, robot.yaw)
+    sight = Sight(world, robot)
+    assert list(sight.closed_doors(here)) == ["kitchen"]
+    world.move_door("kitchen", True)
+    assert list(sight.closed_doors(here)) == ["pantry"]
 
 
 def test_the_map_shows_doors_as_ways() -> None:

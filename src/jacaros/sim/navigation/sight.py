@@ -47,7 +47,8 @@ class Sight:
         if not doors:
             return {}
         for door in doors:
-            if any(self._sees(*point, self._world.description.segments) for point in _points(door)[1:-1]):
+            others = [wall for wall in self._world.segments if wall is not door.segment]
+            if any(self._sees(*point, others) for point in _points(door)[1:-1]):
                 (self._closed.discard if self._world.doors[door.name] else self._closed.add)(door.name)
         true = self._true()
         return {
