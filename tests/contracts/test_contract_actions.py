@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+from losses import LOST
 
 from jacaros.ros.errors import (
     CallFailed,
@@ -20,8 +21,6 @@ pytestmark = pytest.mark.needs("actions")
 
 SLOW = {"target": 500, "period": 0.1}
 """A goal that lasts longer than any test."""
-LOST = 90.0
-"""Seconds until it is certainly noticed that a process was killed (DDS: 20 s, and `SERVER_LOST_AFTER`)."""
 
 
 def serving(graph: Any, pair: Pair, name: str, behaviour: str = "count", **policy: Any) -> Pair:

@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+from losses import lose_a_call
 
 from jacaros.ros.errors import CallFailed, ServerLost
 
@@ -42,13 +43,7 @@ def test_a_server_that_is_killed_before_it_has_accepted_is_lost(graph: Any, pair
 
 def test_a_call_of_a_service_that_is_killed_fails(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
-    mortal = graph.peer("short_lived_service")
-    mortal.serve(topic, "never")
-    graph.wait_until(lambda: left.ready(topic), "the service is found")
-    left.begin_call(topic, topic, {"a": 1, "b": 1})
-    graph.wait_until(lambda: mortal.most_calls_at_once() == 1, "the call is under way")
-    graph.kill(mortal)
-    graph.wait_until(lambda: left.call_over(topic), "the loss is noticed", LOST)
+    lose_a_call(graph, left, topic, LOST)
     assert left.ready(topic), "the graph has noticed it first"
     with pytest.raises(CallFailed, match=topic):
         left.end_call(topic)

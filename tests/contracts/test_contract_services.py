@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+from losses import lose_a_call
 
 from jacaros.ros.errors import (
     CallFailed,
@@ -14,8 +15,6 @@ from jacaros.ros.errors import (
 
 Pair = tuple[Any, Any]
 TRIGGER = "std_srvs/srv/Trigger"
-LOST = 90.0
-"""Seconds until it is certainly noticed that a process was killed (DDS: 20 s, and `SERVER_LOST_AFTER`)."""
 
 
 def test_a_service_answers(graph: Any, pair: Pair, topic: str) -> None:
@@ -181,12 +180,6 @@ def test_an_unknown_service_type_is_refused(graph: Any, pair: Pair, topic: str) 
 @pytest.mark.needs("dying servers")
 def test_a_call_whose_server_dies_fails(graph: Any, pair: Pair, topic: str) -> None:
     left, _ = pair
-    mortal = graph.peer("mortal_service")
-    mortal.serve(topic, "never")
-    graph.wait_until(lambda: left.ready(topic), "the service is found")
-    left.begin_call(topic, topic, {"a": 1, "b": 1})
-    graph.wait_until(lambda: mortal.most_calls_at_once() == 1, "the call is under way")
-    graph.kill(mortal)
-    graph.wait_until(lambda: left.call_over(topic), "the loss is noticed", LOST)
+    lose_a_call(graph, left, topic)
     with pytest.raises(CallFailed, match=topic):
         left.end_call(topic)
