@@ -1,0 +1,173 @@
+"""Steps and goals that fail: what is told, who handles it, and what goes on."""
+
+from recording_host import mind, printed
+
+from jacaros.bdi.meta_events import observe_goals
+
+
+def test_an_exception_in_an_internal_action_fails_that_step_only() -> None:
+    host = mind(
+        """
+        !other. !g.
+        +!other <- .wait(10); .print(other_lives).
+        +!g <- .nth(9, [a], _); .print(bad).
+        -!g[error(E)] <- .print(E).
+        """
+    )
+    host.run()
+    assert host.printed == ["internal_action", "other_lives"]
+
+
+def test_a_lost_intention_is_reported_with_its_place() -> None:
+    host = mind("!g.\n+!g <-\n  ?nothing(1).", name="lost")
+    host.run()
+    assert host.logged == [
+        (
+            "warning",
+            (
+                "the goal !g failed and has no plan for its failure: "
+                "test_goal_failed, a test found no answer (lost.asl:3)\n"
+                "  step: ?nothing(1)"
+            ),
+        )
+    ]
+
+
+def test_a_handler_that_posts_its_goal_again_retries() -> None:
+    assert printed(
+        """
+        n(3). !g.
+        +!g : n(0) <- .print(done).
+        +!g : n(N) <- -+n(N-1); .print(try(N)); .fail.
+        -!g <- !g.
+        """
+    ) == ["try(3)", "try(2)", "try(1)", "done"]
+
+
+def test_a_context_that_cannot_be_evaluated_is_reported_and_the_next_plan_is_tried() -> None:
+    host = mind("!g(0). +!g(X) : 5 div X > 1 <- .print(bad). +!g(_) <- .print(second).")
+    host.run()
+    assert host.printed == ["second"]
+    assert "cannot be evaluated" in host.logged[0][1]
+
+
+def test_an_observer_hears_why_a_goal_failed() -> None:
+    host = mind('!a. +!a <- !b. +!b <- .fail(error_msg("no way")). -!b.')
+    heard: list[tuple[str, str, str]] = []
+    observe_goals(host.agent, lambda state, goal, number, why: heard.append((state, goal, why)))
+    host.run()
+    assert [(goal, why) for state, goal, why in heard if state == "failed"] == [
+        ("!b", 'internal_action, no way (tester.asl:1)\nstep: .fail(error_msg("no way"))')
+    ]
+    assert not any(why for state, goal, why in heard if state != "failed")
+
+
+def test_a_wait_for_a_failure_event_sees_it_though_nothing_else_runs() -> None:
+    assert printed("!g. !k. +!g <- .wait({-!n}); .print(seen). +!k <- .wait(10); !n. -!n <- .print(h).") == [
+        "h",
+        "seen",
+    ]
+
+
+def test_an_internal_action_that_cannot_be_done_does_not_hold_as_a_condition() -> None:
+    assert printed(
+        """
+        !g. !h. r(X) :- .nth(5,[1],X). r(7).
+        +!g : .nth(5,[1],X) <- .print(bad).
+        +!g <- if (.nth(5,[1],X)) { .print(bad) } else { .print(no) };
+          ?r(Y); .print(Y); .findall(Z, .nth(5,[1],Z), L); .print(L).
+        +!h <- .nth(5,[1],_).
+        -!h[error(E)] <- .print(E).
+        """
+    ) == ["no", "internal_action", "7", "[]"]
+
+
+def test_a_goal_can_be_failed_before_it_is_taken_up() -> None:
+    assert printed(
+        """
+        !g. !k. !x. !x. !x.
+        +!g <- !h(1); .print(after).
+        +!k <- .fail_goal(h(_)); .print(k).
+        +!h(_) <- .print(no).
+        -!h(X) <- .print(failh(X)).
+        +!x.
+        """
+    ) == ["k", "failh(1)", "after"]
+
+
+def test_terms_that_are_no_goals_or_bodies_fail_with_the_reason() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- !t({ +!a }); !t(7); !t("a"); !u({ .print(a) }); !u(3); Y = h(3)[q]; !Y[k].
+        +!t(X) <- X.
+        +!u(X) <- !X.
+        -!t(_)[error(E)] <- .print(t, " ", E).
+        -!u(_)[error(E)] <- .print(u, " ", E).
+        +!h(N)[|R] <- .print(N, R).
+        """
+    ) == [
+        "t body_var_not_literal",
+        "t body_var_not_literal",
+        "t body_var_not_literal",
+        "u body_var_with_op",
+        "u body_var_not_literal",
+        "3[k,q,source(self)]",
+    ]
+
+
+def test_a_goal_that_is_not_achieved_by_its_deadline_fails() -> None:
+    assert printed(
+        """
+        !g.
+        +!g <- !h[hard_deadline(50)]; .print(after); !!k[hard_deadline(50)]; !quick[hard_deadline(50)]; .wait(200);
+          .print(end).
+        +!h <- .wait(200); .print(no).
+        -!h[error(E)] <- .print(E).
+        +!k <- !h2.
+        +!h2 <- .wait(200); .print(no).
+        -!k[error(E)] <- .print(k, " ", E).
+        +!quick <- .print(quick).
+        """
+    ) == ["deadline_reached", "after", "quick", "k deadline_reached", "end"]
+
+
+def test_a_formula_without_value_fails_with_its_reason() -> None:
+    assert printed("!g. +!g <- X = 1 div 0. -!g[error(E),code(C)] <- .print(E, " + '" ", C' + ").") == [
+        "arithmetic_error (X = (1 div 0))"
+    ]
+
+
+def test_every_failure_of_a_step_has_a_message_for_people() -> None:
+    lines = printed(
+        """
+        !s.
+        +!s <- for (.member(G, [nobody, empty, number, body])) { !!try(G) }.
+        +!try(G) <- !G.
+        -!try(G)[error(E), error_msg(M)] <- .length(M, N); .print(G, " ", E, " ", N > 5).
+        +!nobody <- .send(ghost, tell, p).
+        +!empty <- !X.
+        +!number <- X = 5; +X.
+        +!body <- X = { a; b }; +X.
+        """
+    )
+    assert [line.split()[:2] for line in lines] == [
+        ["nobody", "receiver_not_found"],
+        ["empty", "body_var_without_value"],
+        ["number", "body_var_not_literal"],
+        ["body", "body_var_with_op"],
+    ]
+
+
+def test_a_goal_in_a_variable_has_a_deadline_too() -> None:
+    assert printed(
+        """
+        !a. !b.
+        +!a <- G = slow; !G[hard_deadline(100)].
+        -!a[error(E)] <- .print(a, E).
+        +!b <- G = late[hard_deadline(50)]; !!G.
+        +!slow <- .wait(10000).
+        +!late <- .wait(10000).
+        -!late[error(E)] <- .print(late, E).
+        """
+    ) == ["latedeadline_reached", "adeadline_reached"]
