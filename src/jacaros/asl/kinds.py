@@ -48,6 +48,7 @@ KINDS: Final[dict[str, Kind]] = {
     "missing-semicolon": Kind("error", "two steps without ';' between them"),
     "missing-trigger": Kind("error", "a plan without its trigger"),
     "misspelt-annotation": Kind("warning", "an annotation of a label that is nearly one with a meaning"),
+    "misspelt-belief": Kind("warning", "a belief that nobody makes, and nearly one that somebody makes"),
     "misspelt-word": Kind("error", "nearly a reserved word"),
     "narrow-handler": Kind("note", "plans for a failure that all have conditions"),
     "nested-too-deeply": Kind("error", "too many brackets in each other"),

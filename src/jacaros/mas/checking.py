@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl import nodes
@@ -21,6 +21,9 @@ from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
+
+if TYPE_CHECKING:
+    from jacaros.env.artifact import Artifact
 
 PROJECTS: Final = (".mas2j", ".jcm")
 MAPPINGS: Final = (".yaml", ".yml")
@@ -62,7 +65,7 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = ()) -> Findings
         elif mappings:
             _check_program_with_mappings(path, mappings, findings)
         else:
-            _check_program(path, (path.parent,), findings)
+            _check_lone_program(path, findings)
     findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
     return findings
 
@@ -86,7 +89,7 @@ def _check_folder(folder: Path, findings: Findings) -> None:
         if path.resolve() in findings.files:
             continue
         own = alone[path.resolve()] = Findings()
-        _check_program(path, (path.parent,), own)
+        _check_lone_program(path, own)
         included |= own.files - {path.resolve()}
     for file, own in alone.items():
         if file not in included:
@@ -135,7 +138,38 @@ def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
         # What agents in Python make, and what programs with errors would make, is not known.
         known = programs if len(programs) == len(different) else []
         findings.diagnostics += _of_artifacts(deployment, known, folders)
+    if len(programs) == len(different):
+        findings.diagnostics += _of_beliefs(deployment, programs, folders)
     return reading.used
+
+
+def _of_beliefs(
+    deployment: Deployment, programs: list[tuple[AgentSpec, nodes.Program]], folders: tuple[Path, ...]
+) -> list[Diagnostic]:
+    """Misspelt names of beliefs in the programs of a project; not where classes of its own may make more."""
+    if any(
+        agent.agent_class or agent.architecture_classes or agent.belief_base_class for agent, _ in programs
+    ):
+        return []
+    from jacaros.mas.belief_check import check_beliefs  # here: see `_of_artifacts`
+    from jacaros.mas.made_types import made_types
+
+    def types() -> "list[type[Artifact]] | None":
+        from jacaros.artifacts.registry import type_finder  # here: see `_of_artifacts`
+
+        return made_types(deployment, trees, type_finder(ProjectModules(*folders)))
+
+    trees = [program for _, program in programs]
+    return check_beliefs(trees, types, folders)
+
+
+def _check_lone_program(path: Path, findings: Findings) -> None:
+    """Check a program that no project names."""
+    program = _check_program(path, (path.parent,), findings)
+    if program is not None:
+        lone = Deployment(path.stem, path.parent)
+        agent = AgentSpec(path.stem, path)
+        findings.diagnostics += _of_beliefs(lone, [(agent, program)], (path.parent,))
 
 
 def _of_artifacts(
@@ -212,6 +246,7 @@ def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: 
     if program is not None:
         agents = [(deployment.agents[0], program)]
         findings.diagnostics += _of_artifacts(deployment, agents, (path.parent,))
+        findings.diagnostics += _of_beliefs(deployment, agents, (path.parent,))
 
 
 def _mapping_files(

@@ -1,0 +1,214 @@
+"""What `jacaros check` says of beliefs that nobody makes: only where a name is surely misspelt."""
+
+from pathlib import Path
+
+import pytest
+
+from jacaros.asl.checks.beliefs import is_misspelt
+from jacaros.mas.checking import check_files
+
+ARTIFACTS = """
+from jacaros.env import Artifact, operation
+
+class Radar(Artifact):
+    def init(self):
+        self.define_property("obstacle", 3)
+
+    @operation
+    def turn(self):
+        self.signal("turned")
+
+class Anything(Artifact):
+    def init(self, name: str = "x"):
+        self.define_property(name, 3)
+"""
+
+MAPPING = """
+properties:
+  battery: {topic: /battery, type: std_msgs/msg/Float64, fields: [data]}
+signals:
+  bumped: {topic: /bumper, type: std_msgs/msg/Bool, fields: [data]}
+"""
+
+MAKES = '!start. +!start <- makeArtifact("r", "Radar", [], Id); focus(Id). '
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
+    return tmp_path
+
+
+def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
+    """The misspelt names of a program, or of a project that it belongs to, with what is meant."""
+    path = folder / "a.asl"
+    path.write_text(program, encoding="utf-8")
+    if project:
+        path = folder / "p.jcm"
+        path.write_text(project, encoding="utf-8")
+    found = check_files([path], mappings).diagnostics
+    assert not [each for each in found if each.severity == "error"]
+    return [
+        f"{each.message.split()[-1]} {(each.hint or '').split()[-1]}"
+        for each in found
+        if each.code == "misspelt-belief"
+    ]
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        "+obstacel(D) <- .print(D).",
+        "-obstacel(D) <- .print(D).",
+        "+!go : obstacel(D) & D < 3 <- .print(D).",
+        "+!go : not obstacel(_) <- .print(a).",
+        "near :- obstacel(D) & D < 1.",
+        "+!go <- ?obstacel(D); .print(D).",
+        "+!go <- if (obstacel(D)) { .print(D) }.",
+        "+!go <- for (obstacel(D)) { .print(D) }.",
+        "+!go <- .count(obstacel(_), N); .print(N).",
+        "+!go <- .findall(D, obstacel(D), L); .print(L).",
+    ],
+)
+def test_each_place_where_a_property_is_asked_for(folder: Path, use: str) -> None:
+    assert told(folder, f"{MAKES} {use}") == ["obstacel/1 obstacle?"]
+    assert told(folder, f"{MAKES} {use}".replace("obstacel", "obstacle")) == []
+
+
+def test_signals_count(folder: Path) -> None:
+    assert told(folder, MAKES + "+tunred <- .print(a).") == ["tunred/0 turned?"]
+
+
+def test_beliefs_of_the_program_itself_count(folder: Path) -> None:
+    assert told(folder, "threshold(3). +!go : treshold(T) <- .print(T).") == ["treshold/1 threshold?"]
+    assert told(folder, "+!go <- +visited(3). +!ask <- ?vistied(X); .print(X).") == ["vistied/1 visited?"]
+    assert told(folder, "close_to(X) :- X < 3. +!go : colse_to(2).") == ["colse_to/1 close_to?"]
+
+
+def test_the_warning_names_place_and_cure(folder: Path) -> None:
+    (folder / "a.asl").write_text(f"{MAKES}\n+obstacel(D) <- .print(D).\n", encoding="utf-8")
+    (found,) = check_files([folder / "a.asl"]).diagnostics
+    assert found.span is not None
+    assert (found.severity, found.span.line, found.span.column) == ("warning", 2, 2)
+    assert (found.message, found.hint) == ("nobody makes a belief obstacel/1", "did you mean obstacle?")
+
+
+def test_a_mapping_file_makes_properties_and_signals(folder: Path) -> None:
+    (folder / "robot.yaml").write_text(MAPPING, encoding="utf-8")
+    mapped = (str(folder / "robot.yaml"),)
+    program = "!s. +!s <- ?batery(X); .print(X). +bumpd(X) <- .print(X)."
+    assert told(folder, program, mappings=mapped) == ["batery/1 battery?", "bumpd/1 bumped?"]
+    assert told(folder, "!s. +!s <- ?battery(X); .print(X). +bumped(X) <- .print(X).", mappings=mapped) == []
+
+
+PROJECT = """mas p {
+    agent a : a.asl { focus: main.r }
+    agent b : b.asl
+    workspace main { artifact r: Radar() }
+}
+"""
+
+
+def test_what_other_agents_tell_counts_in_a_project(folder: Path) -> None:
+    (folder / "b.asl").write_text("!t. +!t <- .send(a, tell, parcel(3)).", encoding="utf-8")
+    assert told(folder, "+parcle(X) <- .print(X). +obstacel(D) <- .print(D).", PROJECT) == [
+        "parcle/1 parcel?",
+        "obstacel/1 obstacle?",
+    ]
+    assert told(folder, "+parcel(X) <- .print(X). +obstacle(D) <- .print(D).", PROJECT) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("b.asl", "!t. +!t <- .send(a, tell, obstacel(3))."),
+        ("b.asl", "!t. +!t <- !say(obstacel). +!say(X) <- .print(X)."),
+        ("tool.py", "def tell(agent):\n    agent.believe('obstacel(3)')\n"),
+        ("other.asl", "+!t <- .send(a, tell, obstacel(3))."),
+        ("robot.yaml", "topics: {obstacel: {topic: /scan}}"),
+    ],
+)
+def test_a_word_that_stands_elsewhere_is_meant(folder: Path, file: str, text: str) -> None:
+    (folder / "b.asl").write_text("!t. +!t <- .print(a).", encoding="utf-8")
+    program = "+obstacel(D) <- .print(D)."
+    assert told(folder, program, PROJECT) == ["obstacel/1 obstacle?"]
+    (folder / file).write_text(text, encoding="utf-8")
+    assert told(folder, program, PROJECT) == []
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        '+!more <- .include("more.asl").',
+        "+!more(B) <- +B.",
+        "+!more(P) <- .add_plan(P).",
+        "+!more(T) <- makeArtifact(m, T, [], _).",
+        '+!more <- makeArtifact(m, "Anything", ["obstacel"], _).',
+        '+!more <- makeArtifact(m, "Nothing", [], _).',
+        "+!more <- linkWorkspace(far, near, there).",
+        "+!more <- put(obstacel(3)).",
+        "+!more <- .send(bob, tell, [obstacel(3)]).",
+        "+?obstacel(3).",
+        "+!more <- .at(3, { +obstacel(3) }).",
+    ],
+)
+def test_nothing_is_told_where_beliefs_may_come_in_other_ways(folder: Path, more: str) -> None:
+    assert told(folder, f"{MAKES} +obstacel(D) <- .print(D). {more}") == []
+
+
+def test_nothing_is_told_of_agents_in_python_and_with_classes_of_their_own(folder: Path) -> None:
+    (folder / "b.asl").write_text("!t. +!t <- .print(a).", encoding="utf-8")
+    (folder / "mind.py").write_text(
+        "from jacaros import Agent, PythonAgent\nclass Mind(Agent):\n    pass\nclass P(PythonAgent):\n    pass\n",
+        encoding="utf-8",
+    )
+    program = "+obstacel(D) <- .print(D)."
+    with_class = PROJECT.replace("{ focus", "{ ag-class: mind.Mind\n focus")
+    assert told(folder, program, with_class) == []
+    assert told(folder, program, PROJECT.replace("b : b.asl", "b : mind.py { ag-class: mind.P }")) == []
+
+
+@pytest.mark.parametrize(
+    "makes",
+    [
+        '{ include("$jacaros/artifacts.asl") } !start. +!start <- !use_artifact("r", "Radar").',
+        '!start. +!start <- !have(r, "Radar"). +!have(N, T) <- !make(T, N). +!make(T, N) <- makeArtifact(N, T).',
+        '!have("Radar"). +!have(T) <- makeArtifact(r, T).',
+    ],
+)
+def test_types_that_goals_hand_on_are_known(folder: Path, makes: str) -> None:
+    assert told(folder, f"{makes} +obstacel(D) <- .print(D).") == ["obstacel/1 obstacle?"]
+
+
+def test_what_programs_make_counts_whatever_artifacts_there_are(folder: Path) -> None:
+    makes = "+!make(L) <- .member(T, L); makeArtifact(m, T, [], _). "
+    assert told(folder, makes + "threshold(3). +!go : treshold(T) <- .print(T).") == ["treshold/1 threshold?"]
+
+
+@pytest.mark.parametrize("cases", ["conformance", "conformance_environment"])
+def test_programs_as_people_write_them_are_not_blamed(cases: str) -> None:
+    found = check_files([Path(__file__).parents[2] / cases]).diagnostics
+    assert [str(each) for each in found if each.code == "misspelt-belief"] == []
+
+
+def test_other_namespaces_are_left_alone(folder: Path) -> None:
+    assert told(folder, MAKES + "+other::obstacel(D) <- .print(D).") == []
+
+
+@pytest.mark.parametrize(
+    ("written", "meant", "misspelt"),
+    [
+        ("batery", "battery", True),
+        ("obstacel", "obstacle", True),
+        ("baterry", "battery", False),
+        ("atRom", "atRoom", True),
+        ("tasks", "task", False),
+        ("parcels", "parcel", False),
+        ("room_1", "room_2", False),
+        ("pose", "pos", False),
+        ("hired", "fired", False),
+        ("battery", "battery", False),
+    ],
+)
+def test_what_is_a_slip(written: str, meant: str, misspelt: bool) -> None:
+    assert is_misspelt(written, meant) is misspelt
