@@ -62,7 +62,23 @@ class Commands(click.Group):
             formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
 
 
+def _tell_version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        from jacaros.cli.version import version_of
+
+        click.echo(f"jacaros {version_of('jacaros')}")
+        context.exit()
+
+
 @click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_tell_version,
+    help="Tell the version and exit.",
+)
 def jacaros() -> None:
     """Program robots as rational agents: AgentSpeak minds, artifacts and ROS."""
 

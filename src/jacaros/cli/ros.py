@@ -142,7 +142,7 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
     from jacaros.cli.graph import first_mapping, listening
     from jacaros.cli.graph.joining import Joined, NothingThere
     from jacaros.cli.graph.kinds import find_mappable
-    from jacaros.cli.graph.usual import usual_things
+    from jacaros.cli.graph.usual import left_out, usual_things
 
     if output is not None and output.exists() and not force:
         raise UsageError(f"there is a file {output} already; --force writes over it")
@@ -151,8 +151,10 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
         if names:
             things = [thing for name in names for thing in find_mappable(joined, name)]
             frames: dict[str, str] = {}
+            left = []
         else:
             things = usual_things(joined.contents)
+            left = left_out(joined.contents, things)
             frames = await listening.frames(joined)
             if not things:
                 raise NothingThere(
@@ -160,7 +162,7 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
                     "drive); name topics, services and actions of `jacaros ros list`"
                 )
         file = output.name if output is not None else "robot.yaml"
-        return first_mapping.mapping_for(joined, things, frames, file, _written(**graph))
+        return first_mapping.mapping_for(joined, things, frames, file, _written(**graph), left)
 
     text = _in_graph(look, **graph)
     if output is None:

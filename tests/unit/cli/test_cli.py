@@ -169,6 +169,7 @@ def test_versions_are_told(capsys: pytest.CaptureFixture[str]) -> None:
     code, output, _ = outcome(capsys, "version")
     assert code == 0
     assert output.startswith("jacaros 0.")
+    assert outcome(capsys, "--version") == (0, output.splitlines()[0] + "\n", "")
 
 
 def test_help_lists_the_commands(capsys: pytest.CaptureFixture[str]) -> None:

@@ -24,6 +24,14 @@ def checked(capsys: pytest.CaptureFixture[str], folder: Path, text: str, *option
     return output.replace(f"{folder}/", "")
 
 
+def test_a_type_that_is_not_known_and_not_that_of_the_topic_is_told_once(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    told = checked(capsys, tmp_path, "properties:\n  a: {topic: odom, type: nav_msgs/msg/Odometri}\n")
+    assert "its type is nav_msgs/msg/Odometry, not nav_msgs/msg/Odometri" in told
+    assert "is not known here" not in told
+
+
 @pytest.mark.parametrize(
     ("text", "problem", "cure"),
     [

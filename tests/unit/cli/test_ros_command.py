@@ -135,8 +135,20 @@ def test_the_usual_things_of_a_robot_are_mapped(capsys: pytest.CaptureFixture[st
     for name in ("odom", "scan", "battery", "map", "drive", "stop", "navigate_to", "dock", "undock", "pose"):
         assert f"\n  {name}:" in text
     assert "\nframes:\n" in text
-    assert "move_base" not in text, "one action to drive is enough"
+    assert "action: move_base" not in text, "one action to drive is enough"
     assert "#   jacaros ros check robot.yaml --world house" in text
+
+
+def test_what_was_not_taken_is_named_in_the_file(capsys: pytest.CaptureFixture[str]) -> None:
+    text = told(capsys, "map", "--world", "house")
+    _, _, left = text.partition("\n# Also there, but not taken; `jacaros ros show NAME --world house` prints")
+    lines = left.splitlines()
+    assert "#   action /move_base" in lines
+    assert sum(line.startswith(("#   action ", "#   topic ")) for line in lines) == 12
+    assert lines[-1].startswith("#   and ")
+    assert "/tf" not in left
+    assert "/odom" not in left
+    assert "not taken" not in told(capsys, "map", "/odom", "--world", "house")
 
 
 def test_robots_have_an_artifact_each(capsys: pytest.CaptureFixture[str]) -> None:

@@ -59,7 +59,8 @@ class Topic:
         self.feeds = [feed for feed in self.feeds if feed.ready]
         if not self.feeds:
             return
-        if "header" in host.ros.fields(type_name) and any(feed.is_state for feed in self.feeds):
+        kept = self._qos.durability == "transient_local"  # such messages are old when they come, and right
+        if not kept and "header" in host.ros.fields(type_name) and any(feed.is_state for feed in self.feeds):
             topic = host.ros.resolve(host.robot_topic(written.text))
             self._stamps = Stamps(host.faults_at(topic), host.clock)
         tell = host.on_topic_event(written.text, written.place)

@@ -188,10 +188,11 @@ def _constant(
     ):
         known = constants(interfaces, owner)
         if value not in known:
+            plain = "write true or false" if leaf.base == "bool" else "write a number"
             listed = ", ".join(known)
             raise WrongPath(
                 f"{path} is {leaf}, and {value!r} is no constant of {owner}",
-                f"its constants: {listed}" if listed else "write a number, or a parameter: $name",
+                f"its constants: {listed}" if listed else f"{plain}, or a parameter: $name",
             )
         value = known[value]
         return value[0] if isinstance(value, bytes) else value

@@ -35,6 +35,8 @@ KEYS: dict[str, tuple[str, ...]] = {
 """What goes with each kind of operation."""
 _ALL_KEYS = tuple(dict.fromkeys((*_COMMON, *(key for keys in KEYS.values() for key in keys))))
 
+_SUSPEND = ("go_on", "cancel")
+
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 CALL_TIMEOUT = 10.0
 """Seconds that a service may take unless the mapping says otherwise."""
@@ -50,9 +52,8 @@ def read_operation(name: Node, node: Node) -> OperationPart:
     kinds = [kind for kind in KEYS if isinstance(node.value, dict) and kind in node.value]
     if len(kinds) != 1:
         found = f"has {' and '.join(kinds)}" if kinds else "does not say what it does"
-        near = (
-            [] if kinds else [each for key in _keys(node) for each in difflib.get_close_matches(key, KEYS, 1)]
-        )
+        unknown = [] if kinds else [key for key in _keys(node) if key not in _ALL_KEYS]
+        near = [each for key in unknown for each in difflib.get_close_matches(key, KEYS, 1)]
         hint = f"did you mean '{near[0]}'?" if near else f"write one of {', '.join(KEYS)}"
         name.wrong(f"the operation '{part.name}' {found}", hint)
         return part
@@ -173,7 +174,14 @@ def _suspend(node: Node | None) -> dict[str, Any]:
         )
         return {}
     if not isinstance(node.value, dict):
-        return {"suspend": node.choice("go_on", "cancel")}
+        if node.value not in _SUSPEND:
+            node.wrong(
+                f"'suspend' is {node.value!r}",
+                f"write {' or '.join(_SUSPEND)}, or operations that pause and resume the server: "
+                "{pause: hold, resume: go_on}",
+            )
+            return {}
+        return {"suspend": node.value}
     entries = node.mapping("pause", "resume", required=("pause", "resume"))
     named = {key: Written(each.text(), place_of(each)) for key, each in entries.items()}
     return {"suspend": "pause", **named}

@@ -33,6 +33,7 @@ _VAGUE = ("compressed", "compressed_depth", "data", "feedback", "info", "raw", "
 """Last parts of names that say nothing without the part in front."""
 _COMMENT_AT = 41
 """Column of comments."""
+_LEFT_AT_MOST = 12
 _BODIES = ("base_link", "base_footprint")
 
 
@@ -70,7 +71,12 @@ def lines_for(joined: Joined, thing: Thing) -> list[str]:
 
 
 def mapping_for(
-    joined: Joined, things: Sequence[Thing], frames: dict[str, str], file: str, options: str
+    joined: Joined,
+    things: Sequence[Thing],
+    frames: dict[str, str],
+    file: str,
+    options: str,
+    left: Sequence[Thing] = (),
 ) -> str:
     """The text of a mapping file for things of the graph.
 
@@ -80,6 +86,7 @@ def mapping_for(
         frames: what `listening.frames` found; empty to leave frames out.
         file: name of the file, for the comments.
         options: options for the commands in the comments, such as ``--ros ros2``.
+        left: things that are there and were not taken, for a comment.
 
     Raises:
         UnknownInterface: a type has no definition here.
@@ -90,7 +97,7 @@ def mapping_for(
             if _home(joined, artifacts, thing) is artifact:
                 _add(joined, artifact, thing)
         artifact.add(_frame(artifact, frames))
-    return "\n".join(_file(artifacts, file, options)) + "\n"
+    return "\n".join([*_file(artifacts, file, options), *_left(left, options)]) + "\n"
 
 
 def _artifacts(joined: Joined, things: Sequence[Thing]) -> list[_Artifact]:
@@ -191,6 +198,19 @@ def _head(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
         yield "#"
         yield f"#   {example}"
     yield ""
+
+
+def _left(left: Sequence[Thing], options: str) -> Iterator[str]:
+    """What else there is, so that nobody takes the file for all of it."""
+    if not left:
+        return
+    yield ""
+    yield f"# Also there, but not taken; `jacaros ros show NAME{options}` prints what a mapping says of one:"
+    yield "#"
+    for thing in left[:_LEFT_AT_MOST]:
+        yield f"#   {thing.kind} {thing.name}"
+    if len(left) > _LEFT_AT_MOST:
+        yield f"#   and {len(left) - _LEFT_AT_MOST} more: `jacaros ros list{options}`"
 
 
 def _example(artifacts: list[_Artifact]) -> str:

@@ -47,6 +47,8 @@ _INNER = (
 )
 """Services of programs and not of robots have such names."""
 SERVICES_AT_MOST = 10
+_OF_ROS = ("/tf", "/tf_static", "/clock", "/statistics")
+"""Topics that agents use in other ways, or not at all."""
 
 
 def usual_things(contents: GraphContents) -> list[Thing]:
@@ -57,6 +59,26 @@ def usual_things(contents: GraphContents) -> list[Thing]:
     found = [thing for thing in things if thing in taken or _is_usual(thing, contents)]
     services = [thing for thing in found if thing.kind is Kind.SERVICE][:SERVICES_AT_MOST]
     return [thing for thing in found if thing.kind is not Kind.SERVICE] + services
+
+
+def left_out(contents: GraphContents, taken: list[Thing]) -> list[Thing]:
+    """What else of the graph could be mapped, actions first, and topics that are published before those that are heard."""
+
+    def order(thing: Thing) -> int:
+        if thing.kind is Kind.ACTION:
+            return 0
+        return 3 if thing.kind is Kind.SERVICE else 1 if _is_there(thing, contents) else 2
+
+    others = [
+        thing
+        for thing in all_things(contents)
+        if thing not in taken
+        and thing.kind is not Kind.NODE
+        and thing.type_name
+        and thing.name not in _OF_ROS
+        and not any(part in thing.name for part in _INNER)
+    ]
+    return sorted(others, key=order)
 
 
 def _in_roles(things: list[Thing], contents: GraphContents, space: str, spaces: list[str]) -> Iterator[Thing]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from jacaros.artifacts.mapping.checking import check_topic, type_problems
+from jacaros.artifacts.mapping.checking import UNCERTAIN, check_topic, type_problems
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
     FramePart,
@@ -62,13 +62,19 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
     names = Names(joined, part)
     for folder in part.interfaces:
         joined.backend.add_interfaces(folder)
-    found = type_problems(part, joined.backend)
+    found: list[Problem] = []
     for topic in part.topics:
         found += _of_topic(names, topic)
     for operation in part.operations:
         found += _of_operation(names, operation)
     for frame in part.frames:
         found += _of_frame(names, frame, frames)
+    told = {(each.line, each.column) for each in found}
+    found += [
+        each
+        for each in type_problems(part, joined.backend)
+        if not (each.message.endswith(UNCERTAIN) and (each.line, each.column) in told)
+    ]
     nodes = [(each.node, each.parameter, each.place) for each in part.parameters if each.node]
     nodes += [
         (each.node, each.target.text, each.place)

@@ -1,6 +1,7 @@
 """ROS 2 through rclpy: the backend, put together."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TypeVar
 
 from jacaros.ros.action import ActionClient, ActionPolicy, Execute
@@ -28,7 +29,7 @@ from jacaros.ros.backends.ros2_node import Member, Ros2Node
 from jacaros.ros.backends.ros2_parameters import OtherParameters, OwnParameters, read_value
 from jacaros.ros.backends.ros2_services import Ros2Client, Ros2Service
 from jacaros.ros.backends.ros2_topics import Ros2Publisher, Ros2Subscription
-from jacaros.ros.errors import CallFailed, CallTimedOut, UnknownInterface
+from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterface
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.names import action_type, message_type, service_type
@@ -53,6 +54,17 @@ CAPABILITIES = frozenset(
         GRAPH_QOS,
     }
 )
+
+
+@contextmanager
+def _joining(what: str, type_name: str) -> Iterator[None]:
+    """Say in our words that two parts of one process do not agree about the type of a service or action."""
+    try:
+        yield
+    except ros2_graph.RCLError as problem:
+        other = "incompatible type" in str(problem)
+        because = "this node uses it with another type already" if other else str(problem)
+        raise RosError(f"{what} cannot be joined with type {type_name}: {because}") from None
 
 
 class Ros2Backend(Ros2Node):
@@ -107,21 +119,29 @@ class Ros2Backend(Ros2Node):
 
     def service(self, name: str, type_name: str, handler: Handler) -> Ros2Service:
         """Offer a service."""
-        return self._keep(Ros2Service(self, self.resolve(name), service_type(type_name), handler))
+        name, kind = self.resolve(name), service_type(type_name)
+        with _joining(f"service {name}", kind):
+            return self._keep(Ros2Service(self, name, kind, handler))
 
     def client(self, name: str, type_name: str) -> Ros2Client:
         """Make a client of a service."""
-        return self._keep(Ros2Client(self, self.resolve(name), service_type(type_name)))
+        name, kind = self.resolve(name), service_type(type_name)
+        with _joining(f"service {name}", kind):
+            return self._keep(Ros2Client(self, name, kind))
 
     def action_client(self, name: str, type_name: str) -> ActionClient:
         """Make a client of an action."""
-        return self._keep(Ros2GoalWire(self, self.resolve(name), action_type(type_name))).sender
+        name, kind = self.resolve(name), action_type(type_name)
+        with _joining(f"action {name}", kind):
+            return self._keep(Ros2GoalWire(self, name, kind)).sender
 
     def action_server(
         self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
     ) -> Ros2ActionServer:
         """Offer an action."""
-        return self._keep(Ros2ActionServer(self, self.resolve(name), action_type(type_name), execute, policy))
+        name, kind = self.resolve(name), action_type(type_name)
+        with _joining(f"action {name}", kind):
+            return self._keep(Ros2ActionServer(self, name, kind, execute, policy))
 
     def parameters(self, node: str | None = None) -> Parameters:
         """Give the parameters of our own node, or of another."""

@@ -4,6 +4,7 @@ import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+import pytest
 from mapped_lab import mapped, settle, with_mapped
 from robot_lab import Lab, Watcher, in_lab
 
@@ -480,6 +481,18 @@ def test_frames_get_the_prefix_of_the_robot() -> None:
         assert any("m.yaml:1:47: b is not known: " in line for line in t.lab.logged)
 
     talk(text, body, "r1")
+
+
+@pytest.mark.parametrize(("qos", "told"), [("default", 1), ("latched", 0)])
+def test_stamps_of_latched_messages_may_be_old(qos: str, told: int) -> None:
+    async def body(t: Talk) -> None:
+        old = {"stamp": t.lab.clock.now() - 60, "frame_id": "map"}
+        await t.say("p", "geometry_msgs/msg/PointStamped", LATCHED, point={"x": 2}, header=old)
+        await settle()
+        assert t.held == [(2.0,)]
+        assert sum("s off our clock" in line for line in t.lab.logged) == told
+
+    talk(f"properties: {{a: {{topic: p, type: {POINT}Stamped, fields: [point.x], qos: {qos}}}}}", body)
 
 
 def test_parameters_of_a_node_that_is_not_there_are_told_of_once() -> None:

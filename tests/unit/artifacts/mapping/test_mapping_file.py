@@ -269,6 +269,17 @@ WRONG = {
             "get_parameter, refresh, read"
         ),
     ),
+    "kind, with other keys": (
+        "operations: {go: {parameters: [a]}}",
+        (
+            "1:14: the operation 'go' does not say what it does | write one of publish, service, action, set_parameter, "
+            "get_parameter, refresh, read"
+        ),
+    ),
+    "kind, misspelt": (
+        "operations: {go: {servise: t}}",
+        "1:14: the operation 'go' does not say what it does | did you mean 'service'?",
+    ),
     "two kinds": (
         "operations: {go: {publish: t, service: s}}",
         (
@@ -313,7 +324,10 @@ WRONG = {
     ),
     "suspend": (
         "operations: {go: {action: a, suspend: stop}}",
-        "1:39: 'suspend' is 'stop' | choose one of: go_on, cancel",
+        (
+            "1:39: 'suspend' is 'stop' | write go_on or cancel, or operations that pause and resume the server: "
+            "{pause: hold, resume: go_on}"
+        ),
     ),
     "pause without operations": (
         "operations: {go: {action: a, suspend: pause}}",

@@ -169,6 +169,13 @@ WRONG = {
             "parameter: $name"
         ),
     ),
+    "truth": (
+        "operations: {go: {service: s, type: std_srvs/srv/SetBool, request: {data: 'yes'}}}",
+        (
+            "1:75: data is bool, and 'yes' is no constant of std_srvs/srv/SetBool_Request | write true or false, or a "
+            "parameter: $name"
+        ),
+    ),
     "now": (
         TWIST.format("fields: {linear.x: now}"),
         "1:98: 'now' is a time, and linear.x is float64 | write another value",

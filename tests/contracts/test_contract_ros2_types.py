@@ -1,0 +1,58 @@
+"""ROS 2 alone: two parts of a process that want one name with different types are told so in plain words."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from presence import is_wanted, ros2_environment
+
+pytestmark = pytest.mark.ros2
+
+PROGRAM = """
+from jacaros.clock import WallClock, run
+from jacaros.ros.errors import RosError
+from jacaros.ros.open import open_backend
+
+async def main():
+    backend = open_backend("ros2", WallClock(), "node")
+    await backend.start()
+    backend.client("/s", "std_srvs/srv/Trigger")
+    backend.action_client("/a", "jacaros_interfaces/action/Count")
+    for ask in (
+        lambda: backend.client("/s", "std_srvs/srv/SetBool"),
+        lambda: backend.service("/s", "std_srvs/srv/SetBool", print),
+        lambda: backend.action_client("/a", "nav2_msgs/action/NavigateToPose"),
+        lambda: backend.action_server("/a", "nav2_msgs/action/NavigateToPose", print),
+    ):
+        try:
+            ask()
+        except RosError as error:
+            print(error)
+    await backend.close()
+
+run(main, WallClock())
+"""
+
+
+def test_a_name_that_is_used_with_another_type_already_is_told(
+    tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    if not is_wanted("ros2", request.config):
+        pytest.skip("no ROS 2 here; see test_contract_presence")
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env=os.environ | ros2_environment(tmp_path),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    end = "this node uses it with another type already"
+    assert done.stdout.splitlines() == [
+        f"service /s cannot be joined with type std_srvs/srv/SetBool: {end}",
+        f"service /s cannot be joined with type std_srvs/srv/SetBool: {end}",
+        f"action /a cannot be joined with type nav2_msgs/action/NavigateToPose: {end}",
+        f"action /a cannot be joined with type nav2_msgs/action/NavigateToPose: {end}",
+    ], done.stderr
