@@ -9,6 +9,7 @@ topic (below the robot's namespace)         type                          direct
 ``/cmd_vel``, ``/cmd_vel_mux/input/navi``   ``geometry_msgs/msg/Twist``   in, the last message wins
 ``/cleaning/task``                          ``std_msgs/msg/String``       in, logged with the true pose
 ``/initialpose``                            ``geometry_msgs/msg/PoseWithCovarianceStamped`` in, for localisation
+``/amcl_pose``                              the same                      out, latched, see `jacaros.sim.amcl_pose`
 =========================================== ============================= ==========================
 
 Bumpers and the dock are in `jacaros.sim.robot_contacts`, transforms in `jacaros.sim.robot_transforms`, and what the robot
@@ -20,6 +21,7 @@ from typing import Any
 
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.message import constant, stamp
+from jacaros.sim.amcl_pose import AmclPose
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot import Robot
@@ -55,6 +57,7 @@ class RobotNode:
         self._scan = self._publisher("/scan", "sensor_msgs/msg/LaserScan") if self._laser_on else None
         self.localisation = Localisation(robot)
         self._transforms = RobotTransforms(time, robot, self.localisation, backend)
+        self._amcl_pose = AmclPose(time, robot, self.localisation, backend, self.prefix, self._frame_prefix)
         self._contacts = RobotContacts(time, robot, backend, self.prefix, self._frame_prefix)
         self._subscriptions = self._subscribe()
 
@@ -103,6 +106,7 @@ class RobotNode:
         """Publish what is due at this tick of 20 Hz; the world has caught up."""
         self._publish_odometry()
         self._transforms.publish()
+        self._amcl_pose.publish()
         self._contacts.publish(self._ticks)
         battery = self.robot.battery
         charging = (battery.charging, self.robot.dock is not None)
@@ -169,4 +173,5 @@ class RobotNode:
             if publisher is not None:
                 publisher.close()
         self._transforms.close()
+        self._amcl_pose.close()
         self._contacts.close()

@@ -1,11 +1,13 @@
 """Where robots are and goals lie: the frames of the tf tree, and a pose that the robot is told."""
 
 import math
+from typing import Any
 
 import pytest
 from navigation_lab import Lab, in_world, near, pose
 
 from jacaros.ros.action import GoalStatus
+from jacaros.ros.qos import QoS
 from jacaros.sim.trigonometry import PI
 
 FROM_START = """
@@ -115,3 +117,78 @@ def test_a_robot_that_is_lost_goes_wrong_until_it_is_told_better() -> None:
         near(lab.world, 2, 0, 0)
 
     in_world("empty", body)
+
+
+TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+
+
+def heard(lab: Lab, topic: str = "/amcl_pose") -> list[Any]:
+    """The messages of a topic, from now on."""
+    messages: list[Any] = []
+    quality = QoS(durability="transient_local", depth=1)
+    lab.backend.subscription(topic, TYPE, lambda sample: messages.append(sample.message), quality)
+    return messages
+
+
+def believed(message: Any) -> tuple[float, float, float, float]:
+    """x, y and the variances of x and of the heading."""
+    place, covariance = message.pose.pose.position, message.pose.covariance
+    assert covariance[7] == covariance[0]
+    return (round(place.x, 3), round(place.y, 3), round(covariance[0], 6), round(covariance[35], 6))
+
+
+def test_the_pose_of_the_localisation_is_latched_and_told_again_after_25_cm_or_11_degrees() -> None:
+    async def body(lab: Lab) -> None:
+        first = heard(lab)
+        await lab.clock.sleep(3.0)
+        assert [believed(each) for each in first] == [(0.0, 0.0, 0.0025, 0.001)]
+        assert first[0].header.frame_id == "map"
+        assert first[0].pose.pose.orientation.w == 1.0
+        robot = lab.world.robot()
+        robot.command(0.3, 0.0)
+        for _ in range(20):
+            robot.command(0.3, 0.0)
+            await lab.clock.sleep(0.1)
+        driven = [believed(each)[0] for each in first[1:]]
+        assert len(driven) == 2
+        assert driven[0] == pytest.approx(0.25, abs=0.03)
+        assert driven[1] - driven[0] == pytest.approx(0.25, abs=0.03)
+        await lab.clock.sleep(2.0)
+        count = len(first)
+        for _ in range(5):
+            robot.command(0.0, 0.6)
+            await lab.clock.sleep(0.1)
+        assert len(first) == count + 1
+        late = heard(lab)
+        await lab.clock.sleep(0.1)
+        assert [believed(each) for each in late] == [believed(first[-1])]
+
+    in_world("empty", body)
+
+
+def test_a_pose_that_it_was_told_is_told_with_its_covariance_until_it_is_found() -> None:
+    async def body(lab: Lab) -> None:
+        messages = heard(lab)
+        await lab.clock.sleep(0.2)
+        tell_pose(lab, 0.3, 0.0, spread=0.25)
+        await lab.clock.sleep(2.0)
+        tell_pose(lab, 3.0, 1.0, spread=0.25)
+        await lab.clock.sleep(2.0)
+        assert [believed(each) for each in messages] == [
+            (0.0, 0.0, 0.0025, 0.001),
+            (0.3, 0.0, 0.25, 0.0),
+            (0.0, 0.0, 0.0025, 0.001),
+            (3.0, 1.0, 0.25, 0.0),
+        ]
+
+    in_world("empty", body)
+
+
+def test_the_pose_of_a_robot_with_a_name_is_below_it() -> None:
+    async def body(lab: Lab) -> None:
+        name = lab.world.description.robots[0].namespace
+        messages = heard(lab, f"/{name}/amcl_pose")
+        await lab.clock.sleep(0.2)
+        assert [each.header.frame_id for each in messages] == [f"{name}/map"]
+
+    in_world("two_robots", body)

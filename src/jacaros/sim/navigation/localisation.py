@@ -10,6 +10,8 @@ PERIOD = 0.5
 """Seconds between two corrections of the odometry."""
 SURE = 0.2
 """Metres, and radians, that a pose may be off whatever it says of itself."""
+FOUND = (0.0025, 0.001)
+"""Variances of a pose that scans have put right: of x and of y (m²), and of the heading (rad²)."""
 _SAME = 1e-6
 
 
@@ -22,6 +24,7 @@ class Localisation:
 
     Attributes:
         map_to_odom: where the odometry frame stands on the map.
+        variances: how well the place is known; `FOUND`, or as somebody told it.
         lost: whether the last pose that it was told was so far off that scans do not put it right.
     """
 
@@ -29,6 +32,7 @@ class Localisation:
         self._robot = robot
         self._next = -math.inf
         self.map_to_odom = Placement(0.0, 0.0)
+        self.variances = FOUND
         self.lost = False
 
     def update(self, time: float) -> None:
@@ -36,6 +40,7 @@ class Localisation:
         if time < self._next or self.lost:
             return
         self._next = time + PERIOD
+        self.variances = FOUND
         found = self._truth().then(self._odometry().inverse())
         known = self.map_to_odom
         # Rounding alone must not make a robot with faultless odometry hop.
@@ -53,6 +58,7 @@ class Localisation:
         _, least_alike = sine_cosine(min(PI, max(SURE, turn)))
         self.lost = apart > max(SURE, radius) or alike < least_alike
         self.map_to_odom = place.then(self._odometry().inverse())
+        self.variances = ((0.5 * radius) ** 2, (0.5 * turn) ** 2)
         self._next = time + PERIOD
 
     def pose(self) -> Placement:
