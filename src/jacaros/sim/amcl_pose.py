@@ -78,10 +78,11 @@ class AmclPose:
         return turned >= UPDATE_ANGLE or distance((x, y), (odometry.x, odometry.y)) >= UPDATE_DISTANCE
 
     def _send(self, place: Placement, variances: tuple[float, float]) -> None:
-        covariance = [0.0] * 36
+        message = self._publisher.message()
+        # An array of the message's own; a list of 36 numbers would be looked at one by one.
+        covariance = message.pose.covariance
         covariance[0] = covariance[7] = variances[0]
         covariance[35] = variances[1]
-        message = self._publisher.message(pose={"covariance": covariance})
         stamp(message.header.stamp, self._time.now())
         message.header.frame_id = self._frame
         pose = message.pose.pose

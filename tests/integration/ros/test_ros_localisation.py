@@ -1,0 +1,36 @@
+"""``/amcl_pose`` of the world on real graphs: latched, and told again when somebody says another place."""
+
+from collections.abc import Callable
+
+from graphs import ProcessPeer
+from processes import WorldProcess, wait_until
+
+TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+
+
+def test_the_pose_is_latched_and_follows_what_the_robot_is_told(
+    world: WorldProcess, peer: Callable[[str], ProcessPeer]
+) -> None:
+    first = peer("first")
+    first.subscribe("/amcl_pose", TYPE, durability="transient_local", depth=1)
+    wait_until(lambda: first.received("/amcl_pose"), "the first pose comes")
+    [told] = first.received("/amcl_pose")
+    assert told["header"]["frame_id"] == "map"
+    assert list(told["pose"]["covariance"])[::7] == [0.0025, 0.0025, 0.0, 0.0, 0.0, 0.001]
+    late = peer("late")
+    late.subscribe("/amcl_pose", TYPE, durability="transient_local", depth=1)
+    wait_until(lambda: late.received("/amcl_pose") == [told], "the same comes to a late one")
+    late.advertise("/initialpose", TYPE)
+    wait_until(lambda: late.subscription_count("/initialpose"), "the robot listens")
+    late.publish(
+        "/initialpose",
+        {
+            "header": {"frame_id": "map"},
+            "pose": {"pose": {"position": {"x": 3.0}, "orientation": {"w": 1.0}}},
+        },
+    )
+    wait_until(
+        lambda: [each["pose"]["pose"]["position"]["x"] for each in late.received("/amcl_pose")][-1] == 3.0,
+        "it believes what it was told",
+    )
+    assert late.received("/amcl_pose")[-1]["pose"]["covariance"][0] == 0.0
