@@ -97,7 +97,7 @@ def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str
     service = json.loads(told(capsys, "show", "/map_server/map", "--json"))
     assert list(service["parts"]) == ["request", "response"]
     node = told(capsys, "show", "/world")
-    assert "publishes: /battery_state, " in node
+    assert "publishes: /amcl_pose, /battery_state, " in node
     text = told(capsys, "show", "sensor_msgs/BatteryState")
     assert text.startswith("type sensor_msgs/msg/BatteryState")
     assert "0 to 1" in text
