@@ -219,7 +219,12 @@ class ActionlibWire:
 
     def _send_again(self, goal_id: str, goal: _Goal) -> None:
         now = self._node.clock.elapsed
-        if now - goal.sent >= SENT_AGAIN_AFTER and self._sender.wants(goal_id):
+        # A server that pursues one goal at a time would leave a newer one for the older.
+        overtaken = any(
+            other.heard_of
+            for other in itertools.dropwhile(lambda each: each is not goal, self._goals.values())
+        )
+        if now - goal.sent >= SENT_AGAIN_AFTER and not overtaken and self._sender.wants(goal_id):
             goal.sent, goal.missing = now, 0
             self._goal.publish(goal.message)
 

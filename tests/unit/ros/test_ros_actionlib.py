@@ -166,3 +166,19 @@ def test_a_client_that_ends_cancels_its_goals_also_where_the_server_is_quiet() -
         assert graph.stopped == [3]
 
     play(scene)
+
+
+def test_a_lost_goal_does_not_come_after_a_newer_one() -> None:
+    """A server that pursues one goal at a time would leave the newer one for it."""
+
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        older = asyncio.create_task(client.send({"target": 3, "period": 0.5}, timeout=5))
+        await graph.clock.sleep(0.3)
+        newer = await client.send({"target": 4, "period": 8.0}, timeout=5)
+        assert (await newer.outcome(20)).status is GoalStatus.SUCCEEDED
+        assert isinstance(older.exception(), CallTimedOut)
+        assert graph.began == [4]
+
+    play(scene)
