@@ -57,6 +57,10 @@ class Sight:
             if door.name in self._closed
         }
 
+    def covers(self, place: Point, believed: Placement) -> bool:
+        """Whether the robot sees a place on its map, or who stands there."""
+        return self._sees(*self._true().point(*believed.local(*place)), self._world.segments)
+
     def forget(self) -> None:
         """Forget the doors that were closed."""
         self._closed.clear()

@@ -36,6 +36,7 @@ _LEAST_ALLOWANCE = 30.0
 _LATER = 1.3
 _FEEDBACK_EVERY = 2
 _STILL = 0.15
+_DETOUR = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +95,7 @@ class Trip:
         self._recoveries = self._in_a_row = self._cycles = 0
         self._stuck_at: Point = (math.inf, math.inf)
         self._hopeless: list[Circle] | None = None
+        self._avoided: list[Circle] = []
         self._mark = self._pose
         self._marked = self._planned = self._began
         self._look()
@@ -155,6 +157,8 @@ class Trip:
         blocked = in_the_way(self._route, self._others, radius, 1.5)
         if beside > _LOST or (blocked and self._clock.now() - self._planned >= 1.0):
             self._plan_again()
+        elif self._avoided and self._clock.now() - self._planned >= 1.0:
+            self._reconsider()
         self._cycles += 1
         if self._cycles % _FEEDBACK_EVERY == 0:
             self._report()
@@ -195,7 +199,26 @@ class Trip:
             self._hopeless = self._others
             return
         self._hopeless = None
+        longer = Route(way).length - self._route.remaining
+        if longer > _DETOUR:
+            self._avoided = self._others
         self._drive_along(way)
+
+    def _reconsider(self) -> None:
+        """Leave a detour for the straight way when those who stood there have gone on, as far as the robot sees."""
+        self._planned = self._clock.now()
+        if not all(self.navigator.sight.covers((x, y), self._pose) for x, y, _ in self._avoided):
+            return
+        vias = self._vias
+        try:
+            way = self._way(self._others)
+        except NavigationFailure:
+            return
+        if Route(way).length < self._route.remaining - _DETOUR:
+            self._avoided = []
+            self._drive_along(way)
+        else:
+            self._vias = vias
 
     def _way(self, others: Sequence[Circle]) -> list[Point]:
         """The way through all goals that are left, in a wide berth round *others* if there is room for that."""
