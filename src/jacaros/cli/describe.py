@@ -41,7 +41,7 @@ def command(what: str, project: Path, as_json: bool) -> None:
             _json([dataclasses.asdict(manual) for manual in manuals] if len(manuals) != 1 else manuals[0])
         )
     else:
-        click.echo("\n\n".join(map(str, manuals)))
+        click.echo("\n\n".join(map(_for_people, manuals)))
 
 
 def _kinds(what: str, project: Path) -> Sequence[type[Artifact]]:
@@ -62,6 +62,11 @@ def _mapped_types(name: str, folder: Path) -> list[type[Artifact]]:
     if path is None:
         raise UsageError(f"there is no mapping file {name}")
     return [_find(f"{path}#{each}", folder) for each in load_mapping(path).artifacts]
+
+
+def _for_people(manual: Manual) -> str:
+    """What a manual says, without the marks of docstrings around code."""
+    return str(manual).replace("`", "")
 
 
 def _json(data: Any) -> str:
@@ -136,7 +141,7 @@ class _Project:
             yield f"  world {deployment.world}"
         for manual in self._manuals:
             yield ""
-            yield str(manual)
+            yield _for_people(manual)
 
     def data(self) -> dict[str, Any]:
         """For programs."""

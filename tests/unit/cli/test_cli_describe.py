@@ -90,6 +90,12 @@ def test_a_type_of_the_project_is_described(folder: Path, capsys: pytest.Capture
     assert described(capsys, "Lamp", "--project", str(folder)) == LAMP
 
 
+def test_people_do_not_see_the_marks_of_docstrings(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    said = described(capsys, "nav2.yaml")
+    assert 'such as "robot_1", rate(5)' in said
+    assert "`" not in said
+
+
 def test_all_types_of_a_file_are_described(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert described(capsys, "artifacts.py") == f"{LAMP}\n{BARE}"
 

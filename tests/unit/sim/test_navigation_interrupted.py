@@ -147,3 +147,41 @@ def test_robots_pass_each_other() -> None:
 
     done = in_world("three_robots", body)
     assert bumps(done.world) == []
+
+
+STOREHOUSE = """
+name: storehouse
+bounds: {{from: [-4, -3], to: [4, 3]}}
+border: walls
+walls:
+  - box: {{from: [-2.5, 0.9], to: [2.5, 1.3]}}
+  - box: {{from: [-2.5, -1.3], to: [2.5, -0.9]}}
+robots:
+  - {{name: one, namespace: one, pose: {{x: -3.2, y: 0, yaw_degrees: 0}}}}
+  - {{name: two, namespace: two, pose: {{x: {x}, y: 0.3, yaw_degrees: 0}}}}
+  - {{name: three, namespace: three, pose: {{x: {x}, y: -0.3, yaw_degrees: 0}}}}
+"""
+
+
+@pytest.mark.parametrize("they_go", [True, False])
+@pytest.mark.parametrize(
+    "x", [pytest.param(-1.6, id="closed from the beginning"), pytest.param(1.5, id="seen on the way")]
+)
+def test_a_detour_is_left_when_those_who_stood_there_have_gone(x: float, they_go: bool) -> None:
+    """Between the racks it is 6.4 metres to the goal, round them 8.9 or, for who turns back, 12."""
+
+    async def body(lab: Lab) -> None:
+        first = await lab.send("/one/navigate_to_pose", NAVIGATE, pose=pose(3.2, 0))
+        while not lab.feedback or lab.feedback[-1].distance_remaining < 8.0:  # until it turns to the detour
+            await lab.clock.sleep(0.5)
+        await lab.clock.sleep(1.5)
+        if they_go:
+            for name, away in (("two", -3.0), ("three", -3.6)):
+                robot = lab.world.robot(name)
+                robot.x, robot.y = away, 2.5
+        assert (await first.outcome(timeout=300.0)).status == GoalStatus.SUCCEEDED
+
+    done = in_world(STOREHOUSE.format(x=x), body).world
+    driven = done.robot("one").odometer
+    assert driven < 8.0 if they_go else driven > 8.5
+    assert bumps(done) == []

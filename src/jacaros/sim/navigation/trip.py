@@ -37,6 +37,7 @@ _LATER = 1.3
 _FEEDBACK_EVERY = 2
 _STILL = 0.15
 _DETOUR = 1.0
+"""Metres by which a way round others must be longer to be left again when they have gone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +97,7 @@ class Trip:
         self._stuck_at: Point = (math.inf, math.inf)
         self._hopeless: list[Circle] | None = None
         self._avoided: list[Circle] = []
+        self._vias: list[float] = []
         self._mark = self._pose
         self._marked = self._planned = self._began
         self._look()
@@ -181,11 +183,16 @@ class Trip:
         )
 
     def _first_way(self) -> list[Point]:
+        free = self._way(())
+        if not self._others:
+            return free
         try:
-            return self._way(self._others)
+            way = self._way(self._others)
         except NavigationFailure:
             # Others may be gone when the robot comes there; walls will not.
             return self._way(())
+        self._note_detour(way, Route(free).length)
+        return way
 
     def _plan_again(self) -> None:
         """Find a way round whoever stands there; without one the old way stays."""
@@ -199,10 +206,13 @@ class Trip:
             self._hopeless = self._others
             return
         self._hopeless = None
-        longer = Route(way).length - self._route.remaining
-        if longer > _DETOUR:
-            self._avoided = self._others
+        self._note_detour(way, self._route.remaining)
         self._drive_along(way)
+
+    def _note_detour(self, way: list[Point], without: float) -> None:
+        """Remember for whom *way* is much longer than the *without* metres there would be without others."""
+        if Route(way).length > without + _DETOUR:
+            self._avoided = self._others
 
     def _reconsider(self) -> None:
         """Leave a detour for the straight way when those who stood there have gone on, as far as the robot sees."""
