@@ -92,10 +92,8 @@ def lost_in_handler(
 def why(reason: FailureReason) -> str:
     """A reason for records of a run, in lines: error, message and place; the step; the terms for plans."""
     told = ", ".join(filter(None, (reason.known_error(), reason.message())))
-    step = reason.step()
-    return "\n".join(
-        (f"{told}{_place(reason)}", *([f"step: {_short(step)}"] if step else ()), *_terms(reason))
-    )
+    step = _step(reason)
+    return "\n".join((f"{told}{_place(reason)}", *([f"step: {step}"] if step else ()), *_terms(reason)))
 
 
 def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
@@ -104,13 +102,19 @@ def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
     if len(goals) == 1 and what.endswith(f" {goals[0]}"):
         goals = []
     lines = []
-    step = _short(reason.step())
+    step = _step(reason)
     if step:
         lines.append(f"step: {step}{', for ' if goals else ''}{_chain(goals)}")
     elif len(goals) > 2:  # the first and the last are named in the message
         lines.append(f"for: {_chain(goals[1:])}")
     lines += _limited([f"does not fit: {each}" for each in reason.candidates], MOST_PLANS, "plans")
     return (*lines, *_terms(reason))
+
+
+def _step(reason: FailureReason) -> str:
+    step = reason.step()
+    # The reason that it hands on stands in the other lines.
+    return ".fail(...)" if step.startswith(".fail(") else _short(step)
 
 
 def _terms(reason: FailureReason) -> list[str]:

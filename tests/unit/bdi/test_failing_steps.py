@@ -57,7 +57,7 @@ def test_an_observer_hears_why_a_goal_failed() -> None:
     observe_goals(host.agent, lambda state, goal, number, why: heard.append((state, goal, why)))
     host.run()
     assert [(goal, why) for state, goal, why in heard if state == "failed"] == [
-        ("!b", 'internal_action, no way (tester.asl:1)\nstep: .fail(error_msg("no way"))')
+        ("!b", "internal_action, no way (tester.asl:1)\nstep: .fail(...)")
     ]
     assert not any(why for state, goal, why in heard if state != "failed")
 

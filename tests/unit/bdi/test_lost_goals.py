@@ -42,7 +42,7 @@ def test_an_internal_action_is_told_with_what_it_says() -> None:
 
 def test_the_terms_of_a_failure_are_told() -> None:
     found = told('!g.\n+!g <- .fail(stuck(3), error_msg("the door is shut")).')
-    step = 'step: .fail(stuck(3),error_msg("the door is shut"))'
+    step = "step: .fail(...)"
     assert found == lost("g", "internal_action, the door is shut", 2, step, "reason: stuck(3)")
 
 
@@ -148,4 +148,4 @@ def test_an_observer_hears_error_place_step_and_reason() -> None:
     heard: list[str] = []
     observe_goals(host.agent, lambda state, goal, number, why: heard.append(why) if why else None)
     host.run()
-    assert heard == ['internal_action, ouch (tester.asl:2)\nstep: .fail(wet,error_msg("ouch"))\nreason: wet']
+    assert heard == ["internal_action, ouch (tester.asl:2)\nstep: .fail(...)\nreason: wet"]

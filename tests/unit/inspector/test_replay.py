@@ -158,3 +158,29 @@ def test_of_goals_that_a_plan_pursues_again_and_again_the_newest_are_shown(tmp_p
     )
     goals = [re.sub("<[^>]*>", "", each).replace("&quot;", '"') for each in found]
     assert goals == ["!start", '!round("a,b", 7)  and 7 before it', '!round("a,b", 8)', "!round(9)"]
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+def test_the_reason_of_goals_that_were_for_one_another_is_shown_once(tmp_path: Path) -> None:
+    recorder = Recorder()
+    why = "action_failed, no way (robot.asl:4)\nstep: navigate_to(5,5,0)"
+    goals = (("!work", why), ("!tour", why), ("!other", "stuck (robot.asl:9)"))
+    for number, (goal, _) in enumerate(goals):
+        recorder.event(0.1 * number, "goal", {"agent": "a", "goal": goal, "state": "pursued", "id": number})
+    for number, (goal, reason) in enumerate(goals):
+        told = {"agent": "a", "goal": goal, "state": "failed", "id": number, "why": reason}
+        recorder.event(1.0, "goal", told)
+    recorder.close()
+    page = tmp_path / "replay.html"
+    write_replay(recorder.recording, page)
+    found = re.findall(
+        r'<li class="failed past"><i></i><span>(.*?)</span>.*?</span>(?:<span class="why"[^>]*>(.*?)</span>)?</li>',
+        dom(page, "t=2"),
+    )
+    assert found == [
+        ("!work", ""),
+        ("!tour", "action_failed, no way (robot.asl:4)"),
+        ("!other", "stuck (robot.asl:9)"),
+    ]
