@@ -81,7 +81,7 @@ def _without_parameters(options: list[str], warn: Callable[[str], None]) -> list
         if option in kept:
             kept[option].append(value)
         if option not in ("--param", "--params-file"):
-            rest += [option, value] if value else [option]
+            rest += [option] if option in _ROS2_FLAGS.values() else [option, value]
     node = f"{kept['--namespace'][-1]}/{kept['--node-name'][-1]}"
     given = read_parameters(kept["--param"], [Path(file) for file in kept["--params-file"]], node)
     for name in given:

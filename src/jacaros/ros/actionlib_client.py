@@ -1,11 +1,12 @@
 """Action clients of ROS 1 graphs: actionlib's protocol as a `GoalWire`."""
 
 import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from jacaros.clock import Timer
-from jacaros.ros.action import Outcome
+from jacaros.ros.action import GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import text_of
 from jacaros.ros.actionlib_states import (
@@ -34,6 +35,7 @@ SENT_AGAIN_AFTER = 1.0
 """Seconds in which a server that runs mentions a goal that it was sent; one that does not has not got it.  Between the two
 topics being connected and the first message, a goal can get lost: rospy's publishers, and a bridge's, know a subscriber
 before it hears them.  A server that has got it after all ignores the second, for it has the same id."""
+OVERTAKEN = "it was lost on its way to the server, which has accepted a newer goal"
 REFUSED_AFTER = 1.0
 """Seconds in which a request for cancelling must show in the goal's state: actionlib's servers do not say no."""
 
@@ -49,6 +51,7 @@ class _Goal:
         sent: when it was, for the last time.
         heard_of: the server has mentioned it.
         accepted: by the server.
+        overtaken: the server has accepted a newer one, and had not heard of this one.
         missing: messages about the server's goals, one after the other, in which it was not mentioned.
         ended: such messages that called it ended, while its result has not come.
         cancelling: when cancelling was asked for, until it is answered.
@@ -59,6 +62,7 @@ class _Goal:
     sent: float
     heard_of: bool = False
     accepted: bool = False
+    overtaken: bool = False
     missing: int = 0
     ended: int = 0
     cancelling: float | None = None
@@ -215,18 +219,26 @@ class ActionlibWire:
             if goal.accepted:
                 self._lose(goal_id, "has been started again and does not know")
             elif not goal.heard_of:
-                self._send_again(goal_id, goal)
+                self._see_lost(goal_id, goal)
 
-    def _send_again(self, goal_id: str, goal: _Goal) -> None:
+    def _see_lost(self, goal_id: str, goal: _Goal) -> None:
+        """A goal seems to be lost on its way: send it again, unless a newer one has taken its place."""
         now = self._node.clock.elapsed
-        # A server that pursues one goal at a time would leave a newer one for the older.
-        overtaken = any(
-            other.heard_of
-            for other in itertools.dropwhile(lambda each: each is not goal, self._goals.values())
-        )
-        if now - goal.sent >= SENT_AGAIN_AFTER and not overtaken and self._sender.wants(goal_id):
+        if now - goal.sent < SENT_AGAIN_AFTER or not self._sender.wants(goal_id):
+            return
+        # A server that pursues one goal at a time would leave the newer one for the older, or begin it after that.
+        if goal.overtaken:
+            self.cancel_goal(goal_id)
+            result = self._node.factory.make(self._result_type)
+            self._sender.ended(goal_id, Outcome(GoalStatus.CANCELED, result, OVERTAKEN))
+        elif not any(newer.heard_of for newer in self._newer_than(goal)):
             goal.sent, goal.missing = now, 0
             self._goal.publish(goal.message)
+
+    def _newer_than(self, goal: _Goal) -> Iterator[_Goal]:
+        return itertools.islice(
+            itertools.dropwhile(lambda each: each is not goal, self._goals.values()), 1, None
+        )
 
     def _advance(self, goal_id: str, goal: _Goal, status: Any) -> None:
         state = State(status.status)
@@ -246,6 +258,8 @@ class ActionlibWire:
     def _accept(self, goal_id: str, goal: _Goal) -> None:
         if not goal.accepted:
             goal.accepted = True
+            for older in itertools.takewhile(lambda each: each is not goal, self._goals.values()):
+                older.overtaken = not older.heard_of and not older.accepted
             self._sender.accepted(goal_id)
 
     def _see_cancelling(self, goal_id: str, goal: _Goal, state: State) -> None:

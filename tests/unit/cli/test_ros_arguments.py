@@ -65,6 +65,11 @@ def test_a_world_has_no_clock_to_follow_and_no_parameters(tmp_path: Path) -> Non
     assert [line.split(" has ")[0] for line in told] == ["the parameter b.c", "the parameter a"]
 
 
+def test_an_empty_namespace_is_kept() -> None:
+    read, _ = options("sim", "house", "--ros-args", "-r", "__ns:=")
+    assert read == ["sim", "house", "--namespace", "", "--ros", "ros2"]
+
+
 def test_arguments_of_ros1_become_options() -> None:
     written = (
         "run",

@@ -4,16 +4,18 @@ import asyncio
 from collections.abc import Callable, Coroutine
 from typing import Any
 
+import pytest
+
 from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import ActionPolicy, GoalStatus
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import GoalUnderWay
-from jacaros.ros.actionlib_client import ActionlibWire
+from jacaros.ros.actionlib_client import OVERTAKEN, ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.actionlib_states import part_type
 from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
 from jacaros.ros.backends.rosbridge_types import BridgeSchema
-from jacaros.ros.errors import CallTimedOut
+from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
 
 COUNT = "jacaros_interfaces/action/Count"
@@ -43,7 +45,7 @@ class Actionlib:
         for part in ("ActionGoal", "ActionResult", "ActionFeedback"):
             schema.fields(part_type(COUNT, part))
         robot, here = await self._node(graph, "robot"), await self._node(graph, "client")
-        policy = ActionPolicy(None, lambda goal: True, False)
+        policy = ActionPolicy(lambda goal: None if goal.target >= 0 else "less than nothing")
         self.server = ActionlibServer(robot, "/count", COUNT, self._count, policy)
         sender = GoalSender(self.clock, print, here.factory, "/count", COUNT)
         sender.wire = ActionlibWire(here, sender)
@@ -168,17 +170,34 @@ def test_a_client_that_ends_cancels_its_goals_also_where_the_server_is_quiet() -
     play(scene)
 
 
-def test_a_lost_goal_does_not_come_after_a_newer_one() -> None:
-    """A server that pursues one goal at a time would leave the newer one for it."""
+@pytest.mark.parametrize("period", [0.1, 8.0])
+def test_a_lost_goal_does_not_come_after_a_newer_one(period: float) -> None:
+    """A server that pursues one goal at a time would leave the newer one for it; who waits for it hears of that."""
 
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        older = asyncio.create_task(client.send({"target": 3, "period": 0.5}))
+        await graph.clock.sleep(0.3)
+        newer = await client.send({"target": 4, "period": period}, timeout=5)
+        assert (await newer.outcome(20)).status is GoalStatus.SUCCEEDED
+        end = await (await older).outcome(3)
+        assert (end.status, end.text) == (GoalStatus.CANCELED, OVERTAKEN)
+        await graph.clock.sleep(8)
+        assert graph.began == [4]
+
+    play(scene)
+
+
+def test_a_lost_goal_is_sent_again_when_a_newer_one_was_refused() -> None:
     async def scene(graph: Actionlib) -> None:
         client = await graph.open()
         graph.swallowed = 1
         older = asyncio.create_task(client.send({"target": 3, "period": 0.5}, timeout=5))
         await graph.clock.sleep(0.3)
-        newer = await client.send({"target": 4, "period": 8.0}, timeout=5)
-        assert (await newer.outcome(20)).status is GoalStatus.SUCCEEDED
-        assert isinstance(older.exception(), CallTimedOut)
-        assert graph.began == [4]
+        with pytest.raises(GoalRejected):
+            await client.send({"target": -1}, timeout=5)
+        assert (await (await older).outcome(5)).status is GoalStatus.SUCCEEDED
+        assert graph.began == [3]
 
     play(scene)

@@ -1,5 +1,8 @@
 """Values of parameters as agents get them: no definition says their type, so what does not fit is seen when it comes."""
 
+import dataclasses
+import math
+
 from jacaros.artifacts.mapping.declared import AS_IT_IS, Conversion
 from jacaros.artifacts.mapping.taking import Convert, Unshowable, converted
 from jacaros.env.values import Atom, text
@@ -16,6 +19,7 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
     The function raises `Unshowable` for what is no number where one is needed.
     """
     convert: Convert = _as_atom if conversion.kind == "atom" else converted(conversion)
+    unrounded = converted(dataclasses.replace(conversion, digits=None))
     if conversion == AS_IT_IS:
         return convert
     named = {value for value, _ in conversion.names}
@@ -26,7 +30,9 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
         if wants_number and not is_number and not (isinstance(value, str | bool) and value in named):
             told = f"parameter {name} is {text(value, quoted=True)}, no number"
             raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
-        return convert(value)
+        # Infinity is no whole number.
+        endless = isinstance(value, float) and not math.isfinite(value)
+        return unrounded(value) if endless else convert(value)
 
     return lambda value: [element(each) for each in value] if isinstance(value, list) else element(value)
 

@@ -59,16 +59,17 @@ def _field(node: Node) -> FieldPart | None:
         node.wrong("a parameter has one value and no fields", "write fields: {path: ., unit: degrees}")
         return None
     kind = fields[0].conversion.kind
-    if kind not in ("", "atom") or fields[0].shares is not None:
-        told = f"'as: {kind}'" if kind else "'sample'"
+    if kind not in ("", "atom") or fields[0].shares is not None or fields[0].otherwise is not None:
+        told = "'otherwise'" if fields[0].otherwise is not None else f"'as: {kind}'" if kind else "'sample'"
         node.wrong(f"{told} is for messages", "of a parameter: as: atom, names, unit, scale, offset, round")
     return dataclasses.replace(fields[0], path=WHOLE)
 
 
 def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> None:
     """A parameter of our own keeps its type: what becomes of the default becomes of every value."""
+    unnamed = dataclasses.replace(field.conversion, names=())  # other values may have no names
     try:
-        parameter_converter(field.conversion, node.what.strip("'"))(default)
+        parameter_converter(unnamed, node.what.strip("'"))([""] if default == [] else default)
     except Unshowable as wrong:
         node.wrong(str(wrong), wrong.cure)
 

@@ -402,6 +402,18 @@ WRONG = {
         "parameters: {a: {default: fast, fields: {path: ., unit: degrees}}}",
         '1:27: parameter default is "fast", no number | leave out its unit, scale, offset and round',
     ),
+    "rounding of a text with a name": (
+        "parameters: {a: {default: fast, fields: {path: ., names: {fast: swift}, round: 1}}}",
+        '1:27: parameter default is "fast", no number | leave out its unit, scale, offset and round',
+    ),
+    "unit of texts that are to come": (
+        "parameters: {a: {default: [], fields: {path: ., unit: degrees}}}",
+        '1:27: parameter default is "", no number | leave out its unit, scale, offset and round',
+    ),
+    "substitute of a parameter": (
+        "parameters: {a: {default: 3.0, fields: {path: ., otherwise: 0}}}",
+        "1:40: 'otherwise' is for messages | of a parameter: as: atom, names, unit, scale, offset, round",
+    ),
     "conversion for messages": (
         "parameters: {a: {default: 3, fields: {path: ., as: yaw}}}",
         "1:38: 'as: yaw' is for messages | of a parameter: as: atom, names, unit, scale, offset, round",

@@ -1,5 +1,7 @@
 """Parameters of our own node in mapping files, on the graph inside the process."""
 
+import math
+
 import pytest
 from mapped_lab import mapped, settle
 from robot_lab import Lab, in_lab
@@ -93,6 +95,20 @@ def test_they_go_with_their_artifact() -> None:
         lab.workspace.dispose_artifact(artifact)
         assert await lab.backend.parameters().names() == []
         await lab.make(mapped(TUNED))
+
+    in_lab(body, None)
+
+
+def test_infinity_is_not_rounded() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(mapped(TUNED))
+        theirs = lab.backend.parameters()
+        await theirs.set("patrol.turn", -math.inf)
+        await settle()
+        assert held(lab, artifact, "turn") == [(-math.inf,)]
+        await theirs.set("patrol.turn", 1.0)
+        await settle()
+        assert held(lab, artifact, "turn") == [(57,)]
 
     in_lab(body, None)
 
