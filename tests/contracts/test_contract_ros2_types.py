@@ -1,4 +1,4 @@
-"""ROS 2 alone: two parts of a process that want one name with different types are told so in plain words."""
+"""ROS 2 alone: names and parameters with types that do not fit are told in plain words."""
 
 import os
 import subprocess
@@ -56,3 +56,37 @@ def test_a_name_that_is_used_with_another_type_already_is_told(
         f"action /a cannot be joined with type nav2_msgs/action/NavigateToPose: {end}",
         f"action /a cannot be joined with type nav2_msgs/action/NavigateToPose: {end}",
     ], done.stderr
+
+
+WRONG_PARAMETER = """
+from jacaros.clock import WallClock, run
+from jacaros.ros.errors import ParameterRefused
+from jacaros.ros.open import open_backend
+
+async def main():
+    backend = open_backend("ros2", WallClock(), "node", parameters={"use_sim_time": 5})
+    try:
+        await backend.start()
+    except ParameterRefused as error:
+        print(error)
+
+run(main, WallClock())
+"""
+
+
+def test_a_value_that_does_not_fit_a_parameter_of_rclpys_own_is_told(
+    tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    if not is_wanted("ros2", request.config):
+        pytest.skip("no ROS 2 here; see test_contract_presence")
+    done = subprocess.run(
+        [sys.executable, "-c", WRONG_PARAMETER],
+        env=os.environ | ros2_environment(tmp_path),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.stdout.startswith("a parameter of /node: "), done.stderr
+    assert "use_sim_time" in done.stdout
+    assert done.returncode == 0

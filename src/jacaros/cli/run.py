@@ -121,7 +121,10 @@ def command(
     if param or params_file:
         project = load_deployment(file)
         parameters = _parameters(project, param, params_file, ros, f"{namespace}/{node_name or ''}")
-        if parameters.pop("use_sim_time", None) is True and clock is None and ros != "memory":
+        simulated = parameters.pop("use_sim_time", False)
+        if not isinstance(simulated, bool):
+            raise UsageError(f"the parameter use_sim_time is true or false, not {simulated!r}")
+        if simulated and clock is None and ros != "memory":
             clock = "ros"
     watched = view or any(output is not None for output in (record, replay, ground_truth))
     options = RunOptions(

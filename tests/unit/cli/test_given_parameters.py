@@ -154,6 +154,11 @@ def test_what_no_parameter_holds_and_where_there_are_none(
     assert "over rosbridge we are no node of the graph" in capsys.readouterr().err
 
 
+def test_use_sim_time_is_true_or_false(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(folder, "--param", "use_sim_time:=yes") == 2
+    assert "the parameter use_sim_time is true or false, not 'yes'" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "follows"),
     [

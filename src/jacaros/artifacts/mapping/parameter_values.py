@@ -30,7 +30,7 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
         if wants_number and not is_number and not (isinstance(value, str | bool) and value in named):
             told = f"parameter {name} is {text(value, quoted=True)}, no number"
             raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
-        # Infinity is no whole number.
+        # Infinity is no whole number; who takes the value refuses it.
         endless = isinstance(value, float) and not math.isfinite(value)
         return unrounded(value) if endless else convert(value)
 

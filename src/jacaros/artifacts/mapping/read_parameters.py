@@ -38,6 +38,7 @@ def read_parameter(name: Node, node: Node) -> ParameterPart:
         _require_shown(entries["default"], field, declaration.default)
     shown = (field,) if field is not None else None
     policy = read_policy({key: value for key, value in entries.items() if key != "rate"}, shown)
+    policy = dataclasses.replace(policy, finite=True)  # no field says what to show instead
     rate = entries.get("rate")
     return ParameterPart(
         belief_name(name),

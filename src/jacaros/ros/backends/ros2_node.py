@@ -18,12 +18,14 @@ os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
 import rclpy  # type: ignore[import-not-found]
 import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
+from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
 from jacaros.ros.backends.ros2_output import leave_standard_output_alone
 from jacaros.ros.backends.ros2_receiving import Receiver
 from jacaros.ros.backends.ros2_second_look import Find, SecondLook
 from jacaros.ros.backends.ros2_types import RosidlSchema
 from jacaros.ros.backends.ros2_values import parameter
+from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.ros_clock import RosClock
@@ -140,13 +142,17 @@ class Ros2Node(Node):
         rclpy.init(
             args=[], context=self._context, domain_id=self._domain_id, signal_handler_options=no_signals
         )
-        self.rcl = rclpy.create_node(
-            self.names.node_name,
-            namespace=self.names.namespace or "/",
-            context=self._context,
-            use_global_arguments=False,
-            parameter_overrides=[parameter(name, value) for name, value in self._overrides()],
-        )
+        try:
+            self.rcl = rclpy.create_node(
+                self.names.node_name,
+                namespace=self.names.namespace or "/",
+                context=self._context,
+                use_global_arguments=False,
+                parameter_overrides=[parameter(name, value) for name, value in self._overrides()],
+            )
+        except ParameterException as problem:  # a value for one of rclpy's own
+            self._context.try_shutdown()
+            raise ParameterRefused(f"a parameter of {self.node_name}: {problem}") from None
         for name in self.rcl.list_parameters([], 0).names:  # rclpy's own
             self.given_parameters.take(name)
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
