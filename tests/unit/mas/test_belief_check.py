@@ -195,6 +195,11 @@ def test_other_namespaces_are_left_alone(folder: Path) -> None:
     assert told(folder, MAKES + "+other::obstacel(D) <- .print(D).") == []
 
 
+def test_plans_for_others_in_strings_count(folder: Path) -> None:
+    sent = '+!tell <- .send(bob, tellHow, "+!see <- .send(alice, tell, obstacel(2)).").'
+    assert told(folder, f"{MAKES} {sent} +obstacel(D) <- .print(D).") == []
+
+
 @pytest.mark.parametrize(
     ("written", "meant", "misspelt"),
     [
@@ -208,6 +213,12 @@ def test_other_namespaces_are_left_alone(folder: Path) -> None:
         ("pose", "pos", False),
         ("hired", "fired", False),
         ("battery", "battery", False),
+        ("pos_y", "pos_x", False),
+        ("robot_b", "robot_a", False),
+        ("light_in", "light_on", False),
+        ("closed", "close", False),
+        ("larger", "large", False),
+        ("battery_levle", "battery_level", True),
     ],
 )
 def test_what_is_a_slip(written: str, meant: str, misspelt: bool) -> None:

@@ -1,5 +1,6 @@
 """What a program asks about beliefs, and what it says that could make them."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final
@@ -14,8 +15,13 @@ _ADDING: Final = frozenset({".include", ".add_plan", ".create_agent", ".clone", 
 """Internal actions that bring in plans or agents which do not stand in the program."""
 _QUERIES: Final = {".count": 0, ".findall": 1, ".setof": 1}
 """Internal actions with a condition among their arguments."""
+_WORD: Final = re.compile(r"\w+")
 _SHORTEST: Final = 5
 """Shorter names are too easily like each other."""
+_SHORTEST_PART: Final = 3
+"""So are shorter parts of names with underscores."""
+_ENDINGS: Final = "sdr"
+"""Letters that make another form of a word."""
 
 
 @dataclass
@@ -25,7 +31,7 @@ class Beliefs:
     Attributes:
         asked: what plans react to and conditions ask for, by name.
         made: names that the program gives to beliefs of its own and of others.
-        mentioned: all other names in it: they may become beliefs by ways that are not seen.
+        mentioned: all other names in it, and words of strings: they may become beliefs by ways that are not seen.
         is_open: beliefs, plans or agents come from elsewhere at run time.
     """
 
@@ -48,6 +54,8 @@ def beliefs_of(program: nodes.Program) -> Beliefs:
     for node in walk(program.beliefs, program.goals, program.plans):
         if isinstance(node, nodes.Literal) and id(node) not in asked:
             found.mentioned.add(_name(node))
+        elif isinstance(node, nodes.String):
+            found.mentioned.update(_WORD.findall(node.value))
     return found
 
 
@@ -93,10 +101,18 @@ def _name(literal: nodes.Literal) -> str:
 def is_misspelt(written: str, meant: str) -> bool:
     """Whether *written* is surely meant to be *meant*.
 
-    Names with numbers (``room1``, ``room2``), plurals, short names, and names that begin otherwise are names of their own.
+    Names with numbers (``room1``, ``room2``), plurals and other forms of a word (``close``, ``closed``), short names, names
+    that begin otherwise, and those that differ in a short part (``pos_x``, ``pos_y``) are names of their own.
     """
     if len(meant) < _SHORTEST or written[0] != meant[0] or not is_slip_of(written, meant):
         return False
     if any(character.isdigit() for character in written + meant):
         return False
-    return f"{written}s" != meant and f"{meant}s" != written
+    if any(f"{written}{ending}" == meant or f"{meant}{ending}" == written for ending in _ENDINGS):
+        return False
+    parts, wanted = written.split("_"), meant.split("_")
+    return len(parts) != len(wanted) or all(
+        min(len(one), len(two)) >= _SHORTEST_PART
+        for one, two in zip(parts, wanted, strict=True)
+        if one != two
+    )
