@@ -1,6 +1,5 @@
 """Why a goal failed: the annotations of its failure event, and what people are told of it."""
 
-from collections.abc import Callable
 from typing import Any
 
 from jacaros.asl import nodes
@@ -13,6 +12,7 @@ from jacaros.compiler.literals import annotations_of_event, literal_of
 from jacaros.compiler.lowering import lower
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
@@ -82,9 +82,9 @@ class FailureReason:
         """The step that failed, with the values of its variables; empty when a goal without plan is the reason."""
         return str(self._place.step())
 
-    def inner_goals(self) -> tuple[str, ...]:
+    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
         """The goals for which the step was made, as far as they are not on the stack any more."""
-        found: tuple[str, ...] = self._place.inner_goals()
+        found: tuple[tuple[Any, ...], ...] = self._place.inner_goals()
         return found
 
     def unplanned(self) -> tuple[Any, ...] | None:
@@ -118,7 +118,7 @@ class _Nowhere:
     def step(self) -> str:
         return ""
 
-    def inner_goals(self) -> tuple[str, ...]:
+    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
         return ()
 
     def unplanned(self) -> tuple[Any, ...] | None:
@@ -153,17 +153,15 @@ class StepPlace(_Nowhere):
         return self._frame[PLAN]
 
     def annotations(self) -> tuple[Term, ...]:
-        return _code(self._term(self._value), self.node.span, self.plan.file)
+        return _code(self._resolved(lower(self.node, self._value)), self.node.span, self.plan.file)
 
     def step(self) -> str:
-        return step_text(
-            self._info.node, self._term(lambda name: UNNAMED if name[0] == "_" else self._value(name))
-        )
+        term = lower(self.node, lambda name: UNNAMED if name[0] == "_" else self._value(name))
+        return step_text(self._info.node, self._resolved(excerpt(term)))
 
-    def _term(self, value: Callable[[str], Term]) -> Term:
+    def _resolved(self, term: Term) -> Term:
         """The formula, with the values of its variables."""
         node = self.node
-        term = lower(node, value)
         try:
             term = resolve(term)
         except (ArithmeticFault, CyclicTerm, RecursionError):
@@ -214,8 +212,8 @@ class _Interrupted(_Nowhere):
     def step(self) -> str:
         return self._step.step()
 
-    def inner_goals(self) -> tuple[str, ...]:
-        return tuple(shown_goal(frame[GOAL]) for frame in reversed(self._frames[1:]))
+    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
+        return tuple(frame[GOAL] for frame in reversed(self._frames[1:]))
 
     def span(self) -> Span | None:
         return self._step.span()
@@ -301,10 +299,14 @@ def goal_text(goal: tuple[Any, ...]) -> str:
 
 
 def shown_goal(goal: tuple[Any, ...]) -> str:
-    """A goal or another event for people, with its signs: ``!go(home)``, ``-!go(home)``, ``+low(9)``."""
+    """The beginning of a goal or another event, with its signs: ``!go(home)``, ``-!go(home)``, ``+low(9)``."""
     trigger = goal[0]
     sign = "" if trigger.operator == "+" and trigger.kind else trigger.operator
-    return f"{sign}{trigger.kind}{goal_text(goal)}"
+    try:
+        told = text(excerpt(literal_of(goal, ())))
+    except (ArithmeticFault, CyclicTerm):
+        told = f"{trigger.functor.name}(...)"
+    return f"{sign}{trigger.kind}{told}"
 
 
 def nowhere(*terms: Term, told: str = "") -> FailureReason:

@@ -10,6 +10,7 @@ from jacaros.bdi.failure_reason import FailureReason, shown_goal
 from jacaros.bdi.intention import GOAL, Intention
 from jacaros.bdi.step_text import unbracketed
 from jacaros.compiler.plan import Plan
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.text import text
 from jacaros.terms.values import functor, functor_of
 
@@ -21,6 +22,8 @@ MOST_PLANS = 3
 """So many of the plans that did not fit are told."""
 LONGEST = 120
 """Characters of a term that are shown, as of a list with all ranges of a laser."""
+LONGEST_MESSAGE = 600
+"""Characters of an ``error_msg`` that are shown; plans get all of it."""
 
 
 class Loss(NamedTuple):
@@ -52,10 +55,10 @@ def loss(
         reason: of the failure.
         goal: the goal that failed, when it is not on the stack.
     """
-    note_goals(agent, intention, reason, goal)
-    what = next((g for g in reversed(reason.goals) if g[:1] in "!?"), None)
-    if what is not None:
-        what = f"the goal {what}"
+    stack = note_goals(agent, intention, reason, goal)
+    wanted = next((each for each in reversed(stack) if each[0].operator == "+" and each[0].kind), None)
+    if wanted is not None:
+        what = f"the goal {_short(shown_goal(wanted))}"
     else:
         what = f"the plan for {reason.goals[-1]}" if reason.goals else "an intention"
     return loss_of(what, reason)
@@ -63,11 +66,16 @@ def loss(
 
 def note_goals(
     agent: Circumstance, intention: Intention, reason: FailureReason, goal: tuple[Any, ...] | None
-) -> None:
-    """Keep with a reason what only the stack of the intention and the plans of the agent tell, before they change."""
-    failed = [] if goal is None else [shown_goal(goal)]
-    reason.goals = (*reason.inner_goals(), *failed, *goals_below(intention))
+) -> list[tuple[Any, ...]]:
+    """Keep with a reason what only the stack of the intention and the plans of the agent tell, before they change.
+
+    Returns:
+        the goals that failed with the step, the inner ones first.
+    """
+    stack = [*reason.inner_goals(), *([] if goal is None else [goal]), *goals_below(intention)]
+    reason.goals = _shown(stack)
     reason.candidates = _candidates(agent, reason.unplanned())
+    return stack
 
 
 def loss_of(what: str, reason: FailureReason) -> Loss:
@@ -83,17 +91,17 @@ def lost_in_handler(
     told = f"no applicable plan for the failure event {shown_goal(goal)}; the intention is dropped"
     if reason is None:
         return Loss(told, (), None)
-    below = tuple(goals_below(intention))
-    reason.goals = below
+    reason.goals = _shown(list(goals_below(intention)))
     reason.candidates = _candidates(agent, goal)
     return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.span())
 
 
 def why(reason: FailureReason) -> str:
     """A reason for records of a run, in lines: error, message and place; the step; the terms for plans."""
-    told = ", ".join(filter(None, (reason.known_error(), reason.message())))
     step = _step(reason)
-    return "\n".join((f"{told}{_place(reason)}", *([f"step: {step}"] if step else ()), *_terms(reason)))
+    return "\n".join(
+        (f"{_error(reason)}{_place(reason)}", *([f"step: {step}"] if step else ()), *_terms(reason))
+    )
 
 
 def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
@@ -104,9 +112,9 @@ def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
     lines = []
     step = _step(reason)
     if step:
-        lines.append(f"step: {step}{', for ' if goals else ''}{_chain(goals)}")
+        lines.append(f"step: {step}{', for ' if goals else ''}{', '.join(goals)}")
     elif len(goals) > 2:  # the first and the last are named in the message
-        lines.append(f"for: {_chain(goals[1:])}")
+        lines.append(f"for: {', '.join(goals[1:])}")
     lines += _limited([f"does not fit: {each}" for each in reason.candidates], MOST_PLANS, "plans")
     return (*lines, *_terms(reason))
 
@@ -125,10 +133,10 @@ def _terms(reason: FailureReason) -> list[str]:
     terms = reason.others()
     if any(functor_of(term) is ENV_FAILURE_DETAIL for term in terms):
         terms = [term for term in terms if functor_of(term) is not ENV_FAILURE_REASON]
-    return [f"reason: {', '.join(_short(text(term)) for term in terms)}"] if terms else []
+    return [f"reason: {', '.join(_short(text(excerpt(term))) for term in terms)}"] if terms else []
 
 
-def goals_below(intention: Intention) -> Iterator[str]:
+def goals_below(intention: Intention) -> Iterator[tuple[Any, ...]]:
     """What the stack of an intention is for, the goal on top first; for a handler the failure event that it handles."""
     frames = intention.frames
     handlers = len(intention.handlers)
@@ -136,18 +144,19 @@ def goals_below(intention: Intention) -> Iterator[str]:
     while index >= 0:
         goal = frames[index][GOAL]
         if goal[0].functor.namespace != "jacaros":
-            yield shown_goal(goal)
+            yield goal
         if goal[0].failing:
             handlers -= 1
             index = intention.handlers[handlers]
         index -= 1
 
 
-def _chain(goals: list[str]) -> str:
-    left = len(goals) - MOST_GOALS
+def _shown(stack: list[tuple[Any, ...]]) -> tuple[str, ...]:
+    """Goals for people; of a stack of thousands only the first and the last."""
+    left = len(stack) - MOST_GOALS
     if left <= 1:
-        return ", ".join(goals)
-    return ", ".join((*goals[: MOST_GOALS - 1], f"{left} more", goals[-1]))
+        return tuple(map(shown_goal, stack))
+    return (*map(shown_goal, stack[: MOST_GOALS - 1]), f"{left} more", shown_goal(stack[-1]))
 
 
 def _limited(lines: list[str], most: int, of_what: str) -> list[str]:
@@ -156,8 +165,12 @@ def _limited(lines: list[str], most: int, of_what: str) -> list[str]:
 
 
 def _why(reason: FailureReason) -> str:
-    told = ", ".join(filter(None, (reason.known_error(), reason.message())))
+    told = _error(reason)
     return f": {told}" if told else ""
+
+
+def _error(reason: FailureReason) -> str:
+    return ", ".join(filter(None, (reason.known_error(), _short(reason.message(), LONGEST_MESSAGE))))
 
 
 def _place(reason: FailureReason) -> str:
@@ -165,8 +178,8 @@ def _place(reason: FailureReason) -> str:
     return f" ({where})" if where else ""
 
 
-def _short(told: str) -> str:
-    return told if len(told) <= LONGEST else f"{told[: LONGEST - 3]}..."
+def _short(told: str, longest: int = LONGEST) -> str:
+    return told if len(told) <= longest else f"{told[: longest - 3]}..."
 
 
 def _candidates(agent: Circumstance, goal: tuple[Any, ...] | None) -> tuple[str, ...]:

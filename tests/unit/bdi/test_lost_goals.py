@@ -149,3 +149,17 @@ def test_an_observer_hears_error_place_step_and_reason() -> None:
     observe_goals(host.agent, lambda state, goal, number, why: heard.append(why) if why else None)
     host.run()
     assert heard == ["internal_action, ouch (tester.asl:2)\nstep: .fail(...)\nreason: wet"]
+
+
+def test_goals_with_shared_parts_are_told_in_part() -> None:
+    found = told("!b(200, a).\n+!b(0, T) <- .fail.\n+!b(N, T) <- !b(N - 1, f(T, T)); .print(N).")
+    assert len(found) == 2
+    assert found[1].startswith("  step: .fail, for !b(0,f(f(f(")
+    assert found[1].endswith(", 195 more, !b(200,a)")
+    assert len(found[1]) < 1000
+
+
+def test_a_long_message_is_cut() -> None:
+    (found,) = told("!a.\n+!a <- .findall(X, .range(X, 1, 50000), L); !g(L).")
+    assert "no relevant plan for !g([1,2,3," in found
+    assert len(found) < 1000

@@ -1,0 +1,55 @@
+"""The beginning of a term, for what people are told.
+
+Where parts are shared, as in ``f(T,T)`` with such a ``T``, the text of a small term can be longer than any memory; and a
+list of all ranges of a laser is more than anybody reads.
+"""
+
+from jacaros.terms.values import CONS, PLAN, Annotated, Term, Var, deref, make_list
+
+MOST_PARTS = 150
+"""So many names, numbers and brackets are kept: more than a line has room for."""
+REST = Var("...")
+"""Stands for what was left out."""
+
+
+def excerpt(term: Term, parts: int = MOST_PARTS) -> Term:
+    """The term, with dots in place of what comes after its first *parts* parts.
+
+    Variables that have values are replaced by them; arithmetic stays as it is.  A term that contains itself has an
+    excerpt, too.  Plans and their bodies stay whole.
+    """
+    return _Excerpt(parts).of(term)
+
+
+class _Excerpt:
+    """Takes parts until there are enough; each level takes one, so it is not deeper than that."""
+
+    def __init__(self, parts: int) -> None:
+        self._left = parts
+
+    def of(self, term: Term) -> Term:
+        term = deref(term)
+        kind = term.__class__
+        if kind is not tuple and kind is not Annotated:
+            self._left -= 1
+            return term
+        if self._left <= 0:
+            return REST
+        self._left -= 1
+        if kind is Annotated:
+            annotations = tuple(self.of(each) for each in term.annotations)
+            return Annotated(self.of(term.term), annotations, term.tail)
+        if term[0].kind == PLAN:
+            return term
+        if term[0] is CONS:
+            return self._list(term)
+        return (term[0], *(self.of(argument) for argument in term[1:]))
+
+    def _list(self, cell: Term) -> Term:
+        elements: list[Term] = []
+        while cell.__class__ is tuple and cell[0] is CONS:
+            if self._left <= 0:
+                return make_list(elements, REST)
+            elements.append(self.of(cell[1]))
+            cell = deref(cell[2])
+        return make_list(elements, self.of(cell))
