@@ -105,7 +105,7 @@ def parts() -> list[Part]:
         if kind == "ros2":
             suites.insert(0, "tests/packaging/test_ament.py")
         name = venv.removeprefix(".venv-")
-        found.append(Part(name, (python, *PYTEST[1:], *suites), kind, needs, minutes=20))
+        found.append(Part(name, (python, *PYTEST[1:], *suites), kind, needs, minutes=25))
     return found
 
 

@@ -13,7 +13,7 @@ from typing import IO
 
 from jacaros.sim.ground_truth import GroundTruth
 
-PATIENCE = 300.0
+PATIENCE = 150.0
 """Seconds after which a test gives up; far more than any step takes on a busy machine."""
 
 JACAROS = str(Path(sys.executable).parent / "jacaros")
