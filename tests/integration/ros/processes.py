@@ -69,6 +69,7 @@ class Program:
             "[ros] found",
             "still listening",
             "later after its stamp",
+            "nobody else is in the ROS",
             # DDS meets shared memory of a process that another test has killed, and takes the network instead.
             "RTPS_TRANSPORT_SHM",
         )
