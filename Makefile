@@ -1,5 +1,6 @@
 # make demo    a venv, the package, and a robot that patrols on the embedded world; under two minutes
 # make test    everything, ROS 1 and ROS 2 included (installs what that needs on Debian 12)
+# make test-all    that, and the unit tests again with every other Python of the machine
 # make quick   what to run before a commit: style, types, layers, unit tests
 # make bench   figures of speed, beside those of other engines, in some ten minutes; renews docs/benchmarks.md
 #              make bench BENCH=--quick   in some three minutes, and changes nothing; JASON=/path/to/jason takes part, too
@@ -11,13 +12,16 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test quick reference bench clean
+.PHONY: demo test test-all quick reference bench clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
 
 test: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/test_all.py $(PARTS)
+
+test-all: $(VENV)/.installed-dev
+	$(VENV)/bin/python tools/test_all.py --all
 
 quick: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/test_all.py style types layers unit

@@ -3,7 +3,14 @@
 import gc
 from collections.abc import Iterator
 
+import hypothesis
 import pytest
+
+# The same examples in every run, however slow the machine. `--hypothesis-profile exploring` looks for new ones.
+UNTIMED = hypothesis.settings(deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow])
+hypothesis.settings.register_profile("exploring", UNTIMED)
+hypothesis.settings.register_profile("repeatable", UNTIMED, derandomize=True, database=None)
+hypothesis.settings.load_profile("repeatable")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -1,16 +1,20 @@
 """Run every part of the test suite, two at a time, and tell at the end what passed, what failed, what did not run.
 
-    test_all.py [--list] [PART ...]        all parts, or the named ones with what they need
+    test_all.py [--all] [--list] [PART ...]     the parts, or the named ones with what they need; --all: repeats, too
 
 All parts run even when one fails; the exit code is 1 if any did.  A part that this machine cannot run (exit code
 3 of its script: no root for a ROS installation, no such interpreter, ...) is reported in capitals at the end; with
 CI=true it is a failure.  Logs go to runs/test/.
+
+A part is stopped when it makes no progress or takes far more processor time than it should, never because time has passed:
+the machine may be busy with other things.
 
 Parts that measure time or need a real graph run last, when nothing else loads the processors; those of ROS 1 beside those
 of ROS 2, which wait most of the time.
 """
 
 import argparse
+import contextlib
 import os
 import signal
 import subprocess
@@ -29,6 +33,9 @@ NOT_HERE = 3
 """Exit code of a script that cannot do its work on this machine."""
 
 PYTEST = (PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider")
+RUNAWAY = 5
+"""A part that takes so many times its budget of processor time does not end: machines differ by less."""
+
 ONCE_MORE = ("--reruns", "1", "-r", "afER")
 """For parts of several processes that talk over sockets in real time: a test that fails twice has failed.  One that failed
 once is counted as rerun in the closing line and named in the log: there is something to look into."""
@@ -43,16 +50,21 @@ class Part:
         command: run in the project's folder, without standard input.
         stage: ``install`` (one after the other), ``work``, ``real-time`` (after those), at last ``ros1`` beside ``ros2``.
         needs: a part that must have passed before.
-        minutes: longer than this and it has hung.
+        budget: seconds of processor time that it takes, processes that it starts included. The closing table shows
+            where a part takes more, and one that takes `RUNAWAY` times as much is stopped.
+        quiet_minutes: a part that prints nothing for so long has hung and is stopped: no further test has ended.
         skips_fail: a test that was skipped fails the part.
+        repeats: runs what another part has run, in another environment; only with ``--all``.
     """
 
     name: str
     command: tuple[str, ...]
     stage: str = "work"
     needs: str | None = None
-    minutes: float = 10
+    budget: float | None = None
+    quiet_minutes: float = 10
     skips_fail: bool = False
+    repeats: bool = False
 
 
 def parts() -> list[Part]:
@@ -64,27 +76,34 @@ def parts() -> list[Part]:
         Part("ros2-kilted-install", ("tools/install_ros2.sh", "kilted"), "install"),
         Part("style", (f"{BIN}/ruff", "check", ".")),
         Part("format", (f"{BIN}/ruff", "format", "--check", ".")),
-        Part("types", (PYTHON, "-m", "mypy")),
+        Part("types", (PYTHON, "-m", "mypy"), budget=30),
         Part("layers", (f"{BIN}/lint-imports", "--no-logo")),
-        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), minutes=20),
+        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), budget=190),
         Part("wheel", ("tools/test_wheel.sh",)),
-        Part("conformance", (PYTHON, "tools/check_conformance.py", "language")),
-        Part("formatted", (PYTHON, "tools/check_conformance.py", "formatted")),
-        Part("environment", (PYTHON, "tools/check_conformance.py", "environment")),
-        Part("contracts", (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2 and not rosbridge")),
+        Part("conformance", (PYTHON, "tools/check_conformance.py", "language"), budget=120),
+        Part("formatted", (PYTHON, "tools/check_conformance.py", "formatted"), budget=120),
+        Part("environment", (PYTHON, "tools/check_conformance.py", "environment"), budget=50),
+        Part(
+            "contracts",
+            (*PYTEST, "tests/contracts", "-m", "not ros1 and not ros2 and not rosbridge"),
+            budget=5,
+        ),
         Part(
             "rosbridge",
             (*PYTEST, "tests/contracts", "-m", "rosbridge", "--require-rosbridge", *ONCE_MORE),
-            minutes=20,
+            budget=115,
         ),
         Part(
             "integration",
             (*PYTEST, "tests/integration", "tests/compatibility", "-m", "not ros1 and not ros2", *ONCE_MORE),
+            budget=60,
         ),
-        Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2")),
-        Part("faults", (*PYTEST, "tests/faults")),
-        Part("examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml")),
-        Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2")),
+        Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2"), budget=80),
+        Part("faults", (*PYTEST, "tests/faults"), budget=10),
+        Part(
+            "examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml"), budget=5
+        ),
+        Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2"), budget=100),
         Part(
             "browser", (*PYTEST, "tests/unit/inspector", "-m", "browser"), needs="chromium", skips_fail=True
         ),
@@ -92,7 +111,8 @@ def parts() -> list[Part]:
     for minor in (12, 13, 14):
         python = newer_python(minor)
         if python is not None:
-            found.append(Part(f"python3.{minor}", ("tools/test_python.sh", str(python)), needs="wheel"))
+            command = ("tools/test_python.sh", str(python))
+            found.append(Part(f"python3.{minor}", command, needs="wheel", repeats=True))
     found.append(Part("real-time", (PYTHON, "tools/check_conformance.py", "real-time"), "real-time"))
     for kind, venv, needs in (
         ("ros1", ".venv-ros1", "ros1-install"),
@@ -105,7 +125,7 @@ def parts() -> list[Part]:
         if kind == "ros2":
             suites.insert(0, "tests/packaging/test_ament.py")
         name = venv.removeprefix(".venv-")
-        found.append(Part(name, (python, *PYTEST[1:], *suites), kind, needs, minutes=25))
+        found.append(Part(name, (python, *PYTEST[1:], *suites), kind, needs))
     return found
 
 
@@ -129,12 +149,18 @@ def newer_python(minor: int) -> Path | None:
 
 @dataclass
 class Result:
-    """How a part went; `verdict` is ``ok``, ``FAILED`` or ``NOT RUN``."""
+    """How a part went; `verdict` is ``ok``, ``FAILED`` or ``NOT RUN``; `processor` is in seconds, too."""
 
     part: Part
     verdict: str
     seconds: float
+    processor: float
     closing_line: str
+
+    @property
+    def over_budget(self) -> bool:
+        """Whether it took so much more processor time that tests have become slow."""
+        return self.part.budget is not None and self.processor > 1.5 * self.part.budget
 
 
 class Run:
@@ -193,12 +219,12 @@ class Run:
     def _run(self, part: Part) -> None:
         needed = self.results.get(part.needs) if part.needs is not None else None
         if needed is not None and needed.verdict != "ok":
-            self._finish(Result(part, needed.verdict, 0.0, f"needs {part.needs}"), LOGS / "none")
+            self._finish(Result(part, needed.verdict, 0.0, 0.0, f"needs {part.needs}"), LOGS / "none")
             return
         log = LOGS / f"{part.name}.log"
         say(f"start    {part.name}")
         began = time.monotonic()
-        code = self._call(part, log)
+        code, processor = self._call(part, log)
         seconds = time.monotonic() - began
         closing_line = last_line(log)
         verdict = "ok" if code == 0 else "FAILED"
@@ -206,9 +232,10 @@ class Run:
             verdict = "FAILED" if self._must_run else "NOT RUN"
         if part.skips_fail and " skipped" in closing_line:
             verdict = "FAILED"
-        self._finish(Result(part, verdict, seconds, closing_line), log)
+        self._finish(Result(part, verdict, seconds, processor, closing_line), log)
 
-    def _call(self, part: Part, log: Path) -> int:
+    def _call(self, part: Part, log: Path) -> tuple[int, float]:
+        """Run a part; return its exit code and the seconds of processor time that it took."""
         environment = {**os.environ, "PYTHON": PYTHON, "PYTHONUNBUFFERED": "1"}
         # Hundreds of processes start; none of them should have to compile the package again.
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -226,13 +253,14 @@ class Run:
                 )
             except OSError as error:
                 output.write(f"cannot run {part.command[0]}: {error}\n".encode())
-                return 127
+                return 127, 0.0
             self._children.add(child)
             try:
-                return child.wait(part.minutes * 60)
-            except subprocess.TimeoutExpired:
-                output.write(f"\nstopped after {part.minutes:g} minutes\n".encode())
-                return 124
+                reason, processor = watch(child, part, log)
+                if reason is not None:
+                    output.write(f"\nstopped: {reason}\n".encode())
+                    return 124, processor
+                return child.wait(), processor
             finally:
                 end(child)
                 self._children.discard(child)
@@ -254,8 +282,32 @@ class Run:
             end(child)
 
 
+def watch(child: "subprocess.Popen[bytes]", part: Part, log: Path) -> tuple[str | None, float]:
+    """Wait until a part has ended or has to be stopped.
+
+    What limits a part is its progress and its processor time: how long a test takes says nothing on a busy machine.
+
+    Returns:
+        Why it has to be stopped, or None when it has ended, and the seconds of processor time that it took.
+    """
+    written, progress = 0, time.monotonic()
+    while True:
+        known = processes()
+        processor = sum(known[process][1] for process in family(child.pid, known))
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            child.wait(0.5)
+            return None, processor
+        if part.budget is not None and processor > RUNAWAY * part.budget:
+            return f"{processor:.0f} s of processor time, {RUNAWAY} times its budget", processor
+        if (size := log.stat().st_size) > written:
+            written, progress = size, time.monotonic()
+        if time.monotonic() - progress > part.quiet_minutes * 60:
+            return f"no output for {part.quiet_minutes:g} minutes", processor
+
+
 def end(child: "subprocess.Popen[bytes]") -> None:
-    """End a part, and whatever it left behind if it leads a group of its own."""
+    """End a part with its descendants, and whatever it left behind if it leads a group of its own."""
+    descendants = family(child.pid, processes()) - {child.pid}
     for number in (signal.SIGTERM, signal.SIGKILL):
         try:
             if os.getpgid(0) == process_group(child):
@@ -268,6 +320,9 @@ def end(child: "subprocess.Popen[bytes]") -> None:
         except subprocess.TimeoutExpired:
             continue
     child.wait()
+    for process in descendants:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(process, signal.SIGKILL)
 
 
 def process_group(child: "subprocess.Popen[bytes]") -> int:
@@ -276,6 +331,31 @@ def process_group(child: "subprocess.Popen[bytes]") -> int:
         return os.getpgid(child.pid)
     except ProcessLookupError:
         return child.pid
+
+
+def processes() -> dict[int, tuple[int, float]]:
+    """Return the parent of each process of this machine, and the seconds of processor time that it took.
+
+    Children that a process has waited for count as its own. Reads ``/proc``; empty on systems without it.
+    """
+    found = {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            # The name of the program, in parentheses, may hold anything.
+            fields = stat.read_text(errors="replace").rpartition(")")[2].split()
+        except OSError:  # it has just ended
+            continue
+        found[int(stat.parent.name)] = int(fields[1]), sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
+    return found
+
+
+def family(root: int, known: dict[int, tuple[int, float]]) -> set[int]:
+    """Return a process and its descendants, whatever sessions they have made for themselves."""
+    members = {root} & known.keys()
+    # Parents are not always older than their children, so repeat until no process is added.
+    while more := {child for child, (parent, _) in known.items() if parent in members} - members:
+        members |= more
+    return members
 
 
 def last_line(log: Path) -> str:
@@ -293,8 +373,12 @@ def say(text: str) -> None:
 def report(results: list[Result], seconds: float) -> int:
     """Print the table; the exit code."""
     say("\n" + "=" * 100)
+    say(f"{'':29} {'took':>8}  {'processor, budget':>17}")
     for result in results:
-        say(f"{result.verdict:8} {result.part.name:20} {result.seconds:6.0f} s  {result.closing_line[:90]}")
+        budget = "" if result.part.budget is None else f"{result.part.budget:.0f} s"
+        took = f"{result.seconds:6.0f} s  {result.processor:6.0f} s {budget:>8}"
+        say(f"{result.verdict:8} {result.part.name:20} {took}  {result.closing_line[:90]}")
+    over = [result.part.name for result in results if result.over_budget]
     failed = [result.part.name for result in results if result.verdict == "FAILED"]
     left_out = [result.part.name for result in results if result.verdict == "NOT RUN"]
     say("=" * 100)
@@ -305,18 +389,20 @@ def report(results: list[Result], seconds: float) -> int:
     say(
         f"{passed} parts passed, {len(failed)} failed, {len(left_out)} not run, in {seconds / 60:.1f} minutes"
     )
+    if over:
+        say(f"over their budget of processor time by half: {', '.join(over)}")
     if failed:
         say(f"FAILED: {', '.join(failed)}")
     return 1 if failed else 0
 
 
-def choose(names: list[str]) -> list[Part]:
-    """The named parts with what they need; all when none is named."""
+def choose(names: list[str], repeats: bool = False) -> list[Part]:
+    """The named parts with what they need; when none is named, all, or all but the repeats."""
     known = {part.name: part for part in parts()}
     unknown = [name for name in names if name not in known]
     if unknown:
         sys.exit(f"test_all: no part {', '.join(unknown)}; there are {', '.join(known)}")
-    wanted = set(names or known)
+    wanted = set(names) or {name for name, part in known.items() if repeats or not part.repeats}
     wanted |= {needs for name in wanted if (needs := known[name].needs) is not None}
     return [part for name, part in known.items() if name in wanted]
 
@@ -337,13 +423,14 @@ def main() -> int:
     """Run what the command line names."""
     parser = argparse.ArgumentParser(description="Run the test suite.")
     parser.add_argument("parts", nargs="*", metavar="PART")
+    parser.add_argument("--all", action="store_true", help="run the repeats, too")
     parser.add_argument("--list", action="store_true", help="name the parts")
     arguments = parser.parse_args()
     if arguments.list:
         say("\n".join(f"{part.name:20} {' '.join(part.command)}" for part in parts()))
         return 0
     LOGS.mkdir(parents=True, exist_ok=True)
-    chosen = choose(arguments.parts)
+    chosen = choose(arguments.parts, arguments.all)
     run = Run(chosen, must_run=os.environ.get("CI", "").lower() in ("true", "1"))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     stop_ignoring_signals()

@@ -1,5 +1,6 @@
 """The driver of the suite: nothing that fails or cannot run gets lost."""
 
+import contextlib
 import importlib.util
 import sys
 from pathlib import Path
@@ -7,6 +8,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parents[2]
 
@@ -95,11 +97,55 @@ def test_a_skipped_test_fails_a_part_that_must_not_skip(run: Any) -> None:
     assert verdicts == {"a": "FAILED"}
 
 
-def test_a_part_that_hangs_is_ended(run: Any) -> None:
-    code, verdicts, printed = run(("a", "sleep 100", {"minutes": 0.005}))
+def test_a_part_that_makes_no_progress_is_stopped(run: Any) -> None:
+    code, verdicts, printed = run(("a", "echo begun; sleep 100", {"quiet_minutes": 0.005}))
     assert code == 1
     assert verdicts == {"a": "FAILED"}
-    assert "stopped after" in printed
+    assert "stopped: no output for 0.005 minutes" in printed
+
+
+def test_a_part_that_uses_processor_time_without_end_is_stopped(run: Any, tmp_path: Path) -> None:
+    # A child of a child, in a session of its own: all that a part starts counts.
+    endless = "setsid sh -c 'echo $$ >endless; while :; do :; done' & wait"
+    code, verdicts, printed = run(("a", endless, {"budget": 0.05}))
+    assert code == 1
+    assert verdicts == {"a": "FAILED"}
+    state = Path("/proc", (tmp_path / "endless").read_text().strip(), "stat")
+    with contextlib.suppress(OSError):
+        while state.read_text().rpartition(")")[2].split()[0] != "Z":
+            pass  # a signal takes a moment
+    assert "s of processor time, 5 times its budget" in printed
+
+
+def test_a_part_may_take_long_while_it_makes_progress(run: Any) -> None:
+    steps = "for i in 1 2 3 4 5 6; do echo $i; sleep 0.4; done"
+    code, verdicts, _ = run(("a", steps, {"quiet_minutes": 2 / 60}))
+    assert code == 0
+    assert verdicts == {"a": "ok"}
+
+
+def test_the_closing_table_shows_parts_that_have_become_slow(run: Any) -> None:
+    code, _, printed = run(
+        ("slow", "timeout 0.6 sh -c 'while :; do :; done'; sleep 0.5; true", {"budget": 0.2}),
+        ("fast", "true", {"budget": 5}),
+    )
+    assert code == 0
+    assert "over their budget of processor time by half: slow\n" in printed
+
+
+def test_repeats_run_only_when_all_is_asked_for(driver: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    known = [driver.Part("unit", ("true",)), driver.Part("again", ("true",), needs="unit", repeats=True)]
+    monkeypatch.setattr(driver, "parts", lambda: known)
+    assert driver.choose([]) == known[:1]
+    assert driver.choose([], repeats=True) == known
+    assert driver.choose(["again"]) == known
+
+
+def test_properties_have_the_same_examples_in_every_run_however_slow_the_machine() -> None:
+    assert settings.default is not None
+    assert settings.default.deadline is None
+    assert settings.default.derandomize
+    assert HealthCheck.too_slow in settings.default.suppress_health_check
 
 
 def test_unknown_parts_are_refused_with_the_known_ones(driver: ModuleType) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jacaros.asl.diagnostics import Diagnostic
@@ -112,13 +112,7 @@ PIECES = [
     *['{include("x")}', "{namespace(n)}", "\n", "\t", " "],
 ]
 
-fuzzed = settings(
-    max_examples=150,
-    deadline=None,
-    suppress_health_check=[HealthCheck.too_slow],
-    derandomize=True,
-    database=None,
-)
+fuzzed = settings(max_examples=150)
 
 
 def read(path: str, including: str) -> tuple[str, str]:

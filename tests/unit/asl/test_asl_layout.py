@@ -165,10 +165,7 @@ SMALL = [path.read_text(encoding="utf-8") for path in PROGRAMS if path.stat().st
 @settings(
     max_examples=50,
     phases=[Phase.generate],
-    deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
-    derandomize=True,
-    database=None,
 )
 @given(st.data())
 def test_comments_between_any_tokens_stay(data: st.DataObject):

@@ -192,7 +192,7 @@ def text_of(frame: Any) -> str:
     return f"{frame[1][0]!r} {[text(argument) for argument in frame[1][1:]]}"
 
 
-@settings(max_examples=100, deadline=None, derandomize=True, database=None)
+@settings(max_examples=100)
 @given(stories)
 def test_nothing_is_left_of_goals_however_they_are_steered(story: list[tuple[Any, ...]]) -> None:
     storm = Storm()
@@ -203,7 +203,7 @@ def test_nothing_is_left_of_goals_however_they_are_steered(story: list[tuple[Any
     assert not [line for level, line in storm.host.logged if level == "error"]
 
 
-@settings(max_examples=60, deadline=None, derandomize=True, database=None)
+@settings(max_examples=60)
 @given(stories)
 def test_when_all_is_dropped_nothing_runs_any_more(story: list[tuple[Any, ...]]) -> None:
     storm = Storm()
@@ -220,7 +220,7 @@ def test_when_all_is_dropped_nothing_runs_any_more(story: list[tuple[Any, ...]])
     assert not any(emptiness(storm).values()), emptiness(storm)
 
 
-@settings(max_examples=80, deadline=None, derandomize=True, database=None)
+@settings(max_examples=80)
 @given(
     st.lists(st.tuples(numbers, st.sampled_from([1.0, 4.0, 6.0, 7.0])), min_size=1, max_size=5),
     st.lists(st.booleans(), max_size=12),

@@ -100,7 +100,7 @@ NAMES = st.sampled_from(["a(1)", "a(2)", "b(1)", "b(c)", "k", "source(bob)", "so
 ASKED = st.sampled_from(["a(Y)", "b(Y)", "k", "source(Y)", "a(1)", "b(Z)", "a(f(Z))", "source(bob)", "X2"])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.lists(NAMES, min_size=1, max_size=4), min_size=1, max_size=3),
     st.lists(ASKED, min_size=1, max_size=3, unique=True),

@@ -112,7 +112,7 @@ CHANGE = st.sampled_from(
 )
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(
     st.lists(st.one_of(FACT, RULE), min_size=1, max_size=6),
     st.lists(

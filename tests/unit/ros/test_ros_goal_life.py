@@ -317,6 +317,6 @@ class ClientLife(RuleBasedStateMachine):
 
 
 TestServerLife = ServerLife.TestCase
-TestServerLife.settings = settings(max_examples=40, stateful_step_count=20, deadline=None)
+TestServerLife.settings = settings(max_examples=40, stateful_step_count=20)
 TestClientLife = ClientLife.TestCase
-TestClientLife.settings = settings(max_examples=40, stateful_step_count=25, deadline=None)
+TestClientLife.settings = settings(max_examples=40, stateful_step_count=25)

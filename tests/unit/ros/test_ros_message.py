@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from jacaros.ros.errors import MessageMismatch, NameInvalid, UnknownInterface
@@ -120,7 +120,6 @@ def test_infinite_ranges_are_kept() -> None:
     assert math.isnan(ranges[1])
 
 
-@settings(deadline=None)
 @given(st.floats(min_value=0, max_value=4e9))
 def test_seconds_survive_a_stamp(seconds: float) -> None:
     header = make("std_msgs/msg/Header", stamp=seconds)

@@ -1,7 +1,7 @@
 """Names of nodes, topics and types."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from jacaros.ros.errors import NameInvalid
@@ -59,7 +59,6 @@ def test_remapping_replaces_whole_names_once() -> None:
     assert names.resolve("a2") == "/r/a2"
 
 
-@settings(deadline=None)
 @given(st.lists(segments, min_size=1, max_size=4), segments, st.lists(segments, max_size=3))
 def test_resolving_twice_changes_nothing(name: list[str], node: str, namespace: list[str]) -> None:
     names = NodeNames(node, "/".join(namespace))

@@ -73,7 +73,7 @@ def is_python(found: object) -> bool:
 
 
 @pytest.mark.parametrize("type_name", TYPES)
-@settings(max_examples=3, deadline=None)
+@settings(max_examples=3)
 @given(data=some.data())
 def test_every_leaf_of_every_type_arrives_as_a_python_value(type_name: str, data: Any) -> None:
     told = content(data.draw, type_name)

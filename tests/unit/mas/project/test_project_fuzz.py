@@ -45,7 +45,7 @@ def read(suffix: str, text: str) -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize("suffix", READERS)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(data=st.data())
 def test_words_in_any_order_are_read(suffix: str, data: st.DataObject) -> None:
     _, words, head = READERS[suffix]
@@ -56,7 +56,7 @@ def test_words_in_any_order_are_read(suffix: str, data: st.DataObject) -> None:
 
 
 @pytest.mark.parametrize("suffix", READERS)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(text=st.text(max_size=200))
 def test_any_text_is_read(suffix: str, text: str) -> None:
     read(suffix, text)
@@ -75,7 +75,7 @@ def test_endless_brackets_are_refused(suffix: str, sign: str) -> None:
         assert read(suffix, head + sign * 5000)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(data=st.data())
 def test_a_project_with_some_characters_changed_is_resolved(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
