@@ -18,6 +18,9 @@ from typing import Any, Protocol, TypeVar
 VIRTUAL_EPOCH = 1_577_836_800.0
 """2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: where every virtual run begins."""
 
+real_time = time.monotonic
+"""Seconds of a steady clock, whatever the clock of a run says: to bound how long something keeps the machine busy."""
+
 T = TypeVar("T")
 
 

@@ -1,6 +1,10 @@
 """Who reasons next: the agents that have something to do take turns on the loop.
 
 Nothing runs, and nothing is asked, while no agent is ready: an idle system costs nothing.
+
+Between two rounds of turns the loop polls its sockets and calls what is due.  In real time a round is bounded in time, so a
+sensor's message is read within some two milliseconds however busy the agents are.  On the virtual clock it is bounded in
+cycles: the machine's speed must not change the order in which things happen.
 """
 
 import asyncio
@@ -8,7 +12,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
-from jacaros.clock import Clock
+from jacaros.clock import Clock, real_time
 
 
 class Runnable(Protocol):
@@ -28,22 +32,28 @@ class Scheduler:
         clock: told of the cycles, so that a virtual one moves although nobody gets idle.
         on_idle: called whenever the last ready agent has run out of things to do.
         on_error: told of what escapes from an agent: a defect of JaCaROS itself.
+        real_time: seconds of a steady clock, which bound a round of turns unless *clock* is virtual.
     """
 
     QUANTUM = 50
-    """Reasoning cycles of one agent in one turn: enough to make the change of agents cheap."""
-    CYCLES_PER_CALL = 1000
-    """Cycles of all agents between two looks at timers, sockets and other callbacks of the loop."""
+    """Reasoning cycles of one agent in one turn, at most: enough to make the change of agents cheap."""
+    CYCLES_PER_ROUND = 1000
+    """On the virtual clock: cycles of all agents between two polls of timers, sockets and other callbacks of the loop."""
+    SECONDS_PER_ROUND = 0.001
+    """In real time: seconds between two polls, unless a single cycle takes longer."""
 
     def __init__(
         self,
         clock: Clock,
         on_idle: Callable[[], None] = lambda: None,
         on_error: Callable[[BaseException], None] | None = None,
+        real_time: Callable[[], float] = real_time,
     ) -> None:
         self._clock = clock
         self._on_idle = on_idle
         self._on_error = on_error
+        self._real_time = real_time
+        self._quantum = self.QUANTUM
         self._queue: deque[Runnable] = deque()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._due = False
@@ -65,9 +75,9 @@ class Scheduler:
             self._call_soon()
 
     def hurry(self) -> None:
-        """Let the ready agents have their turns now and not in the next round of the loop, unless one has its turn."""
+        """Let the ready agents have their turns now and not in the next pass of the loop, unless one has its turn."""
         if self._queue and not self._taking_turns:
-            self._take_turns()
+            self._round()
 
     def stop(self) -> None:
         """Let nobody have a turn any more."""
@@ -81,33 +91,65 @@ class Scheduler:
         self._loop.call_soon(self._turns)
 
     def _turns(self) -> None:
-        self._take_turns()
+        self._round()
         self._due = False
         if self._queue:
-            self._call_soon()
+            if self._clock.virtual:
+                self._call_soon()
+            else:
+                self._call_after_sockets()
         elif not self._stopped:
             self._on_idle()
 
-    def _take_turns(self) -> None:
-        queue, quantum = self._queue, self.QUANTUM
-        left = self.CYCLES_PER_CALL
+    def _call_after_sockets(self) -> None:
+        """Schedule the next round one pass of the loop later.
+
+        The loop polls its sockets, and puts their callbacks behind those that are scheduled already: without the extra
+        pass, what came in during this round would wait for the next one.
+        """
+        self._due = True
+        assert self._loop is not None
+        self._loop.call_soon(self._call_soon)
+
+    def _round(self) -> None:
+        """Let the ready agents have their turns until it is time to poll."""
+        queue, virtual, now = self._queue, self._clock.virtual, self._real_time
+        quantum, cycles = self.QUANTUM if virtual else self._quantum, 0
+        look = self.CYCLES_PER_ROUND if virtual else quantum
+        began = moment = 0.0 if virtual else now()
         self._taking_turns = True
         try:
-            while queue and left > 0:
+            while queue:
                 agent = queue.popleft()
                 agent.queued = False
                 if agent.run(quantum):
-                    left -= quantum
+                    cycles += quantum
                     if not agent.queued and not self._stopped:
                         agent.queued = True
                         queue.append(agent)
                 else:
-                    left -= 1
+                    cycles += 1
+                if cycles >= look:
+                    if virtual:
+                        break
+                    before, moment = moment, now()
+                    quantum = self._fitting_quantum(moment - before)
+                    if moment - began >= self.SECONDS_PER_ROUND:
+                        break
+                    look = cycles + quantum
         except Exception as error:
             self._report(error)
         finally:
             self._taking_turns = False
-        self._clock.busy(self.CYCLES_PER_CALL - left)
+        self._clock.busy(cycles)
+
+    def _fitting_quantum(self, seconds: float) -> int:
+        """The quantum, now that the last one took *seconds*: long cycles make it smaller, so that a round ends in time."""
+        if seconds > self.SECONDS_PER_ROUND / 2:
+            self._quantum = max(1, self._quantum // 2)
+        elif self._quantum < self.QUANTUM and seconds < self.SECONDS_PER_ROUND / 8:
+            self._quantum = min(self.QUANTUM, 2 * self._quantum)
+        return self._quantum
 
     def _report(self, error: Exception) -> None:
         self.stop()

@@ -1,10 +1,13 @@
 """Turns of the agents."""
 
 import asyncio
+import socket
+from collections.abc import Callable
+from itertools import pairwise
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
+from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.errors import InternalError
 from jacaros.mas.scheduler import Scheduler
 
@@ -90,7 +93,7 @@ def test_callbacks_of_the_loop_have_their_turn_among_busy_agents() -> None:
         scheduler.stop()
 
     run(main, clock)
-    assert seen == [Scheduler.CYCLES_PER_CALL * turns for turns in (1, 2, 3)]
+    assert seen == [Scheduler.CYCLES_PER_ROUND * turns for turns in (1, 2, 3)]
 
 
 def test_endless_cycles_let_timers_and_virtual_time_go_on() -> None:
@@ -212,3 +215,102 @@ def test_nobody_has_a_turn_within_the_turn_of_another() -> None:
 
     scheduler = Scheduler(clock)
     run(main, clock)
+
+
+class Bench:
+    """An agent whose cycles take a given time on a fake clock, until it has had enough turns."""
+
+    def __init__(self, seconds: float, enough: Callable[["Bench"], bool]) -> None:
+        self.queued = False
+        self.now, self.seconds, self.enough = 0.0, seconds, enough
+        self.turns: list[tuple[float, int]] = []
+        self.over = asyncio.Event()
+
+    def run(self, fuel: int) -> bool:
+        self.turns.append((self.now, fuel))
+        self.now += fuel * self.seconds
+        if self.enough(self):
+            self.over.set()
+        return not self.over.is_set()
+
+
+async def have_turns(bench: Bench) -> list[float]:
+    """Give an agent its turns; the moments at which the loop was free between them."""
+    scheduler = Scheduler(WallClock(), real_time=lambda: bench.now)
+    loop = asyncio.get_running_loop()
+    free = [0.0]
+
+    def note() -> None:
+        free.append(bench.now)
+        if not bench.over.is_set():
+            loop.call_soon(note)
+
+    scheduler.make_ready(bench)
+    loop.call_soon(note)
+    await bench.over.wait()
+    scheduler.stop()
+    return free
+
+
+def bench_of(microseconds: float, turns: int) -> tuple[list[int], list[float]]:
+    """The turns of an agent, and how long each round of them took."""
+    bench = Bench(microseconds * 1e-6, lambda bench: len(bench.turns) >= turns)
+    free = asyncio.run(have_turns(bench))
+    rounds = [later - sooner for sooner, later in pairwise(free) if later > sooner]
+    return [fuel for _, fuel in bench.turns], rounds
+
+
+@pytest.mark.parametrize("microseconds", [1, 2, 5, 20, 100, 400])
+def test_in_real_time_a_round_of_turns_is_bounded_in_time(microseconds: int) -> None:
+    _, rounds = bench_of(microseconds, 400)
+    assert len(rounds) > 10
+    assert max(rounds[5:]) <= 0.002
+
+
+def test_short_cycles_are_made_in_full_turns() -> None:
+    turns, _ = bench_of(2, 50)
+    assert set(turns) == {Scheduler.QUANTUM}
+
+
+def test_a_cycle_longer_than_a_round_is_alone_in_it() -> None:
+    turns, rounds = bench_of(10_000, 20)
+    assert turns[-3:] == [1, 1, 1]
+    assert rounds[-3:] == pytest.approx([0.01] * 3)
+
+
+def test_after_long_cycles_turns_become_full_again() -> None:
+    def has_recovered(bench: Bench) -> bool:
+        fuel = bench.turns[-1][1]
+        if fuel == 1:
+            bench.seconds = 1e-6
+        return fuel == Scheduler.QUANTUM and bench.seconds == 1e-6
+
+    bench = Bench(0.01, has_recovered)
+    asyncio.run(have_turns(bench))
+    assert [fuel for _, fuel in bench.turns] == [50, 25, 12, 6, 3, 1, 1, 2, 4, 8, 16, 32, 50]
+
+
+def test_what_came_in_by_a_socket_is_read_before_the_next_round_of_turns() -> None:
+    order: list[str] = []
+
+    async def main() -> None:
+        ours, theirs = socket.socketpair()
+
+        def make_turn(bench: Bench) -> bool:
+            order.append("turn")
+            if len(order) == 3:
+                theirs.send(b"x")
+            return len(order) == 6
+
+        def read() -> None:
+            ours.recv(1)
+            order.append("message")
+
+        with ours, theirs:
+            loop = asyncio.get_running_loop()
+            loop.add_reader(ours, read)
+            await have_turns(Bench(1.0, make_turn))
+            loop.remove_reader(ours)
+
+    asyncio.run(main())
+    assert order == ["turn", "turn", "turn", "message", "turn", "turn"]
