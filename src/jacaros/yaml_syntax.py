@@ -6,6 +6,8 @@ from pathlib import Path
 
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
+from jacaros.text_files import file_bytes
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
@@ -87,7 +89,7 @@ def read_text(path: Path) -> tuple[str, Problem | None]:
     Raises:
         OSError: it cannot be read.
     """
-    data = path.read_bytes()
+    data = file_bytes(path)
     try:
         return data.decode("utf-8-sig"), None
     except UnicodeDecodeError as error:

@@ -1,6 +1,7 @@
 """Warnings about programs that can be run but probably do not do what is meant."""
 
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from jacaros.asl import nodes
@@ -78,7 +79,12 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
 
 def _sound(program: nodes.Program, errors: Sequence[Diagnostic]) -> list[nodes.Plan | nodes.Rule]:
     """The plans and rules without errors in them."""
-    wrong = [error.span for error in errors if error.span is not None]
+    wrong: dict[int, list[int]] = {}
+    for error in errors:
+        if error.span is not None:
+            wrong.setdefault(id(error.span.file), []).append(error.span.line)
+    for lines in wrong.values():
+        lines.sort()
     return [clause for clause in clauses_of(program) if not _holds_any(clause.span, wrong)]
 
 
@@ -88,7 +94,10 @@ def place(diagnostic: Diagnostic) -> tuple[str, int, int]:
     return ("", 0, 0) if span is None else (span.file.name, span.line, span.column)
 
 
-def _holds_any(span: Span | None, places: Sequence[Span]) -> bool:
-    return span is not None and any(
-        place.file is span.file and span.line <= place.line <= span.end_line for place in places
-    )
+def _holds_any(span: Span | None, wrong: Mapping[int, Sequence[int]]) -> bool:
+    """Whether one of the lines with errors, sorted for each file, belongs to a clause."""
+    lines = wrong.get(id(span.file)) if span is not None else None
+    if span is None or lines is None:
+        return False
+    at = bisect_left(lines, span.line)
+    return at < len(lines) and lines[at] <= span.end_line

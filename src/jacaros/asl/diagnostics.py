@@ -1,9 +1,11 @@
 """Messages about a program: what is wrong, where, and what to do."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from jacaros.asl.source import Span
+from jacaros.excerpts import MOST, escaped, marked, printable
 
 Severity = OneOf["error", "warning", "note"]
 """An error refuses the program; a warning is nearly always a mistake; a note is worth knowing."""
@@ -25,22 +27,25 @@ class Diagnostic:
     opened: Span | None = None
 
     def render(self, with_code: bool = False) -> str:
-        """The message as people read it: place, message (with its code, if wanted), excerpt with carets, hint."""
+        """Return the message as printed: place, message (with its code, if wanted), excerpt with carets, hint.
+
+        Characters that a terminal would obey are escaped, and long lines are cut: see `jacaros.excerpts`.
+        """
         code = f" [{self.code}]" if with_code and self.code else ""
-        lines = [f"{self.place()}{self.severity}: {self.message}{code}"]
+        lines = [f"{self.place()}{self.severity}: {printable(self.message)}{code}"]
         if self.span is not None:
             if self.opened is not None and self.opened.line != self.span.line:
                 lines.extend(excerpt(self.opened))
             lines.extend(excerpt(self.span))
         if self.hint is not None:
-            lines.append(f"hint: {self.hint}")
+            lines.append(f"hint: {printable(self.hint)}")
         return "\n".join(lines)
 
     def place(self) -> str:
         """``file:line:column: ``, or nothing without a place."""
         if self.span is None:
             return ""
-        return f"{self.span.file.name}:{self.span.line}:{self.span.column}: "
+        return f"{escaped(self.span.file.name)}:{self.span.line}:{self.span.column}: "
 
 
 def excerpt(span: Span) -> list[str]:
@@ -50,13 +55,42 @@ def excerpt(span: Span) -> list[str]:
         return []
     text = lines[span.line - 1]
     end = span.end_column if span.end_line == span.line else len(text) + 1
-    # Tabs are repeated below, so that the carets stand under the same stretch at any width of a tab.
-    indent = "".join("\t" if char == "\t" else " " for char in text[: span.column - 1])
     number = str(span.line)
-    carets = "^" * max(1, min(end, len(text) + 1) - span.column)
-    return [f"  {number} | {text}", f"  {' ' * len(number)} | {indent}{carets}"]
+    shown, carets = marked(text, span.column, min(end, len(text) + 1))
+    return [f"  {number} | {shown}", f"  {' ' * len(number)} | {carets}"]
 
 
-def render_all(diagnostics: "list[Diagnostic] | tuple[Diagnostic, ...]") -> str:
-    """All messages in the order of their places, a blank line between two."""
-    return "\n\n".join(diagnostic.render() for diagnostic in diagnostics)
+def bounded(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return the diagnostics, at most `MOST` of each file; one more per file states the number of the others.
+
+    Errors are kept before warnings, warnings before notes.
+    """
+    if len(diagnostics) <= MOST:
+        return list(diagnostics)
+    files: dict[str, list[Diagnostic]] = {}
+    for each in diagnostics:
+        files.setdefault("" if each.span is None else each.span.file.name, []).append(each)
+    kept: list[Diagnostic] = []
+    for name, found in files.items():
+        important = sorted(found, key=lambda each: _LEVELS.index(each.severity))  # stable
+        first = set(map(id, important[:MOST]))
+        kept += [each for each in found if id(each) in first]
+        if important[MOST:]:
+            kept.append(_others(name, important[MOST:]))
+    return kept
+
+
+_LEVELS = ("error", "warning", "note")
+
+
+def _others(name: str, others: Sequence[Diagnostic]) -> Diagnostic:
+    counts = [(level, sum(each.severity == level for each in others)) for level in _LEVELS]
+    told = " and ".join(f"{count} more {level}{'s'[: count > 1]}" for level, count in counts if count)
+    where = f" in {name}" if name else ""
+    severity = others[0].severity
+    return Diagnostic(severity, f"{told}{where}", None, "correct the first ones, and check again", "too-many")
+
+
+def render_all(diagnostics: Sequence[Diagnostic]) -> str:
+    """Return all messages in the order given, a blank line between two; of very many only the first ones."""
+    return "\n\n".join(diagnostic.render() for diagnostic in bounded(diagnostics))

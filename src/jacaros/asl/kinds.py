@@ -66,6 +66,7 @@ KINDS: Final[dict[str, Kind]] = {
     "singleton-variable": Kind("warning", "a variable that occurs only once"),
     "tested-action": Kind("error", "an internal action behind '?'"),
     "trigger-in-body": Kind("error", "'+!', '-!' or '+?' as a step"),
+    "too-many": Kind("warning", "how many more problems a file has; only the first 100 are printed"),
     "unclosed-block": Kind("error", "a { begin ... } without { end }"),
     "unclosed-bracket": Kind("error", "a bracket that is not closed"),
     "unclosed-comment": Kind("error", "a comment without its end"),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.asl.diagnostics import Diagnostic, Severity
+from jacaros.asl.diagnostics import Diagnostic, Severity, bounded
 from jacaros.asl.kinds import KINDS
 from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
@@ -59,9 +59,9 @@ def command(
     findings = check_files([existing(file, _KINDS) for file in files], mappings)
     if not findings.files and not findings.diagnostics:
         raise no_programs(files)
-    findings.diagnostics = [
-        each for each in findings.diagnostics if each.severity == "error" or each.code not in ignore
-    ]
+    findings.diagnostics = bounded(
+        [each for each in findings.diagnostics if each.severity == "error" or each.code not in ignore]
+    )
     if style == "text":
         tell(findings)
     else:

@@ -8,6 +8,7 @@ import click
 
 import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
 from jacaros.asl import nodes
+from jacaros.asl.diagnostics import bounded
 from jacaros.bdi.program_plans import ProgramPlans
 from jacaros.cli.check import tell
 from jacaros.cli.files import existing
@@ -68,7 +69,7 @@ def _read(file: Path) -> tuple[nodes.Program | None, PythonCode]:
     errors = [each for each in findings.diagnostics if each.severity == "error"]
     code = PythonCode(ProjectModules(file.parent))
     if errors:
-        findings.diagnostics = errors
+        findings.diagnostics = bounded(errors)
         tell(findings)
         return None, code
     return Programs((file.parent,), lambda _: None, code).read(file), code

@@ -15,6 +15,7 @@ from jacaros.errors import UsageError
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.loading import load_deployment
 from jacaros.project_modules import ProjectModules
+from jacaros.text_files import is_file
 
 PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
@@ -87,7 +88,7 @@ def _find(name: str, folder: Path) -> type[Artifact]:
 
 def _types_in(file: Path) -> list[type[Artifact]]:
     """The artifact types of a Python file, in their order."""
-    if not file.is_file():
+    if not is_file(file):
         raise UsageError(f"there is no file {file}")
     found = _own_types(ProjectModules(file.parent), file.stem)
     if not found:

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from jacaros.errors import UsageError
+from jacaros.text_files import is_file
 
 _KINDS = (".asl", ".mas2j", ".jcm")
 
@@ -22,7 +23,7 @@ def existing(path: Path, kinds: tuple[str, ...] = _KINDS) -> Path:
     """
     if path.is_dir():
         return path
-    if not path.is_file():
+    if not is_file(path):
         beside = [each.name for each in path.parent.glob("*.*") if each.suffix in kinds]
         near = difflib.get_close_matches(path.name, beside, n=2)
         hint = f"; did you mean {' or '.join(str(path.parent / name) for name in near)}?" if near else ""

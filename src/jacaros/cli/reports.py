@@ -9,6 +9,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.kinds import KINDS
 from jacaros.asl.source import Span
 from jacaros.cli.version import version_of
+from jacaros.excerpts import printable
 from jacaros.mas.checking import Findings
 
 Object = dict[str, Any]
@@ -38,8 +39,8 @@ def _plain(diagnostic: Diagnostic) -> Object:
         "end_column": None if span is None else span.end_column,
         "level": diagnostic.severity,
         "code": diagnostic.code,
-        "message": diagnostic.message,
-        "hint": diagnostic.hint,
+        "message": printable(diagnostic.message),
+        "hint": None if diagnostic.hint is None else printable(diagnostic.hint),
         "opened": None if diagnostic.opened is None else [diagnostic.opened.line, diagnostic.opened.column],
     }
 
@@ -68,6 +69,7 @@ def _rule(code: str) -> Object:
 
 def _result(diagnostic: Diagnostic, codes: list[str]) -> Object:
     text = diagnostic.message if diagnostic.hint is None else f"{diagnostic.message}. {diagnostic.hint}"
+    text = printable(text)
     result: Object = {
         "ruleId": diagnostic.code,
         "ruleIndex": codes.index(diagnostic.code),

@@ -15,6 +15,7 @@ from jacaros.mas.launch import launch
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import ROS_KINDS, RunOptions
 from jacaros.mas.system import System
+from jacaros.text_files import is_file
 
 SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 """Of files that can be run."""
@@ -178,7 +179,7 @@ def check_file(file: Path) -> None:
     Raises:
         UsageError: with the names of similar files beside it.
     """
-    if file.is_file():
+    if is_file(file):
         if file.suffix in (".yaml", ".yml"):
             raise UsageError(
                 f"{file} is no program; a mapping file goes with one, jacaros run agent.asl --mapping {file}, and so "

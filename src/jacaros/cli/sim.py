@@ -8,6 +8,7 @@ from jacaros.cli.graph_options import read_remaps, world_options
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.mas.options import ROS_KINDS
+from jacaros.text_files import is_file
 
 
 @click.command("sim", short_help="Run a robot world as a ROS node of its own.")
@@ -80,7 +81,7 @@ def command(
     time: Clock = VirtualClock() if clock == "fast" else WallClock() if speed is None else ScaledClock(speed)
     address = GraphAddress(ros, domain_id, master, bridge, "", node_name, read_remaps(remap))
     address.check()
-    loaded = World.load(Path(world) if Path(world).is_file() else world, seed)
+    loaded = World.load(Path(world) if is_file(Path(world)) else world, seed)
     if full_battery:
         loaded = World(with_full_batteries(loaded.description))
     loaded.ground_truth.keep = 1000

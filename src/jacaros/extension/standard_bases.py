@@ -16,6 +16,7 @@ from jacaros.errors import JacarosError
 from jacaros.extension.belief_base import BeliefBase, Keeper
 from jacaros.extension.literal import Literal, literal_of
 from jacaros.terms.values import Term
+from jacaros.text_files import file_text
 
 
 class TextPersistentBB(BeliefBase):
@@ -36,7 +37,7 @@ class TextPersistentBB(BeliefBase):
         if not self._file.is_file():
             return
         try:
-            program, _ = load_program(str(self._file), self._file.read_text(encoding="utf-8"))
+            program, _ = load_program(str(self._file), file_text(self._file))
         except (OSError, UnicodeError, AslError) as wrong:
             raise JacarosError(f"{self._file} cannot be read: {wrong}") from wrong
         for node in reversed(program.beliefs):

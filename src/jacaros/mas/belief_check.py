@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import beliefs_of, is_misspelt
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.spelling import Slips
+from jacaros.text_files import file_bytes
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -58,8 +60,11 @@ def check_beliefs(
                 asked.setdefault(name, []).extend(filter(_is_own, literals))
     if asked:
         made |= _observables(types() or ())
+    near = Slips(made)
     slips = {
-        name: sorted(each for each in made if is_misspelt(name, each)) for name in asked if name not in made
+        name: sorted(each for each in near.of(name) if is_misspelt(name, each))
+        for name in asked
+        if name not in made
     }
     slips = {name: meant for name, meant in slips.items() if meant}
     if slips:
@@ -115,7 +120,10 @@ def _only_here(
     for number, path in enumerate(_texts(folders)):
         if number >= _MOST_FILES:
             return {}
-        words = set(_WORD.findall(path.read_text(encoding="utf-8", errors="replace")))
+        try:
+            words = set(_WORD.findall(file_bytes(path).decode(errors="replace")))
+        except OSError:
+            continue
         left = {
             name: meant for name, meant in left.items() if name not in words or path.resolve() in own[name]
         }
@@ -123,10 +131,9 @@ def _only_here(
 
 
 def _texts(folders: Iterable[Path]) -> Iterator[Path]:
-    """The files of a project in which a name may stand; what cannot be read is left out."""
+    """The files of a project in which a name may stand."""
     for folder in dict.fromkeys(each.resolve() for each in folders):
         for place, inner, files in os.walk(folder):
             depth = len(Path(place).relative_to(folder).parts)
             inner[:] = sorted(name for name in inner if name[0] not in "._" and depth < _DEEPEST)
-            paths = (Path(place, name) for name in sorted(files) if name.endswith(_TEXTS))
-            yield from (path for path in paths if os.access(path, os.R_OK))
+            yield from (Path(place, name) for name in sorted(files) if name.endswith(_TEXTS))

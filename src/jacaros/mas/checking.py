@@ -21,6 +21,7 @@ from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
+from jacaros.text_files import is_file
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -128,7 +129,7 @@ def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
     for agent in different.values():
         if agent.is_python:
             findings.files.add(agent.source_path.resolve())
-        elif agent.source_path.is_file():
+        elif is_file(agent.source_path):
             program = _check_program(agent.source_path, folders, findings, agent)
             if program is not None:
                 programs.append((agent, program))
@@ -261,7 +262,7 @@ def _mapping_files(
     for name in dict.fromkeys(names):
         file = name.partition("#")[0]
         if file.endswith(MAPPINGS):
-            yield from [folder / file for folder in folders if (folder / file).is_file()][:1]
+            yield from [folder / file for folder in folders if is_file(folder / file)][:1]
 
 
 def _check_python_agent(path: Path, findings: Findings) -> None:

@@ -6,6 +6,7 @@ from typing import Final
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
+from jacaros.text_files import is_file
 
 _PROJECTS: Final = (".mas2j", ".jcm")
 
@@ -43,7 +44,7 @@ def mapped(deployment: Deployment, names: Sequence[str]) -> Deployment:
 
 
 def _lone_agent(path: Path) -> Deployment:
-    if not path.is_file():
+    if not is_file(path):
         raise ProjectError([Diagnostic("error", f"{path} is not found")])
     agent = AgentSpec(path.stem, path, path.stem)
     base = path.parent

@@ -15,7 +15,7 @@ from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.suppression import wanted
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_code import PythonCode
-from jacaros.mas.source_text import source_text
+from jacaros.text_files import file_text, is_file
 
 NEVER_SELECTED = "plan-never-selected"
 """What is told of plans behind those that are always taken first: agents of a class of their own may take them."""
@@ -137,7 +137,7 @@ class Programs:
         candidates = [name] if name.endswith(".asl") else [f"{name}.asl", name]
         for folder in self.folders:
             for candidate in candidates:
-                if (folder / candidate).is_file():
+                if is_file(folder / candidate):
                     return folder / candidate
         raise FileNotFoundError(name)
 
@@ -167,13 +167,13 @@ class Programs:
         beside = Path(including).parent / path
         try:
             # A program that is no file has nothing beside it.
-            file = beside if beside.is_file() and not including.startswith("<") else self.find(path)
+            file = beside if is_file(beside) and not including.startswith("<") else self.find(path)
         except FileNotFoundError:
             name = path.rpartition("/")[2]
             if name in TEST_LIBRARY:
                 return _of_library(name)
             raise
-        return str(file), source_text(file)
+        return str(file), file_text(file)
 
 
 def _concerns_author(warning: Diagnostic, path: Path) -> bool:
@@ -204,7 +204,7 @@ def text_of(path: Path) -> str:
         AslError: it is not there, or no text.
     """
     try:
-        return source_text(path)
+        return file_text(path)
     except FileNotFoundError:
         raise AslError([_unreadable(f"{path} is not found")]) from None
     except (OSError, UnicodeError) as error:

@@ -30,6 +30,7 @@ from pathlib import Path
 from jacaros.sim.description import Dock, Door, Rectangle, Room, Segment, WorldDescription
 from jacaros.sim.errors import Problem, WorldError
 from jacaros.sim.robot_file import read_pose, read_robot
+from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, read_document
 from jacaros.yaml_syntax import read_text
 
@@ -50,7 +51,7 @@ def find_world(name: str) -> Path:
         WorldError: when there is neither.
     """
     for path in (Path(name), _WORLDS / f"{name}.yaml"):
-        if path.is_file():
+        if is_file(path):
             return path
     cure = f"give the path of a world file, or one of the shipped worlds: {', '.join(shipped_worlds())}"
     raise WorldError(name, "", [Problem(1, 1, "there is no such world file", cure)])
@@ -63,7 +64,10 @@ def load_world(name: str) -> WorldDescription:
         WorldError: the file is missing, or wrong; with all mistakes at once.
     """
     path = find_world(name)
-    text, wrong = read_text(path)
+    try:
+        text, wrong = read_text(path)
+    except OSError as error:
+        raise WorldError(str(path), "", [Problem(1, 1, f"it cannot be read: {error}")]) from None
     if wrong is not None:
         raise WorldError(str(path), text, [wrong])
     return read_world(text, str(path))

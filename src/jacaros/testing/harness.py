@@ -32,13 +32,13 @@ from jacaros.mas.embedding.pursued_goal import PursuedGoal
 from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
-from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term
 from jacaros.testing.port import HarnessPort
 from jacaros.testing.recorded import Action, RecordedAct, SentMessage
+from jacaros.text_files import file_text
 
 _QUANTUM = 50
 _SHOWN = 20
@@ -98,7 +98,7 @@ class AgentHarness(OpenMind):
         self._asked = 0
         self._wrong: Exception | None = None
         file = program if isinstance(program, Path) else Path(f"{name}.asl")
-        written = source_text(program) if isinstance(program, Path) else program
+        written = file_text(program) if isinstance(program, Path) else program
         code = PythonCode(ProjectModules(file.parent, *folders))
         programs = Programs((file.parent, *folders), lambda told: self.logs.append(f"warning: {told}"), code)
         self._port = HarnessPort(self, seed, programs, file)

@@ -32,8 +32,8 @@ from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import Programs, library_file
 from jacaros.mas.python_code import PythonCode
-from jacaros.mas.source_text import source_text
 from jacaros.project_modules import ProjectModules
+from jacaros.text_files import file_text, is_file
 
 LIBRARY: Final = "tester_agent.asl"
 PROJECTS: Final = (".jcm", ".mas2j")
@@ -159,7 +159,7 @@ def is_test_file(path: Path) -> bool:
     if path.suffix != ".asl":
         return False
     try:
-        text = source_text(path)
+        text = file_text(path)
     except (OSError, UnicodeError):
         return bool(_NAMED_TEST.fullmatch(path.stem))
     if _LABELLED.search(_COMMENT.sub("", text)):
@@ -196,7 +196,7 @@ def _files(folder: Path) -> Iterator[Path]:
 def _of_file(path: Path) -> Iterator[Suite]:
     if path.suffix not in (".asl", *PROJECTS):
         raise UsageError(f"{path} is no .asl, .mas2j or .jcm file, and no folder")
-    if not path.is_file():
+    if not is_file(path):
         raise UsageError(f"there is no file {path}")
     suite = suite_of(path)
     folders = list(_folders_of_the_manager(suite))
@@ -341,7 +341,7 @@ def _mappings(
                 )
                 continue
             beside = Path(plan.span.file.name).parent / argument.value if plan.span is not None else None
-            yield str(beside) if beside is not None and beside.is_file() else argument.value
+            yield str(beside) if beside is not None and is_file(beside) else argument.value
 
 
 def _label(plan: nodes.Plan) -> str | None:

@@ -133,6 +133,19 @@ def test_missing_and_circular_includes_are_errors_at_the_directive():
     assert places('{ include("one.asl") }', files) == [(2, "'one.asl' includes itself")]
 
 
+def test_a_long_chain_of_includes_is_no_circle():
+    files = {f"{number}.asl": f'{{ include("{number + 1}.asl") }}' for number in range(60)}
+    (wrong,) = places('{ include("0.asl") }', files)
+    assert wrong[1] == "'40.asl' is included more than 40 files deep"
+
+
+def test_files_that_include_the_next_one_twice_are_not_read_for_ever():
+    files = {f"{number}.asl": f'{{ include("{number + 1}.asl") }}' * 2 for number in range(30)}
+    files["30.asl"] = "p."
+    told = {message for _, message in places('{ include("0.asl") }', files)}
+    assert told == {"this program includes more than 10000 files"}
+
+
 def test_errors_of_included_files_name_their_file():
     files = {"one.asl": "p(1.\n"}
     (error,) = errors('q.\nr.\n{ include("one.asl") }', files)

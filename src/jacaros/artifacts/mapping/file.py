@@ -20,6 +20,7 @@ from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
 from jacaros.artifacts.mapping.read_parameters import read_parameter
 from jacaros.artifacts.mapping.read_topics import read_frame, read_property, read_signal
+from jacaros.text_files import is_file
 from jacaros.yaml_nodes import Node, Problem, read_document
 from jacaros.yaml_syntax import read_text
 
@@ -51,10 +52,10 @@ def shipped_mappings() -> list[str]:
 def find_mapping(name: str, folders: Sequence[Path] = (Path(),)) -> Path | None:
     """The file of a mapping, first below *folders*, then among the shipped ones; None when there is none."""
     for folder in folders:
-        if (path := folder / name).is_file():
+        if is_file(path := folder / name):
             return path
     shipped = SHIPPED / name
-    return shipped if "/" not in name and shipped.is_file() else None
+    return shipped if "/" not in name and is_file(shipped) else None
 
 
 def load_mapping(path: Path) -> MappingFile:
@@ -78,7 +79,7 @@ def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
         cure = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
         return MappingFile(name, ""), [Problem(1, 1, "there is no such mapping file", cure)]
     except OSError as error:
-        return MappingFile(name, ""), [Problem(1, 1, f"it cannot be read: {error.strerror}")]
+        return MappingFile(name, ""), [Problem(1, 1, f"it cannot be read: {error}")]
     if wrong is not None:
         return MappingFile(name, text), [wrong]
     problems: list[Problem] = []

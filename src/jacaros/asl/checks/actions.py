@@ -8,7 +8,7 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import conditions, parts_of
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.functions import ARITIES
-from jacaros.asl.spelling import close_matches, is_slip_of
+from jacaros.asl.spelling import MOST_ASKED, close_matches, is_slip_of
 
 _PERFORMATIVES: Final = (
     *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
@@ -55,6 +55,7 @@ def unknown_actions(
     """Internal actions that there are not."""
     functions = {function.implementation for function in program.functions}
     registered = {function.name for function in program.functions}
+    hints: dict[str, str | None] = {}
     for node in found:
         if not isinstance(node, nodes.InternalAction):
             continue
@@ -67,11 +68,13 @@ def unknown_actions(
         if not name.startswith(".") and not node.arguments:
             # An atom with a dot, such as a class name.
             continue
+        if name not in hints:
+            hints[name] = _meant_action(name, known) if len(hints) < MOST_ASKED else None
         yield Diagnostic(
             "warning",
             f"there is no internal action {name}",
             node.span,
-            _meant_action(name, known),
+            hints[name],
             "unknown-internal-action",
         )
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.spelling import close_matches
+from jacaros.asl.spelling import MOST_ASKED, close_matches
 
 _ADDING_PLANS: Final = frozenset({".add_plan", ".include"})
 _Signature = tuple[str | nodes.Variable | None, str, int]
@@ -50,7 +50,7 @@ def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> I
             "warning",
             f"no plan for {_goal_text(signature)}",
             goal.span,
-            _meant_goal(signature, handled),
+            _meant_goal(signature, handled) if len(reported) <= MOST_ASKED else None,
             "unknown-goal",
         )
 

@@ -30,15 +30,13 @@ def never_selected(program: nodes.Program, found: Sequence[nodes.Node]) -> Itera
 
 
 def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
-    taken: dict[object, list[nodes.Plan]] = {}
+    taken = _Taken()
     for plan in plans:
         yield from _shadowed(plan.subplans)
-        trigger = plan.trigger
-        literal = trigger.literal
+        literal = plan.trigger.literal
         if isinstance(literal, nodes.Variable):
             continue
-        key = (trigger.operator, trigger.kind, literal.functor, len(literal.arguments))
-        before = next((each for each in taken.get(key, ()) if _covers(each.trigger, literal)), None)
+        before = taken.covering(plan.trigger, literal)
         if before is not None:
             if _is_made(plan):
                 continue
@@ -46,12 +44,65 @@ def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "warning",
                 f"this plan is never selected: the one before it{where} is for all these events",
-                trigger.span,
+                plan.trigger.span,
                 "give that one a condition, or put it behind this plan",
                 "plan-never-selected",
             )
         elif is_true(plan.context):
-            taken.setdefault(key, []).append(plan)
+            taken.add(plan, literal)
+
+
+class _Taken:
+    """The plans that are always taken, found by what their triggers fix: a program may have thousands for one event."""
+
+    def __init__(self) -> None:
+        self._number = 0
+        # For each kind of event: the arguments that are fixed, and by their values the first plan with its number.
+        self._plans: dict[object, dict[tuple[int, ...], dict[object, tuple[int, nodes.Plan]]]] = {}
+
+    def add(self, plan: nodes.Plan, literal: nodes.Literal) -> None:
+        """Take a plan in, unless its trigger is for fewer events than its fixed arguments tell."""
+        annotations = literal.annotations
+        if annotations is not None and not _is_ground(annotations):
+            return
+        fixed: list[int] = []
+        met: set[str] = set()
+        for place, argument in enumerate(literal.arguments):
+            if isinstance(argument, nodes.Variable):
+                if argument.annotations is not None or argument.negated or argument.name in met:
+                    return
+                met.add(argument.name)
+            elif _is_ground(argument):
+                fixed.append(place)
+            else:
+                return
+        self._number += 1
+        of_event = self._plans.setdefault(_event(plan.trigger, literal, annotations), {})
+        by_values = of_event.setdefault(tuple(fixed), {})
+        by_values.setdefault(_values(literal, fixed), (self._number, plan))
+
+    def covering(self, trigger: nodes.Trigger, literal: nodes.Literal) -> nodes.Plan | None:
+        """Return the first plan that is for every event that a trigger with this literal is for."""
+        found: list[tuple[int, nodes.Plan]] = []
+        for annotations in dict.fromkeys((None, literal.annotations)):
+            for fixed, plans in self._plans.get(_event(trigger, literal, annotations), {}).items():
+                plan = plans.get(_values(literal, fixed))
+                if plan is not None:
+                    found.append(plan)
+        return min(found, key=lambda each: each[0])[1] if found else None
+
+
+def _event(trigger: nodes.Trigger, literal: nodes.Literal, annotations: nodes.Annotations | None) -> object:
+    kind = (trigger.operator, trigger.kind, literal.functor, len(literal.arguments))
+    return (*kind, literal.negated, literal.namespace, annotations)
+
+
+def _values(literal: nodes.Literal, places: Sequence[int]) -> object:
+    return tuple([literal.arguments[place] for place in places])
+
+
+def _is_ground(term: nodes.Node) -> bool:
+    return not any(isinstance(node, nodes.Variable) for node in walk(term))
 
 
 def _is_made(plan: nodes.Plan) -> bool:
@@ -65,32 +116,6 @@ def _where(before: nodes.Plan, plan: nodes.Plan) -> str:
         return ""
     file = "" if before.span.file is plan.span.file else f" of {before.span.file.name}"
     return f" at line {before.span.line}{file}"
-
-
-def _covers(general: nodes.Trigger, literal: nodes.Literal) -> bool:
-    """Whether the trigger *general* is for every event that *literal* is for (name and arity are the same)."""
-    wide = general.literal
-    if isinstance(wide, nodes.Variable) or (wide.negated, wide.namespace) != (
-        literal.negated,
-        literal.namespace,
-    ):
-        return False
-    if wide.annotations is not None and not _same(wide.annotations, literal.annotations):
-        return False
-    met: set[str] = set()
-    for mine, theirs in zip(wide.arguments, literal.arguments, strict=True):
-        if isinstance(mine, nodes.Variable):
-            if mine.annotations is not None or mine.negated or mine.name in met:
-                return False
-            met.add(mine.name)
-        elif not _same(mine, theirs):
-            return False
-    return True
-
-
-def _same(one: nodes.Node, two: nodes.Node | None) -> bool:
-    """Whether two terms are the same and hold no variables."""
-    return one == two and not any(isinstance(node, nodes.Variable) for node in walk(one))
 
 
 def contexts_never_true(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:

@@ -8,7 +8,7 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import Clause, in_order
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.spelling import close_matches
+from jacaros.asl.spelling import MOST_ASKED, close_matches
 from jacaros.asl.walk import walk
 
 _WORD: Final = re.compile(r"\b[A-Z]\w*")
@@ -43,7 +43,8 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
             in_texts.update(_WORD.findall(node.value))
     in_head = _in_head(clause)
     what = "plan" if isinstance(clause, nodes.Plan) else "rule"
-    for name in (name for name, count in occurrences.items() if count == 1 and name not in in_texts):
+    once = [name for name, count in occurrences.items() if count == 1 and name not in in_texts]
+    for number, name in enumerate(once):
         if name in _CONSTANTS:
             yield Diagnostic(
                 "warning",
@@ -57,7 +58,7 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
                 "warning",
                 f"the variable {name} occurs only once in this {what}",
                 first[name].span,
-                _meant_variable(name, occurrences),
+                _meant_variable(name, occurrences) if number < MOST_ASKED else None,
                 "singleton-variable",
             )
 

@@ -35,7 +35,10 @@ PATTERNS: Final[dict[str, Callable[[PatternCall, Section], Section]]] = {
 }
 _Result = TypeVar("_Result")
 _SIMPLE: Final = ("include", "namespace", "register_function")
-_MAX_INCLUDES: Final = 40
+_DEEPEST: Final = 40
+"""Files within each other, so that reading them does not exhaust Python's stack."""
+_MOST_INCLUDES: Final = 10_000
+"""Included files of one program; without it, 30 files that include the next one twice would be a thousand million."""
 
 
 class DirectiveProcessor:
@@ -48,6 +51,7 @@ class DirectiveProcessor:
         self._open_files: list[str] = []
         self._pattern_numbers = count(1)
         self._told_of_organisations = False
+        self._included = 0
 
     def read_file(
         self, file: SourceFile, namespaces: Namespaces | None = None, last_dot_optional: bool = False
@@ -126,14 +130,19 @@ class DirectiveProcessor:
         found = self._find(parser, path, directive)
         if found is None:
             return Section()
-        if found.name in self._open_files or len(self._open_files) > _MAX_INCLUDES:
-            parser.report(
-                "include-circle",
-                f"'{path}' includes itself",
-                directive.span,
-                "files cannot include each other in a circle",
-            )
+        if found.name in self._open_files:
+            wrong, hint = f"'{path}' includes itself", "files cannot include each other in a circle"
+        elif len(self._open_files) > _DEEPEST:
+            wrong = f"'{path}' is included more than {_DEEPEST} files deep"
+            hint = "include it from a file further up"
+        elif self._included >= _MOST_INCLUDES:
+            wrong, hint = f"this program includes more than {_MOST_INCLUDES} files", "include each file once"
+        else:
+            wrong = hint = ""
+        if wrong:
+            parser.report("include-circle", wrong, directive.span, hint)
             return Section()
+        self._included += 1
         return self.read_file(found, namespaces)
 
     def _find(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> SourceFile | None:

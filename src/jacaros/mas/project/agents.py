@@ -12,6 +12,7 @@ from jacaros.mas.programs import TEST_LIBRARY, library_file
 from jacaros.mas.project.parts import AgentPart, ProjectPart, Written
 from jacaros.mas.project.places import ProjectPlaces
 from jacaros.mas.project.remarks import Remarks
+from jacaros.text_files import is_file
 
 _PROGRAM: Final = ".asl"
 _PYTHON: Final = ".py"
@@ -59,7 +60,7 @@ class ProjectAgents:
         files = [written] if written.endswith((_PROGRAM, _PYTHON)) else [written + _PROGRAM, written]
         for folder in agent.folders:
             for file in files:
-                if (folder / file).is_file():
+                if is_file(folder / file):
                     return folder / file
         if Path(files[0]).name in TEST_LIBRARY:
             return library_file(Path(files[0]).name)

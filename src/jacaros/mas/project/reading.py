@@ -13,7 +13,7 @@ from jacaros.mas.project.parts import ArtifactPart, FocusPart, ProjectPart, Work
 from jacaros.mas.project.places import ProjectPlaces
 from jacaros.mas.project.remarks import Remarks
 from jacaros.mas.project.unsupported import condensed, each
-from jacaros.mas.source_text import source_text
+from jacaros.text_files import file_text, is_file
 
 _JCM: Final = ".jcm"
 _JCM_PATHS: Final = (".", "src/agt", "src/agt/inc")
@@ -83,7 +83,7 @@ class _Files:
         self._map(path, part)
         for file, span in reversed(part.uses):
             used = path.parent / (file if file.endswith(_JCM) else file + _JCM)
-            if not used.is_file():
+            if not is_file(used):
                 cursor.report(f"the project '{file}' is not found", span, f"it is looked for at {used}")
             elif used.resolve() in (*using, path.resolve()):
                 cursor.report(f"the project '{file}' uses itself", span)
@@ -112,7 +112,7 @@ class _Files:
 
 def _text(path: Path) -> str:
     try:
-        return source_text(path)
+        return file_text(path)
     except FileNotFoundError:
         raise ProjectError([Diagnostic("error", f"{path} is not found")]) from None
     except (OSError, UnicodeError) as error:

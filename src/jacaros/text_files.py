@@ -1,0 +1,92 @@
+"""The files that JaCaROS reads: regular files of a limited size; never devices, pipes or endless ones."""
+
+import os
+import stat
+from pathlib import Path
+from typing import Final
+
+LARGEST: Final = 64 * 2**20
+"""Bytes that a program, a project, a mapping, a world or a parameter file may have."""
+
+
+class UnusableFile(OSError):
+    """A file that is there and is not read; ``str()`` says why."""
+
+
+def is_file(path: Path) -> bool:
+    """Return whether a path leads to a file; a name that no file can have leads to none."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def file_bytes(path: Path | str, largest: int = LARGEST) -> bytes:
+    """Return the content of a regular file.
+
+    Args:
+        path: of the file.
+        largest: the number of bytes that it may have.
+
+    Raises:
+        FileNotFoundError: it does not exist.
+        UnusableFile: it is not a regular file, too large, or cannot be read.
+    """
+    try:
+        # A pipe without a writer, and some files of the kernel, would block.
+        file = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError) as fault:
+        raise UnusableFile(getattr(fault, "strerror", None) or str(fault)) from fault
+    try:
+        return _content(file, largest)
+    finally:
+        os.close(file)
+
+
+def _content(file: int, largest: int) -> bytes:
+    status = os.fstat(file)
+    if stat.S_ISDIR(status.st_mode):
+        raise UnusableFile("it is a directory")
+    if not stat.S_ISREG(status.st_mode):
+        raise UnusableFile("it is not a regular file")
+    pieces: list[bytes] = []
+    left = largest + 1
+    try:
+        while left > 0 and (piece := os.read(file, min(left, 2**20))):
+            pieces.append(piece)
+            left -= len(piece)
+    except BlockingIOError:
+        raise UnusableFile("it is not a regular file: reading it would wait") from None
+    except OSError as fault:
+        raise UnusableFile(fault.strerror or str(fault)) from fault
+    if left <= 0:
+        raise UnusableFile(f"it is larger than {largest // 2**20} MiB")
+    return b"".join(pieces)
+
+
+def file_text(path: Path | str, largest: int = LARGEST) -> str:
+    """Return the text of a file in UTF-8, without the byte order mark that some editors put in front.
+
+    Raises:
+        FileNotFoundError: it does not exist.
+        UnusableFile: as `file_bytes`.
+        UnicodeError: it is not UTF-8, or contains a NUL; the message names the line.
+    """
+    data = file_bytes(path, largest)
+    at = data.find(0)
+    if at >= 0:
+        raise UnicodeError(f"line {_line(data, at)} contains a NUL byte; this is not a text file")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        raise UnicodeError(
+            f"line {_line(fault.object, fault.start)} contains a byte (0x{fault.object[fault.start]:02x})"
+            " that is not UTF-8; save the file as UTF-8"
+        ) from fault
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
+
+
+def _line(data: bytes, at: int) -> int:
+    return data.count(b"\n", 0, at) + 1
