@@ -40,7 +40,10 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:
             if frame[0] is None and not pop_finished(agent, intention):
                 break
             if fuel <= 0 or intention.suspended is not None or not is_alone(agent) or _is_called(agent):
-                agent.make_ready(intention)
+                if intention.suspended is None:
+                    agent.intentions.append(intention)
+                else:
+                    intention.parked = True
                 break
         elif goal is SUSPENDED:
             if agent.meta:
@@ -71,6 +74,8 @@ def _pursue(agent: Circumstance, intention: Intention, goal: Any, fuel: int) -> 
     if goal.__class__ is Posted:
         goal, annotations = goal
     _announce(agent, intention, goal, annotations)
+    if agent.urgency is not None:
+        agent.urgency.note_goal(goal[0])
     if fuel > 0 and intention.suspended is None and is_alone(agent):
         return push(agent, intention, goal, annotations)
     if agent.atomic is not intention:
@@ -91,6 +96,7 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
     frames, trail, selects = intention.frames, agent.trail, agent.selects
     events, intentions = agent.events, agent.intentions
     option_filter, depth, tail_calls = agent.option_filter, agent.goal_depth, agent.options.tail_calls
+    urgency = agent.urgency
     frame: Frame = frames[-1]
     while True:
         fuel -= 1
@@ -142,6 +148,8 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
         annotations: Any = BY_SELF
         if goal.__class__ is Posted:
             goal, annotations = goal
+        if urgency is not None and urgency.by_trigger[goal[0]]:
+            urgency.rank()
         if intentions or events or agent.called or option_filter.rows or fuel <= 0:
             _announce(agent, intention, goal, annotations)
             events.append((goal, intention, annotations, None))

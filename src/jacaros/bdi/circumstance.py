@@ -46,6 +46,7 @@ class Circumstance:
         atomic: the intention that has an atomic plan on its stack, or None.
         atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
         urgency: how urgent things are (`jacaros.bdi.urgency.Urgency`); None while no plan is more urgent than others.
+        urgent: something in the queues is more urgent than the rest, or may be: they are kept in order of urgency.
         inbox, percepts: what was received and noticed, and not yet looked at.
         tasks: housekeeping for the beginning of the next cycle.
         suspended_events: goal events whose goal was suspended before it became an intention.
@@ -65,7 +66,8 @@ class Circumstance:
         subplans: whether plans have plans of their own.
         special: whether any of `meta`, `goal_conditions` and `subplans` is true.
         called: something may want to be looked at besides `events` and `intentions`: `inbox`, `percepts`, `tasks`,
-            `condition_waits`, a suspension, or because the agent is `special`.  Whoever adds to one of them sets it.
+            `condition_waits`, a suspension, or because the agent is `special` or `urgent`.  Whoever adds to one of them
+            sets it.
         outer_frame: frame of the plan whose sub-plans are being tried.
         context: the view of itself that it gives to internal actions.
         namespace_properties: properties that programs give to namespaces.
@@ -146,6 +148,7 @@ class Circumstance:
         "tasks",
         "trail",
         "urgency",
+        "urgent",
         "usual_events",
     )
 
@@ -174,6 +177,7 @@ class Circumstance:
         self.library = PlanLibrary(plans, partial(architecture.log, "error"))
         self.selects = self.library.selects
         self.urgency: Any = None
+        self.urgent = False
         self.events: deque[Event] = deque()
         self.requeued: list[Event] = []
         self.next_look = 0
@@ -233,6 +237,8 @@ class Circumstance:
         if intention.suspended is not None:
             intention.parked = True
         else:
+            if self.urgency is not None:
+                self.urgency.note_intention(intention)
             self.intentions.append(intention)
         if not self.running:
             self.architecture.ready()
@@ -261,8 +267,16 @@ class Circumstance:
         self.tasks.append(task)
         self.called = True
 
+    def queue(self, event: Event) -> None:
+        """Put an event at the end of the queue."""
+        if self.urgency is not None:
+            self.urgency.note_event(event)
+        self.events.append(event)
+
     def post(self, event: Event) -> None:
-        """Put an event at the end of the queue, and tell those who wait for it."""
+        """Put an event at the end of the queue, and resume those who wait for it."""
+        if self.urgency is not None:
+            self.urgency.note_event(event)
         self.events.append(event)
         if self.event_waits:
             self.notify_event_waits(event)

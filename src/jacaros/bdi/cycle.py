@@ -38,14 +38,14 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         while fuel > 0 and not agent.stopped:
             if agent.called or not always:
                 look_around(agent, agent.cycles + begun - fuel)
-                if agent.urgency is not None:
-                    # The queues may have been put in order of urgency just now.
+                if agent.urgent:
+                    agent.urgency.settle()
                     events, intentions = agent.events, agent.intentions
             intention: Intention | None = None
             if events:
                 if agent.atomic is not None:
                     handle_atomic_event(agent, agent.atomic)
-                elif agent.urgency is not None:
+                elif agent.urgent:
                     handle_urgent_event(agent)
                 else:
                     intention = handle_event(agent)

@@ -240,6 +240,8 @@ def go_without(
     if not is_alone(agent):
         agent.post(event)
         return False
+    if agent.urgency is not None:
+        agent.urgency.note_goal(posted.goal[0])
     if agent.event_waits:
         agent.notify_event_waits(event)
     return push(agent, intention, posted.goal, posted.annotations)

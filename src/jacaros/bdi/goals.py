@@ -228,7 +228,7 @@ def resume_goal(agent: Circumstance, goal: Term) -> None:
     for event in list(agent.suspended_events):
         if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
             agent.suspended_events.remove(event)
-            agent.events.append(event)
+            agent.queue(event)
             agent.architecture.ready()
     for intention in intentions_for(agent, goal):
         resume_intention(agent, intention)
@@ -245,7 +245,7 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     held = next((e for e in agent.suspended_events if e[EVENT_INTENTION] is intention), None)
     if held is not None:
         agent.suspended_events.remove(held)
-        agent.events.append(held)
+        agent.queue(held)
         agent.architecture.ready()
     elif intention.parked:
         intention.parked = False

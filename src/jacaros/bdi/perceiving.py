@@ -18,7 +18,8 @@ Annotations = tuple[Term, ...]
 
 def take_percepts(agent: Circumstance) -> None:
     """Bring the belief base in line with what was noticed, and raise the events, in order."""
-    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
+    beliefs, holders, selects = agent.beliefs, agent.held_percepts, agent.selects
+    post = agent.events.append if agent.urgency is None else agent.queue
     watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
     noticed = agent.percepts
     while noticed:
@@ -59,7 +60,8 @@ def take_percepts(agent: Circumstance) -> None:
 
 def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
     """Bring the belief base in line with what was noticed at once, and raise the events, in order."""
-    beliefs, holders, selects, post = agent.beliefs, agent.held_percepts, agent.selects, agent.events.append
+    beliefs, holders, selects = agent.beliefs, agent.held_percepts, agent.selects
+    post = agent.events.append if agent.urgency is None else agent.queue
     for percept in percepts:
         literal, annotations, kind = percept.literal, percept.annotations, percept.kind
         symbol, row, is_flat, change = percept.taken or _taken(percept)

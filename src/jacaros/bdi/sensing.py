@@ -14,7 +14,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
     if (
         agent.tasks
         or agent.condition_waits
-        or agent.urgency is not None
+        or (agent.urgency is not None and agent.inbox)
         or agent.options.percept_interval != 1
     ):
         looks = agent.options.percept_interval == 1 or _looks_now(agent, cycle)
@@ -22,7 +22,12 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         if agent.inbox and looks:
             (read_message if agent.urgency is None else read_urgent_messages)(agent)
         agent.called = bool(
-            agent.inbox or agent.percepts or agent.tasks or agent.condition_waits or agent.special
+            agent.inbox
+            or agent.percepts
+            or agent.tasks
+            or agent.condition_waits
+            or agent.special
+            or agent.urgent
         )
         return
     # What is usual: there is a message, or percepts, and nothing else.
@@ -31,7 +36,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         if agent.tasks:
             _do_tasks(agent)
     waiting = len(agent.inbox)
-    agent.called = waiting > 1 or agent.special
+    agent.called = waiting > 1 or agent.special or agent.urgent
     if waiting:
         read_message(agent)
 

@@ -177,9 +177,7 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
         if symbol is not CONS and symbol is not NIL:
             goal = (ACHIEVED[symbol],) + row  # noqa: RUF005 - without a list in between
             event = (goal, None, _ONLY_FROM[message.sender], None)
-            agent.events.append(event)
-            if agent.event_waits:
-                agent.notify_event_waits(event)
+            agent.post(event)
             return
     for content in _contents(message.content):
         symbol, arguments, annotations = literal_from(content, message.sender)

@@ -13,7 +13,9 @@ a name.  What is more urgent goes first, and among equals the order is Jason's. 
   before it are read in the same cycle, and it too.  Percepts are always worked in all together.
 * Atomic intentions are not interrupted.
 
-An agent without urgent plans has the queues of `jacaros.bdi.circumstance` and pays nothing for this.
+The queues are plain as long as nothing in them is urgent, whatever plans there are.  Code that adds something urgent notes
+it (`Urgency.rank`).  The next cycle then puts the queues in order, and they are kept in order until nothing urgent is
+left.  So an urgent plan costs unrelated events one look-up in a table each.
 """
 
 from collections import deque
@@ -49,18 +51,62 @@ class Urgency:
 
     Args:
         agent: whose plans and options say so.
+
+    Attributes:
+        by_trigger: the urgency of the most urgent plan for each event kind, sub-plans included.
     """
 
     def __init__(self, agent: Circumstance) -> None:
         self._agent = agent
         self._named = dict(agent.options.urgency)
-        self._by_trigger = _ByTrigger(self.of_plan, agent)
+        self.by_trigger = _ByTrigger(self.of_plan, agent)
         self._looked_at = 0
         self._to_read = 0
 
     def forget(self) -> None:
         """Plans have come or gone."""
-        self._by_trigger.clear()
+        self.by_trigger.clear()
+
+    def rank(self) -> None:
+        """Something urgent comes into the queues: from the next cycle on they are in order of urgency."""
+        self._agent.urgent = self._agent.called = True
+
+    def note_goal(self, kind: Trigger) -> None:
+        """An event of a kind is about to be queued, or handled at once."""
+        if self.by_trigger[kind]:
+            self.rank()
+
+    def note_event(self, event: Event) -> None:
+        """An event is about to be queued."""
+        if self.by_trigger[event[EVENT_GOAL][0]] or (
+            event[EVENT_INTENTION] is not None and self.of_intention(event[EVENT_INTENTION])
+        ):
+            self.rank()
+
+    def note_intention(self, intention: Intention) -> None:
+        """An intention that waited, was suspended or is new is about to be queued."""
+        if self.of_intention(intention):
+            self.rank()
+
+    def settle(self) -> None:
+        """Put the queues in order of urgency, or make them plain again when nothing urgent is left in them.
+
+        Queues from which the agent's class chooses stay as they are.
+        """
+        agent = self._agent
+        if agent.events.__class__ is deque:
+            agent.events = UrgentQueue(self.of_event, agent.events)
+        if agent.intentions.__class__ is deque:
+            agent.intentions = UrgentQueue(self.of_intention, agent.intentions)
+        if not (self._holds_urgent(agent.events) or self._holds_urgent(agent.intentions)):
+            agent.urgent = False
+            if isinstance(agent.events, UrgentQueue):
+                agent.events = deque(agent.events)
+            if isinstance(agent.intentions, UrgentQueue):
+                agent.intentions = deque(agent.intentions)
+
+    def _holds_urgent(self, queue: "deque[Any]") -> bool:
+        return isinstance(queue, UrgentQueue) and bool(queue) and queue.first_urgency() > 0
 
     def of_plan(self, plan: Plan) -> int:
         """The urgency of a plan: what the agent's option says of its event, else what its label says."""
@@ -70,13 +116,9 @@ class Urgency:
         name = f"{symbol.namespace}::{symbol.name}" if symbol.namespace else symbol.name
         return self._named.get(name, plan.urgency)
 
-    def of_trigger(self, kind: Trigger) -> int:
-        """The urgency of the most urgent plan for an event kind; sub-plans count."""
-        return self._by_trigger[kind]
-
     def of_event(self, event: Event) -> int:
         """The urgency of an event, not below that of the intention that posted it."""
-        urgency = self._by_trigger[event[EVENT_GOAL][0]]
+        urgency = self.by_trigger[event[EVENT_GOAL][0]]
         intention = event[EVENT_INTENTION]
         return urgency if intention is None else max(urgency, self.of_intention(intention))
 
@@ -101,14 +143,14 @@ class Urgency:
 
     def of_message(self, message: SpeechAct) -> int:
         """The urgency of the events that a message may lead to."""
-        urgency = self.of_trigger(RECEIVED)
+        urgency = self.by_trigger[RECEIVED]
         kind = _TRIGGERS.get(message.performative)
         if kind is not None:
             content = message.content
             for item in list_items(content) if is_list(content) else (content,):
                 symbol = functor_of(item)
                 if symbol is not None:
-                    urgency = max(urgency, self.of_trigger(trigger(*kind, symbol)))
+                    urgency = max(urgency, self.by_trigger[trigger(*kind, symbol)])
         return urgency
 
     def messages_to_read(self) -> int:
@@ -150,10 +192,12 @@ class UrgentQueue(deque[Item], Generic[Item]):
     """A queue in which the more urgent stands before the less urgent, and equals in the order in which they came."""
 
     def __init__(self, urgency: Callable[[Item], int], items: Iterable[Item] = ()) -> None:
-        super().__init__()
+        super().__init__(sorted(items, key=urgency, reverse=True))
         self._urgency = urgency
-        for item in items:
-            self.append(item)
+
+    def first_urgency(self) -> int:
+        """The urgency of the first item, which is the greatest."""
+        return self._urgency(self[0])
 
     def append(self, item: Item) -> None:
         """Put an item behind those that are as urgent, or more."""
@@ -180,10 +224,9 @@ class UrgentQueue(deque[Item], Generic[Item]):
 
     def sort(self) -> None:
         """Bring the items into their order again: their urgency is another now."""
-        items = list(self)
+        items = sorted(self, key=self._urgency, reverse=True)
         self.clear()
-        for item in items:
-            self.append(item)
+        self.extend(items)
 
 
 def _with_inner(plans: Sequence[Plan]) -> Iterator[Plan]:
@@ -205,21 +248,16 @@ def plans_changed(agent: Circumstance) -> None:
         agent.urgency = Urgency(agent)
     else:
         return
+    agent.urgency.rank()
     # In the next cycle: the step that is being made has the queues in its hands.
-    agent.do_soon(lambda: _order(agent))
+    agent.do_soon(lambda: _sort(agent))
 
 
-def _order(agent: Circumstance) -> None:
-    """Bring the queues of an agent into the order of urgency; those that its class chooses from stay as they are."""
-    urgency: Urgency = agent.urgency
-    if isinstance(agent.events, UrgentQueue):
-        agent.events.sort()
-    elif agent.events.__class__ is deque:
-        agent.events = UrgentQueue(urgency.of_event, agent.events)
-    if isinstance(agent.intentions, UrgentQueue):
-        agent.intentions.sort()
-    elif agent.intentions.__class__ is deque:
-        agent.intentions = UrgentQueue(urgency.of_intention, agent.intentions)
+def _sort(agent: Circumstance) -> None:
+    """Bring queues that are in order of urgency into order again: plans have come or gone."""
+    for queue in (agent.events, agent.intentions):
+        if isinstance(queue, UrgentQueue):
+            queue.sort()
 
 
 def read_urgent_messages(agent: Any) -> None:

@@ -20,8 +20,9 @@ def test_there_are_programs() -> None:
     assert len(PROGRAMS) > 50
 
 
+@pytest.mark.parametrize("ordered", [False, True], ids=["plain queues", "queues in order of urgency"])
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_a_program_prints_the_same(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_prints_the_same(program: Path, ordered: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     queues = []
 
     def run() -> RunResult:
@@ -34,6 +35,8 @@ def test_a_program_prints_the_same(program: Path, monkeypatch: pytest.MonkeyPatc
     plain = run()
     assert not any(queues)
     monkeypatch.setattr(urgency, "has_urgent_plans", lambda agent: True)
+    if ordered:
+        monkeypatch.setattr(urgency.UrgentQueue, "first_urgency", lambda queue: 1)
     queues.clear()
     urgent = run()
     assert all(queues)

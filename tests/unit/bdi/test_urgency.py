@@ -1,5 +1,7 @@
 """Urgent events and intentions go before what waits, and among equals the order is Jason's."""
 
+from collections import deque
+
 from recording_host import RecordingHost, mind, printed
 
 from jacaros.bdi.act import Percept
@@ -326,3 +328,56 @@ def test_a_queue_in_order_of_urgency() -> None:
     queue.extendleft([(3, "i"), (0, "j"), (9, "k")])
     assert "".join(name for _, name in queue) == "kebdifhjacg"
     assert queue.popleft() == (9, "k")
+
+
+# --- busy agents ----------------------------------------------------------------------------------------------
+
+BUSY = """
+    !start.
+    +!start <- for (.range(I, 1, 100)) { !!work(I) }.
+    +!work(I) <- +busy(I); -busy(I); !work(I).
+    @stop[urgency(10)] +bump(I) <- !halt(I).
+    +!halt(I) <- .print("halt ", I).
+"""
+
+
+def busy(program: str = BUSY) -> RecordingHost:
+    host = mind(program)
+    host.agent.run(20000)
+    assert len(host.agent.alive) >= 100
+    return host
+
+
+def test_an_urgent_percept_is_answered_in_the_next_cycles_beside_a_hundred_busy_intentions() -> None:
+    host = busy()
+    host.agent.perceive(noticed(bump(1)))
+    host.agent.run(2)
+    assert host.printed == ["halt 1"]
+
+
+def test_an_urgent_message_is_answered_in_the_next_cycles_beside_a_hundred_busy_intentions() -> None:
+    host = busy(BUSY + "@ask[urgency(5)] +!stop <- .print(stopped).")
+    host.agent.receive(SpeechAct("achieve", "bob", "tester", atom("stop"), "m1"))
+    host.agent.run(1)
+    assert host.printed == ["stopped"]
+
+
+def test_an_urgent_intention_that_waited_goes_first_when_its_wait_ends() -> None:
+    host = busy(BUSY + "@w[urgency(5)] +go <- .wait(10); .print(first); .wait(10); .print(second).")
+    host.agent.perceive(noticed(atom("go")))
+    for expected in ([], ["first"], ["first", "second"]):
+        host.agent.run(5)
+        assert host.printed == expected
+        host.ring_next(host.time + 1000)
+
+
+def test_queues_are_plain_while_nothing_in_them_is_urgent() -> None:
+    host = busy()
+    agent = host.agent
+    assert agent.events.__class__ is agent.intentions.__class__ is deque
+    agent.perceive(noticed(bump(1)))
+    agent.run(1)
+    assert isinstance(agent.intentions, UrgentQueue)
+    agent.run(100)
+    assert host.printed == ["halt 1"]
+    assert agent.events.__class__ is agent.intentions.__class__ is deque
