@@ -2,8 +2,11 @@
 
 import signal
 from collections.abc import Callable
+from pathlib import Path
 
-from graphs import ProcessPeer
+import pytest
+from graphs import InProcesses, ProcessPeer
+from masters import Master
 from processes import Agents, wait_until
 
 STRING = "std_msgs/msg/String"
@@ -48,3 +51,27 @@ def test_a_publisher_that_dies_and_comes_back(
             "heard again",
         )
     )
+
+
+@pytest.mark.only("ros1")
+def test_topics_stay_connected_when_the_master_dies(kind: str, tmp_path: Path) -> None:
+    own = Master(tmp_path)
+    own.start()
+    graph = InProcesses(kind, own.environment)
+    agents = Agents(Path(__file__).parent / "programs" / "hear.asl", kind, own.environment)
+    try:
+        agents.until_line("listening")
+        talker = graph.peer("talker")
+        say(talker, "hello", agents)
+        agents.until_line("connected /chatter")
+        own.kill()
+        agents.until_error("waiting for the ROS master")
+        talker.publish("/chatter", {"data": "still here"})
+        agents.until_line("heard still here")
+        talker.publish("/chatter", {"data": "end"})
+        assert agents.end() == 0
+        assert not [line for line in agents.lines if "lost" in line]
+    finally:
+        agents.stop()
+        graph.close()
+        own.close()

@@ -365,10 +365,25 @@ def test_a_topic_is_lost_with_the_graph_and_found_again_with_it() -> None:
         lab.backend.publisher("/odom", ODOMETRY)
         watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (True,))))
         assert watcher.holds("connected") == [("/odom",)]
+        graph = lab.backend.graph  # type: ignore[attr-defined]
+        graph.interrupt()
+        assert watcher.holds("connected") == []
+        graph.restore()
+        assert watcher.holds("connected") == [("/odom",)]
+
+    in_lab(body, None)
+
+
+def test_a_topic_stays_connected_when_the_master_dies_and_its_publisher_lives() -> None:
+    async def body(lab: Lab) -> None:
+        robot = Robot(lab)
+        watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
+        await robot.say(1)
         backend: Any = lab.backend
         backend.set_connected(False)
-        assert watcher.holds("connected") == []
-        backend.set_connected(True)
+        await lab.sleep(1)
+        await robot.say(2)
+        await lab.sleep(1.5)
         assert watcher.holds("connected") == [("/odom",)]
 
     in_lab(body, None)

@@ -11,7 +11,10 @@ LOOK = 0.5
 
 
 class Connection:
-    """Follows whether somebody publishes a topic, and the graph can be reached.
+    """Follows whether a publisher of a topic is connected.
+
+    `Backend.connected` does not count: topics of ROS 1 outlive the master, and where they do not outlive the graph, no
+    publisher is connected.
 
     Args:
         backend: the node that listens.
@@ -30,8 +33,7 @@ class Connection:
         expire: float | None = None,
     ) -> None:
         self.connected = False
-        self._backend, self._clock = backend, clock
-        self._subscription, self._changed, self._expire = subscription, changed, expire
+        self._clock, self._subscription, self._changed, self._expire = clock, subscription, changed, expire
         self._heard: float | None = None
         self._closed = False
         _watch(backend, self)
@@ -57,7 +59,7 @@ class Connection:
         self._timer.cancel()
 
     def _is_connected(self) -> bool:
-        if not self._backend.connected or self._subscription.publisher_count == 0:
+        if self._subscription.publisher_count == 0:
             self._heard = None
             return False
         if self._expire is None:

@@ -29,8 +29,8 @@ class RosArtifact(SensingArtifact):
             lost when no message came for so long.
 
     Properties:
-        connected(Topic): somebody publishes the topic, as far as is known, and the graph can be reached; one for each
-            topic that the artifact listens to, with its absolute name as text.  Only with `watch_connection`.
+        connected(Topic): somebody publishes the topic, as far as is known; one for each topic that the artifact
+            listens to, with its absolute name as text.  Only with `watch_connection`.
 
     Signals:
         bad_message(Topic, Why): a message was wrong; told for the first, the tenth, the hundredth ... of a kind.  Why
