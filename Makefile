@@ -1,6 +1,6 @@
 # make demo    a venv, the package, and a robot that patrols on the embedded world; under two minutes
 # make test    everything, ROS 1 and ROS 2 included (installs what that needs on Debian 12)
-# make test-all    that, and the unit tests again with every other Python of the machine
+# make test-all    that, and all unit tests again with every other Python of the machine
 # make quick   what to run before a commit: style, types, layers, unit tests
 # make bench   figures of speed, beside those of other engines, in some ten minutes; renews docs/benchmarks.md
 #              make bench BENCH=--quick   in some three minutes, and changes nothing; JASON=/path/to/jason takes part, too

@@ -1,4 +1,4 @@
-"""Run every part of the test suite, two at a time, and tell at the end what passed, what failed, what did not run.
+"""Run every part of the test suite, several at a time, and tell at the end what passed, what failed, what did not run.
 
     test_all.py [--all] [--list] [PART ...]     the parts, or the named ones with what they need; --all: repeats, too
 
@@ -9,8 +9,8 @@ CI=true it is a failure.  Logs go to runs/test/.
 A part is stopped when it makes no progress or takes far more processor time than it should, never because time has passed:
 the machine may be busy with other things.
 
-Parts that measure time or need a real graph run last, when nothing else loads the processors; those of ROS 1 beside those
-of ROS 2, which wait most of the time.
+Two parts that compute run at a time, and beside them `WAITING` parts on real graphs, which wait most of the time; in each
+row those that take longest go first.  What compares moments some 40 ms apart runs last, alone.
 """
 
 import argparse
@@ -33,6 +33,18 @@ NOT_HERE = 3
 """Exit code of a script that cannot do its work on this machine."""
 
 PYTEST = (PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider")
+SMOKE = ("tests/unit/compiler", "tests/unit/env", "tests/unit/extension")
+"""Tests that show in seconds whether another Python works: code that we generate, annotations, asyncio."""
+
+REAL_GRAPHS = {
+    "integration": ("tests/integration",),
+    "contracts": ("tests/contracts", "tests/packaging/test_ament.py"),
+}
+"""Suites that run on every real graph, those that take longest first."""
+
+WAITING = 3
+"""Parts that mostly wait, and so run at the same time beside those that compute."""
+
 RUNAWAY = 5
 """A part that takes so many times its budget of processor time does not end: machines differ by less."""
 
@@ -48,7 +60,7 @@ class Part:
     Attributes:
         name: what people call it.
         command: run in the project's folder, without standard input.
-        stage: ``install`` (one after the other), ``work``, ``real-time`` (after those), at last ``ros1`` beside ``ros2``.
+        stage: ``install`` (one after the other), ``work`` and ``waiting`` (beside each other), ``real-time`` (alone).
         needs: a part that must have passed before.
         budget: seconds of processor time that it takes, processes that it starts included. The closing table shows
             where a part takes more, and one that takes `RUNAWAY` times as much is stopped.
@@ -91,6 +103,7 @@ def parts() -> list[Part]:
         Part(
             "rosbridge",
             (*PYTEST, "tests/contracts", "-m", "rosbridge", "--require-rosbridge", *ONCE_MORE),
+            "waiting",
             budget=115,
         ),
         Part(
@@ -112,20 +125,15 @@ def parts() -> list[Part]:
         python = newer_python(minor)
         if python is not None:
             command = ("tools/test_python.sh", str(python))
-            found.append(Part(f"python3.{minor}", command, needs="wheel", repeats=True))
+            found.append(Part(f"python3.{minor}", command, needs="wheel", budget=200, repeats=True))
+            found.append(Part(f"python3.{minor}-smoke", (*command, *SMOKE), needs="wheel", budget=25))
     found.append(Part("real-time", (PYTHON, "tools/check_conformance.py", "real-time"), "real-time"))
-    for kind, venv, needs in (
-        ("ros1", ".venv-ros1", "ros1-install"),
-        ("ros2", ".venv-ros2-jazzy", "ros2-jazzy-install"),
-        ("ros2", ".venv-ros2-kilted", "ros2-kilted-install"),
-    ):
-        python = str(ROOT / venv / "bin" / "python")
-        # Discovery in a real graph loses a first message now and then.
-        suites = ["tests/contracts", "tests/integration", "-m", kind, f"--require-{kind}", *ONCE_MORE]
-        if kind == "ros2":
-            suites.insert(0, "tests/packaging/test_ament.py")
-        name = venv.removeprefix(".venv-")
-        found.append(Part(name, (python, *PYTEST[1:], *suites), kind, needs))
+    for suite, folders in REAL_GRAPHS.items():
+        for name in ("ros1", "ros2-jazzy", "ros2-kilted"):
+            python, kind = str(ROOT / f".venv-{name}" / "bin" / "python"), name.partition("-")[0]
+            # Discovery in a real graph loses a first message now and then.
+            command = (python, *PYTEST[1:], *folders, "-m", kind, f"--require-{kind}", *ONCE_MORE)
+            found.append(Part(f"{name}-{suite}", command, "waiting", f"{name}-install"))
     return found
 
 
@@ -180,11 +188,12 @@ class Run:
         def stage(name: str) -> deque[Part]:
             return deque(part for part in self._chosen if part.stage == name)
 
-        work = stage("work")
-        self._side_by_side((stage("install"), work), (deque(), work))
+        needed = {part.needs for part in self._chosen}
+        longest = sorted(stage("work"), key=lambda part: (part.name not in needed, -(part.budget or 0)))
+        work, waiting = deque(longest), stage("waiting")
+        beside = [(deque[Part](), waiting)] * WAITING
+        self._side_by_side((stage("install"), work), (deque(), work), *beside)
         self._work(stage("real-time"), deque())
-        # Graphs of ROS 2 share memory, and those of one number hear each other: one after the other.
-        self._side_by_side((stage("ros1"), deque()), (stage("ros2"), deque()))
 
     def _side_by_side(self, *queues: tuple[deque[Part], deque[Part]]) -> None:
         workers = [threading.Thread(target=self._work, args=each) for each in queues]
@@ -373,11 +382,11 @@ def say(text: str) -> None:
 def report(results: list[Result], seconds: float) -> int:
     """Print the table; the exit code."""
     say("\n" + "=" * 100)
-    say(f"{'':29} {'took':>8}  {'processor, budget':>17}")
+    say(f"{'':33} {'took':>8}  {'processor, budget':>17}")
     for result in results:
         budget = "" if result.part.budget is None else f"{result.part.budget:.0f} s"
         took = f"{result.seconds:6.0f} s  {result.processor:6.0f} s {budget:>8}"
-        say(f"{result.verdict:8} {result.part.name:20} {took}  {result.closing_line[:90]}")
+        say(f"{result.verdict:8} {result.part.name:24} {took}  {result.closing_line[:90]}")
     over = [result.part.name for result in results if result.over_budget]
     failed = [result.part.name for result in results if result.verdict == "FAILED"]
     left_out = [result.part.name for result in results if result.verdict == "NOT RUN"]

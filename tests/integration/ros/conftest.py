@@ -4,7 +4,6 @@ What a graph is made of (master, peers) comes from the contract suite, the examp
 the scenario tests.
 """
 
-import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "scenarios"))
 
 from graphs import InProcesses, ProcessPeer
 from masters import Master
-from presence import is_wanted, need
+from presence import is_wanted, need, ros2_environment
 from processes import JACAROS, Agents, Program, WorldProcess
 
 KINDS = ("ros1", "ros2")
@@ -69,11 +68,7 @@ def environment(kind: str, master: Master | None, tmp_path_factory: pytest.TempP
     """Variables that keep a run in a graph of its own on this machine."""
     if master is not None:
         return master.environment
-    return {
-        "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "ROS_LOG_DIR": str(tmp_path_factory.mktemp("ros_log")),
-    }
+    return ros2_environment(tmp_path_factory.mktemp("ros2"))
 
 
 @pytest.fixture
@@ -134,7 +129,9 @@ def ask(kind: str, environment: dict[str, str]) -> Iterator[Callable[..., Progra
     started: list[Program] = []
 
     def run(*words: str) -> Program:
-        started.append(Program([JACAROS, "ros", *words, "--ros", kind, "--timeout", "30"], environment))
+        started.append(
+            Program([JACAROS, "ros", words[0], "--ros", kind, "--timeout", "30", *words[1:]], environment)
+        )
         started[-1].code = started[-1].end()
         return started[-1]
 

@@ -11,6 +11,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import IO
 
+from graphs import in_use, shared_memory
+
 from jacaros.sim.ground_truth import GroundTruth
 
 PATIENCE = 150.0
@@ -128,7 +130,7 @@ class Program:
         for stream in (self._process.stdout, self._process.stderr):
             assert stream is not None
             stream.close()
-        for path in self._shared_memory:
+        for path in self._shared_memory - in_use():
             Path(path).unlink(missing_ok=True)
 
     def _story(self, beginning: str) -> str:
@@ -137,11 +139,7 @@ class Program:
 
     def _note_shared_memory(self) -> None:
         """Remember the files that Fast DDS made for this process; it leaves them behind when killed."""
-        try:
-            maps = Path(f"/proc/{self._process.pid}/maps").read_text()
-        except OSError:
-            return
-        self._shared_memory |= {word for word in maps.split() if word.startswith("/dev/shm/fastdds_")}
+        self._shared_memory |= shared_memory(self._process.pid)
 
 
 def read(stream: IO[str], lines: list[str]) -> None:

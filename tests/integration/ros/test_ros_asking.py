@@ -1,12 +1,12 @@
 """`jacaros ros` on real graphs: what it finds of a world in another process, and the mapping that it writes is run."""
 
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from graphs import ProcessPeer
 from masters import Master
+from presence import own_domain
 from processes import Agents, Program, WorldProcess
 
 PROGRAM = """
@@ -83,7 +83,7 @@ def test_problems_of_a_mapping_are_told(
 def empty_graph(kind: str, tmp_path: Path) -> Iterator[tuple[str, str]]:
     """An option that leads to a graph of this test alone: a master remembers nodes that were killed in other tests."""
     if kind == "ros2":
-        yield "--domain-id", str(1 + (os.getpid() + 25) % 100)
+        yield "--domain-id", own_domain()
         return
     master = Master(tmp_path)
     master.start()
@@ -94,7 +94,7 @@ def empty_graph(kind: str, tmp_path: Path) -> Iterator[tuple[str, str]]:
 def test_a_graph_in_which_nobody_is_says_so(
     ask: Callable[..., Program], empty_graph: tuple[str, str]
 ) -> None:
-    asked = ask("list", *empty_graph)
+    asked = ask("list", *empty_graph, "--timeout", "5")
     assert asked.code == 1, asked.lines
     assert any("nobody else is in the" in line for line in asked.errors)
 
