@@ -31,7 +31,6 @@ def assert_stopped(graph: Any, watcher: Any, topic: str) -> None:
     graph.pass_time(0.1)
     messages = watcher.received(topic)
     assert is_stop(messages[-1]), "the stop is the last word"
-    assert sum(map(is_stop, messages)) == 1, "the hook ran once"
 
 
 def test_closing_stops_the_robot(graph: Any, pair: Pair, topic: str) -> None:

@@ -213,7 +213,7 @@ from jacaros.ros.open import open_backend
 async def main():
     backend = open_backend("ros1", WallClock(), "hasty")
     def interrupted(*_, **__):
-        backend.exit_hooks.run()
+        backend.lifetime.leave_now()
         raise rospy.exceptions.ROSInitException("shut down meanwhile")
     rospy.init_node = interrupted
     async with asyncio.timeout(30):

@@ -34,7 +34,7 @@ def test_goals_calls_motions_and_artifacts_that_are_over_are_forgotten() -> None
         registries.append(
             {
                 "members": len(node.members),
-                "exit hooks": len(node.exit_hooks._hooks),
+                "exit hooks": len(node.lifetime._hooks),
                 "timers": len(lab.clock._timers),
                 "tasks": len(asyncio.all_tasks()),
             }

@@ -1,18 +1,19 @@
-"""Ctrl-C and SIGTERM: they end a run at once, whatever it is doing.
+"""Ctrl+C, SIGTERM and SIGHUP end a run, whatever it is doing.
 
-The loop serves a signal between two callbacks.  A step that never ends leaves it no turn; then the signal is raised in the
-middle of the step.
+`jacaros.ros.lifetime` handles the signals: it stops the robots, then asks here.  The loop serves a signal between two
+callbacks.  A step that never ends leaves it no turn; then the signal is raised in the middle of the step.
 """
 
 import asyncio
 import signal
-import threading
 from collections.abc import Callable, Coroutine, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
+from functools import partial
 from types import FrameType
 from typing import Any, NoReturn
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+from jacaros.ros import lifetime
+
 PATIENCE = 0.3
 """Seconds that the loop has to serve a signal."""
 CLOSING = 5.0
@@ -49,11 +50,11 @@ class Interruption:
         self._tell = tell
         self._told = False
         self._ending = False
-        self._before: dict[signal.Signals, Any] = {}
+        self._end: Callable[[], object] | None = None
+        self._alarm_before: Any = None
 
     def run(self, make_loop: Callable[[], asyncio.AbstractEventLoop], main: Coroutine[Any, Any, int]) -> int:
         """Run *main*, which says by `of` what signals end, on a new loop; the exit code."""
-        outside = signal.getsignal(signal.SIGINT)
         try:
             with asyncio.Runner(loop_factory=make_loop) as runner:
                 try:
@@ -65,10 +66,11 @@ class Interruption:
         except Interrupted:
             return self.exit_code
         finally:
-            if signal.SIGINT in self._before:
-                # What `_take` found there was the runner's own, which is over.
-                self._before[signal.SIGINT] = outside
-            self._give_back()
+            self._disarm()
+
+    def signals(self) -> AbstractContextManager[None]:
+        """Have signals end the run; entered on the main thread, around `run`."""
+        return lifetime.serving(self._notice)
 
     @contextmanager
     def of(self, end: Callable[[int], None]) -> Iterator[None]:
@@ -80,42 +82,33 @@ class Interruption:
             self._arm(CLOSING)
             end(self.exit_code)
 
-        def notice(number: int, frame: FrameType | None) -> None:
-            if self.exit_code:
-                self._interrupt(number, frame)
-            self.exit_code = 128 + number
-            loop.call_soon_threadsafe(serve)
-            self._arm(PATIENCE)
-
-        if threading.current_thread() is threading.main_thread():
-            for number in SIGNALS:
-                self._take(number, notice)
+        self._end = partial(loop.call_soon_threadsafe, serve)
         try:
             yield
         finally:
             if self.exit_code:
                 self._arm(THREADS)
 
-    def _take(self, number: signal.Signals, handler: Callable[[int, FrameType | None], None]) -> None:
-        before = signal.getsignal(number)
-        # An ignored signal (nohup) stays ignored; a handler from outside Python (None) stays in charge.
-        if before not in (signal.SIG_IGN, None):
-            self._before[number] = before
-            signal.signal(number, handler)
+    def _notice(self, number: int, frame: FrameType | None) -> None:
+        """Take a signal, in its handler."""
+        again, self.exit_code = self.exit_code != 0, 128 + number
+        if again or self._end is None:
+            self._interrupt(number, frame)
+        self._end()
+        self._arm(PATIENCE)
 
     def _arm(self, patience: float) -> None:
         if not hasattr(signal, "setitimer"):
             return
-        if signal.SIGALRM not in self._before:
+        if self._alarm_before is None:
             before = signal.signal(signal.SIGALRM, self._interrupt)
-            self._before[signal.SIGALRM] = signal.SIG_DFL if before is None else before
+            self._alarm_before = signal.SIG_DFL if before is None else before
         signal.setitimer(signal.ITIMER_REAL, patience, AGAIN)
 
-    def _give_back(self) -> None:
-        if hasattr(signal, "setitimer") and signal.SIGALRM in self._before:
+    def _disarm(self) -> None:
+        if self._alarm_before is not None:
             signal.setitimer(signal.ITIMER_REAL, 0)
-        for number, before in self._before.items():
-            signal.signal(number, before)
+            signal.signal(signal.SIGALRM, self._alarm_before)
 
     def _interrupt(self, number: int, frame: FrameType | None) -> NoReturn:
         del number

@@ -3,6 +3,7 @@
 import asyncio
 import gc
 from collections.abc import Callable
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -71,10 +72,11 @@ def launch(
         console.log(text, "warning")
 
     interruption, watchdog = Interruption(warn), Watchdog(warn)
-    try:
-        return interruption.run(partial(new_event_loop, clock), main())
-    finally:
-        watchdog.stop()
+    with interruption.signals() if own_process else nullcontext():
+        try:
+            return interruption.run(partial(new_event_loop, clock), main())
+        finally:
+            watchdog.stop()
 
 
 def _clock(options: RunOptions, console: Console) -> Clock:

@@ -300,6 +300,8 @@ class System:
                 steps.push_async_callback(host.close)
             for host in reversed(hosts):
                 steps.callback(host.end)
+            # A signal has stopped the robots just now: on the graph inside the process, that is delivered in the next turn.
+            steps.push_async_callback(asyncio.sleep, 0.0)
 
     # ---- what agents ask for
 

@@ -138,7 +138,7 @@ class ActionlibWire:
     def _cancel_all(self) -> None:
         """An exit hook: a process that ends leaves no robot driving to its goal."""
         for goal_id in list(self._goals):
-            self.cancel_goal(goal_id)
+            self._cancel.publish(self._cancel.message(id=goal_id))
 
     # Whether the server is there: connections tell no changes, so they are looked at while somebody cares.
 

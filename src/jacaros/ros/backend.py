@@ -341,9 +341,9 @@ class Backend(Protocol):
         """
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Have *hook* called once when the process stops for any reason it can notice, or `close` is called.
+        """Have *hook* called when the process stops for any reason it can notice, or `close` is called.
 
-        The hook publishes what makes the robot safe; after the first hook has begun, messages of others are
-        dropped.  On `ros1` and `ros2` it may run in a thread of its own, so it does nothing but publish.
-        The result takes the hook back.
+        The hook publishes what makes the robot safe, or sends requests to cancel; after the first hook has begun, messages
+        of others are dropped.  It may be called several times, and in a thread when the loop is stuck, so it must not touch
+        the loop.  The result takes the hook back.
         """

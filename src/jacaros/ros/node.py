@@ -11,10 +11,10 @@ from jacaros.clock import Clock
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.backend import DEFAULT_POLICY, Publisher, Sample, Subscription, TopicEvent
 from jacaros.ros.errors import CapabilityMissing, RosError
-from jacaros.ros.exit_hooks import ExitHooks
 from jacaros.ros.fields import FieldType
 from jacaros.ros.given_parameters import GivenParameters
 from jacaros.ros.graph import GraphContents
+from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
 from jacaros.ros.parameter import Parameters, ParameterValue
@@ -59,22 +59,19 @@ class Node:
     Args:
         settings: names, clock and reports.
         schema: the library's family of message classes.
-        finish: see `ExitHooks`.
-        threaded_hooks: see `ExitHooks`.
+        lifetime: how it joins and leaves.
     """
 
     name = "none"
     ros_version = 2
     capabilities: frozenset[str] = frozenset()
 
-    def __init__(
-        self, settings: NodeSettings, schema: Schema, finish: Callable[[], None], threaded_hooks: bool
-    ) -> None:
+    def __init__(self, settings: NodeSettings, schema: Schema, lifetime: Lifetime) -> None:
         self.clock = settings.clock
         self.log = settings.log
         self.names = NodeNames(settings.node_name, settings.namespace, settings.remap)
         self.factory = MessageFactory(schema)
-        self.exit_hooks = ExitHooks(settings.log, finish, threaded_hooks)
+        self.lifetime = lifetime
         self.connected = False
         self.delivered: Callable[[], None] = lambda: None
         """Called on the loop when a message that came from outside has been delivered."""
@@ -109,6 +106,7 @@ class Node:
 
     def set_connected(self, connected: bool) -> None:
         """Note that the graph was found or lost and tell everybody; on the loop."""
+        self.lifetime.connected(connected)
         if connected != self.connected:
             self.connected = connected
             for callback in list(self._on_connection):
@@ -154,8 +152,8 @@ class Node:
         raise NotImplementedError
 
     def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Have *hook* called once when the process stops or the backend is closed."""
-        return self.exit_hooks.add(hook)
+        """Have *hook* called when the process stops or the backend is closed."""
+        return self.lifetime.add(hook)
 
     def rosout(self, level: str, text: str) -> None:
         """Write a line to the graph's log."""

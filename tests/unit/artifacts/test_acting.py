@@ -194,32 +194,6 @@ def test_an_artifact_that_is_disposed_cancels_its_goals() -> None:
     in_lab(body, None)
 
 
-def test_goals_under_way_are_cancelled_when_the_process_ends() -> None:
-    async def body(lab: Lab) -> None:
-        server = FakeServer(lab)
-        artifact = await lab.make(Navigator)
-        lab.begin(artifact, "go", 3, Out())
-        await lab.sleep(1)
-        backend: Any = lab.backend
-        backend.exit_hooks.run()
-        assert server.goals[0].over
-
-    in_lab(body, None)
-
-
-def test_a_disposed_artifact_leaves_no_exit_hook_behind() -> None:
-    async def body(lab: Lab) -> None:
-        server = FakeServer(lab)
-        artifact = await lab.make(Navigator)
-        lab.workspace.dispose_artifact(artifact)
-        await lab.sleep(0.1)
-        backend: Any = lab.backend
-        backend.exit_hooks.run()
-        assert server.told == ["closed"]
-
-    in_lab(body, None)
-
-
 def test_two_goals_are_pursued_side_by_side_and_one_of_them_dropped() -> None:
     async def body(lab: Lab) -> None:
         server = FakeServer(lab)

@@ -319,8 +319,7 @@ def test_the_end_of_the_process_stops_the_robot() -> None:
         lab.begin(artifact, "moveForward", 2)
         await lab.sleep(1.5)
         assert lab.last_command != STANDSTILL
-        hooks = lab.backend.exit_hooks  # type: ignore[attr-defined]  # of the memory backend
-        hooks.run()
+        lab.backend.lifetime.stop()  # type: ignore[attr-defined]  # of the memory backend
         await lab.sleep(0.01)
         assert lab.last_command == STANDSTILL
 
@@ -331,7 +330,7 @@ def test_a_standing_robot_gets_no_command_at_the_end_of_the_process() -> None:
     async def body(lab: Lab) -> None:
         lab.record()
         await lab.make(ArtCmdVel)
-        lab.backend.exit_hooks.run()  # type: ignore[attr-defined]
+        lab.backend.lifetime.stop()  # type: ignore[attr-defined]
         await lab.sleep(0.01)
         assert lab.commands == []
 

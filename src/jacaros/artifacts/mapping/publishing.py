@@ -32,7 +32,7 @@ class Publishing:
         self._fill: Fill | None = None
         self._fill_end: Fill | None = None
         self._lane = Lane()
-        self._moves = False
+        self._moves = self._moved = False
         self._arguments: Sequence[object] = ()
         if part.type_name is not None:
             self._open(part.type_name.text)
@@ -50,7 +50,7 @@ class Publishing:
         self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
         if type_name in TWISTS:
             self._lane = lane_of(host.ros, host.robot_prefix)
-            host.at_dispose(host.ros.add_exit_hook(self._halt))
+            host.at_dispose(host.ros.add_exit_hook(self._stand))
             host.at_dispose(self._halt)
 
     def _end_values(self, type_name: str, values: tuple[ValuePart, ...]) -> tuple[ValuePart, ...] | None:
@@ -149,7 +149,9 @@ class Publishing:
             moves = self._fill_end is not None and _is_motion(fields)
             if moves and not _is_finite(fields):
                 raise WrongValue("a velocity is infinite; nothing was sent", "velocity")
-            self._publisher.publish(self._publisher.message(**fields))
+            message = self._publisher.message(**fields)
+            self._moved = self._moved or moves
+            self._publisher.publish(message)
         except WrongValue as error:
             self._host.fail(str(error), "wrong_value", error.field)
         except MessageMismatch as error:
@@ -164,8 +166,13 @@ class Publishing:
         self._publisher.publish(self._publisher.message(**self._fill_end(inputs, self._host.clock.now())))
 
     def _halt(self) -> None:
-        """Stop the robot when the artifact or the process ends."""
+        """Stop the robot when the artifact ends."""
         if self._moves:
+            self._end(self._arguments)
+
+    def _stand(self) -> None:
+        """Stop a robot that was ever sent a velocity as the process ends; in a thread, perhaps, so it only publishes."""
+        if self._moved:
             self._end(self._arguments)
 
 

@@ -205,9 +205,7 @@ class ConnectedArtifact(Artifact):
             name: below the robot's name, such as ``navigate_to_pose``.
             type_name: such as ``nav2_msgs/action/NavigateToPose``.
         """
-        client = self.kept(self.ros.action_client(self.robot_topic(name), type_name))
-        self.at_dispose(self.ros.add_exit_hook(client.close))
-        return client
+        return self.kept(self.ros.action_client(self.robot_topic(name), type_name))
 
     def service(self, name: str, type_name: str, handler: Callable[..., Any]) -> Service:
         """Offer the robot's service *name* until the artifact is disposed.

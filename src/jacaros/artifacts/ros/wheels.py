@@ -81,8 +81,8 @@ class WheeledArtifact(RosArtifact):
             self.faults_of(topic), self.clock, self.on_odometry, str(self.options.get("odometry_frame", ""))
         )
         self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
-        self._over = False
-        self.at_dispose(self.ros.add_exit_hook(self._halt_for_good))
+        self._drove = False
+        self.at_dispose(self.ros.add_exit_hook(self._stand))
         self.at_dispose(self._halt)
 
     def on_odometry(self, odometry: Odometry) -> None:
@@ -117,9 +117,9 @@ class WheeledArtifact(RosArtifact):
     # What a motion needs of its artifact.
 
     def command(self, velocity: Velocity) -> None:
-        """Publish one velocity command; nothing but zero when the process is about to end."""
-        if self._over:
-            velocity = STANDSTILL
+        """Publish one velocity command."""
+        if velocity != STANDSTILL:
+            self._drove = True
         twist = self._commands.message()
         twist.linear.x, twist.angular.z = velocity.linear, velocity.angular
         self._commands.publish(twist)
@@ -140,10 +140,14 @@ class WheeledArtifact(RosArtifact):
         for motion in list(self._motions):
             motion.halt()
 
-    def _halt_for_good(self) -> None:
-        """Stop as the process ends; in a thread of its own, perhaps, so it only publishes."""
-        self._over = True
-        self._halt()
+    def _stand(self) -> None:
+        """Stop as the process ends; in a thread, perhaps, so it only publishes.
+
+        A robot that was driven is sent zero even if its last motion has ended: whether that one's own zero was still
+        admitted, nobody can say here.
+        """
+        if self._drove:
+            self.command(STANDSTILL)
 
     async def perform(self, maneuver: Maneuver) -> None:
         """Drive *maneuver* to its end; for operations marked as pausable.

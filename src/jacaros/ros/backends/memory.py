@@ -80,17 +80,19 @@ class MemoryBackend(MemoryNode):
     async def start(self) -> None:
         """Join the graph."""
         self._loop = asyncio.get_running_loop()
+        self.lifetime.join()
         self.graph.join(self)
         self.set_connected(self.graph.up)
 
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
-        self.exit_hooks.run()
+        self.lifetime.stop()
         for member in list(self.members):
             member.close()
         self.members.clear()
         self.graph.leave(self)
         self.set_connected(False)
+        self.lifetime.left()
 
     def vanish(self) -> None:
         """Be gone without a word, as a killed process is; see `MemoryGraph.vanish`."""

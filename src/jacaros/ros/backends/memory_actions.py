@@ -85,6 +85,7 @@ class MemoryGoalWire:
         self._type_name = type_name
         self._servers: dict[str, GraphActionServer] = {}
         self.graph.connect(self)
+        self._forget_hook = node.add_exit_hook(self._cancel_all)
 
     @property
     def offered(self) -> bool:
@@ -102,6 +103,8 @@ class MemoryGoalWire:
             raise CallFailed(f"action {self.name} is not offered any more")
         if server.type_name != self._type_name:
             raise CallFailed(f"action {self.name} is of type {server.type_name}, not {self._type_name}")
+        if not self._node.lifetime.admits():
+            raise CallFailed(f"action {self.name}: the node is leaving the graph")
         self._servers[goal_id] = server
         self.graph.tell(server.take, goal_id, goal, self)
 
@@ -118,8 +121,14 @@ class MemoryGoalWire:
     def close(self) -> None:
         """Cancel the goals, and leave."""
         self.sender.close()  # which calls this again, when they are cancelled
+        self._forget_hook()
         self.graph.disconnect(self)
         self._node.forget(self)
+
+    def _cancel_all(self) -> None:
+        """Cancel what is under way, as an exit hook."""
+        for goal_id in list(self._servers):
+            self.cancel_goal(goal_id)
 
     def server_came(self) -> None:
         """A server is there."""

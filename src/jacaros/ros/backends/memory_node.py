@@ -4,6 +4,7 @@ import itertools
 from typing import Protocol
 
 from jacaros.ros.backends.memory_graph import MemoryGraph
+from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.typestore import RosbagsSchema
@@ -29,7 +30,7 @@ class MemoryNode(Node):
     """
 
     def __init__(self, settings: NodeSettings, schema: RosbagsSchema, graph: MemoryGraph | None) -> None:
-        super().__init__(settings, schema, finish=lambda: None, threaded_hooks=False)
+        super().__init__(settings, schema, Lifetime(settings.log))
         self.graph = graph if graph is not None else MemoryGraph()
         self.declared = DeclaredParameters(
             self.node_name,

@@ -52,7 +52,7 @@ class MemoryPublisher:
         """Hand *message* to all subscriptions."""
         if not isinstance(message, self._class):
             message = published_message(self._node.factory, self.topic, self.type_name, message)
-        if not self._node.exit_hooks.admits():
+        if not self._node.lifetime.admits():
             return
         self.kept.append(message)
         for subscription in self._receivers:

@@ -49,11 +49,12 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
         """Let the loop read until the connection ends; on the thread of rospy's that belongs to this connection."""
         connection = self.socket
         subscriber = registration.get_topic_manager().get_subscriber_impl(self.name)
-        if self.name not in self.takers or connection is None or subscriber is None or self.read_buff.tell():
+        taker = self.takers.get(self.name)  # the loop may take it away at any moment
+        if taker is None or connection is None or subscriber is None or self.read_buff.tell():
             return super().receive_once()
         loop, over = self.takers.loop, threading.Event()
         self._over = over
-        take = partial(self._take, subscriber, self.takers[self.name])
+        take = partial(self._take, subscriber, taker)
         with suppress(OSError):  # closed just now
             # A socket of our own: rospy closes its one in any thread, and its number may then be that of another.
             inlet = Inlet(loop, connection.dup(), take, over.set)

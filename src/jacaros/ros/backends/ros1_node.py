@@ -23,7 +23,8 @@ from jacaros.ros.backends.ros1_repairs import (
 )
 from jacaros.ros.backends.ros1_types import GenpySchema
 from jacaros.ros.errors import CapabilityMissing, RosError
-from jacaros.ros.handoff import in_thread, post
+from jacaros.ros.handoff import post
+from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.qos import QoS
 from jacaros.ros.waiting import Waiting
@@ -52,7 +53,7 @@ class Ros1Node(Node):
 
     def __init__(self, settings: NodeSettings) -> None:
         self.schema = GenpySchema(settings.interface_paths)
-        super().__init__(settings, self.schema, finish=self._leave, threaded_hooks=True)
+        super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
         self.master_uri = os.environ.setdefault("ROS_MASTER_URI", "http://localhost:11311")
         actions = NodeActions(
             self._join,
@@ -92,7 +93,7 @@ class Ros1Node(Node):
         self.takers.loop = self._loop
         connect_streams(self.takers)
         let_parameters_tell(self._note_parameter)
-        self.exit_hooks.watch_thread()
+        self.lifetime.join()
         self._first_look = self._loop.create_future()
         self.link.start()
         await self._first_look
@@ -101,8 +102,7 @@ class Ros1Node(Node):
         """Run the exit hooks and leave the graph."""
         for action in list(self.actions):
             action.close()
-        await in_thread(self.loop, self.exit_hooks.run, "closing")
-        self.exit_hooks.stop_watching()
+        await self.lifetime.leave()
         for member in list(self.members):
             member.close()
         self.members.clear()
@@ -192,7 +192,7 @@ class Ros1Node(Node):
 
     def _note_shutdown(self) -> None:
         """On rospy's thread: somebody ended our node, most likely a newer node of the same name."""
-        if not self.exit_hooks.ran:
+        if not self.lifetime.leaving:
             post(self.loop, self.log, f"node {self.node_name} was shut down from outside: is its name taken?")
             post(self.loop, self.set_connected, False)
             self.link.stop()

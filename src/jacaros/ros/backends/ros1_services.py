@@ -49,7 +49,7 @@ class Ros1Service:
         node = self._node
         try:
             return ask(
-                node.loop, lambda done: self._responder.answer(request, done), lambda: node.exit_hooks.ran
+                node.loop, lambda done: self._responder.answer(request, done), lambda: node.lifetime.leaving
             )
         except CallFailed as problem:
             raise rospy.ServiceException(str(problem)) from None

@@ -46,7 +46,10 @@ class Ros1Publisher:
         """Queue *message* for sending."""
         if not isinstance(message, self._class):
             message = published_message(self._node.factory, self.topic, self._type_name, message)
-        if self._closed or not self._node.exit_hooks.admits():
+        self._node.lifetime.send(self._send, message)
+
+    def _send(self, message: Any) -> None:
+        if self._closed:
             return
         with self._lock:
             if self._publisher is None:

@@ -96,6 +96,7 @@ class Ros2Backend(Ros2Node):
 
     async def close(self) -> None:
         """Run the exit hooks and leave the graph; goals of both sides are told that we go."""
+        self.lifetime.stop()
         for member in list(self.members):
             if isinstance(member, Ros2GoalWire | Ros2ActionServer) and not self.ended:
                 (member.sender if isinstance(member, Ros2GoalWire) else member).close()

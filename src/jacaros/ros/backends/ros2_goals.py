@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from action_msgs.msg import GoalInfo, GoalStatusArray  # type: ignore[import-not-found]
@@ -105,6 +106,7 @@ class Ros2GoalWire:
                 ),
             ),
         ]
+        self._forget_hook = node.add_exit_hook(self._cancel_all)
 
     # What the sender asks for:
 
@@ -155,6 +157,7 @@ class Ros2GoalWire:
         if self._closed:
             return
         self._closed = True
+        self._forget_hook()
         self._feedback.close()
         for timer in (self._looking, self._sending):
             if timer is not None:
@@ -167,15 +170,16 @@ class Ros2GoalWire:
         node.forget(self)
 
     def farewell(self, seconds: float) -> None:
-        """Cancel what is under way: when its client ends, nobody watches over the robot."""
-        asked = False
+        """Give requests to cancel the time to arrive."""
+        if self._goals:
+            time.sleep(min(0.1, seconds))
+
+    def _cancel_all(self) -> None:
+        """Cancel what is under way, as an exit hook: when its client ends, nobody watches over the robot."""
         for goal in list(self._goals.values()):
             if not goal.over:
                 info = GoalInfo(goal_id=id_message(goal.identity))
                 self._cancel_client.call_async(CancelGoal.Request(goal_info=info))
-                asked = True
-        if asked:
-            time.sleep(min(0.1, seconds))
 
     # What comes back, on the loop:
 
@@ -343,7 +347,10 @@ class Ros2GoalWire:
         goal = self._goals.get(identity)
         if goal is not None and self.sender.wants(identity):
             goal.sent = True
-            self._call(self._goal_client, goal.request, lambda answer: self._answered(identity, answer))
+            take = partial(self._answered, identity)
+            self._node.lifetime.send(
+                lambda request: self._call(self._goal_client, request, take), goal.request
+            )
 
     def _probe(self) -> None:
         """Ask for something that every server answers at once: the result of a goal that nobody knows."""
@@ -375,9 +382,10 @@ class Ros2GoalWire:
 
     def _forget_calls(self) -> None:
         """Wait for answers no more: those of a server that has died would be waited for without end."""
-        while self._calls:
-            call, client = self._calls.popitem()
-            client.remove_pending_request(call)
+        for call in list(self._calls):
+            client = self._calls.pop(call, None)
+            if client is not None:  # else it was answered just now, on the executor's thread
+                client.remove_pending_request(call)
 
     def _take_answer(self, take: Callable[[Any], None], answer: Any) -> None:
         self._signs.heard()

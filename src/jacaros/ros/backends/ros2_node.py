@@ -27,6 +27,7 @@ from jacaros.ros.backends.ros2_types import RosidlSchema
 from jacaros.ros.backends.ros2_values import parameter
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.handoff import in_thread, post
+from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.ros_clock import RosClock
 
@@ -62,7 +63,7 @@ class Ros2Node(Node):
 
     def __init__(self, settings: NodeSettings, domain_id: int | None = None) -> None:
         self.schema = RosidlSchema()
-        super().__init__(settings, self.schema, finish=self._leave, threaded_hooks=True)
+        super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
         self._domain_id = domain_id
         # As on every node that goes by a simulator: tools ask for it.
         self._simulated = {"use_sim_time": True} if isinstance(settings.clock, RosClock) else {}
@@ -85,15 +86,20 @@ class Ros2Node(Node):
     async def start(self) -> None:
         """Join the graph."""
         self._loop = asyncio.get_running_loop()
-        self.exit_hooks.watch_thread()
+        self.lifetime.join()
         await in_thread(self._loop, self._join, "joining")
         self.set_connected(True)
 
     async def close(self) -> None:
         """Run the exit hooks and leave the graph."""
-        await in_thread(self.loop, self.exit_hooks.run, "closing")
-        self.exit_hooks.stop_watching()
+        self.lifetime.stop()
+        await in_thread(self.loop, self._send_rest, "closing")
+        for member in list(self.members):
+            # On the loop: what waits for an answer of theirs fails here.
+            with suppress(Exception):  # whatever is wrong with one, the others are to be closed
+                member.close()
         self.members.clear()
+        await self.lifetime.leave()
         self.set_connected(False)
 
     def retire(self, destroy: Callable[[Any], Any], thing: Any) -> None:
@@ -190,14 +196,10 @@ class Ros2Node(Node):
             post(self.loop, self.log, text)
 
     def _leave(self) -> None:
-        """Wait until the last messages have arrived, then end rclpy before the interpreter ends."""
+        """Wait until the last messages have arrived, then end rclpy before the interpreter ends; on any thread."""
         if self.rcl is None:
             return
-        deadline = time.monotonic() + SENDING
-        for member in list(self.members):
-            with suppress(Exception):  # whatever is wrong with one, the others are to be heard
-                member.farewell(max(0.0, deadline - time.monotonic()))
-        time.sleep(0.02)  # best-effort messages are acknowledged by nobody
+        self._send_rest()
         for look in list(self._looks):
             look.leave()
         self.receiver.stop(STOPPING)
@@ -207,8 +209,15 @@ class Ros2Node(Node):
             self._thread.join(STOPPING)
         self._ended = True
         self._executor.shutdown(timeout_sec=0.0)
-        for member in list(self.members):
-            with suppress(Exception):
-                member.close()
         self.rcl.destroy_node()
         self._context.try_shutdown()
+
+    def _send_rest(self) -> None:
+        """Wait until the last messages have arrived."""
+        if self.rcl is None:
+            return
+        deadline = time.monotonic() + SENDING
+        for member in list(self.members):
+            with suppress(Exception):  # whatever is wrong with one, the others are to be heard
+                member.farewell(max(0.0, deadline - time.monotonic()))
+        time.sleep(0.02)  # best-effort messages are acknowledged by nobody

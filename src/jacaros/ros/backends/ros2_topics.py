@@ -75,8 +75,8 @@ class Ros2Publisher:
         """Send *message*."""
         if not isinstance(message, self._class):
             message = published_message(self._node.factory, self.topic, self._type_name, message)
-        if not self._closed and self._node.exit_hooks.admits():
-            self._publisher.publish(message)
+        if not self._closed:
+            self._node.lifetime.send(self._publisher.publish, message)
 
     def farewell(self, seconds: float) -> None:
         """Wait until the reliable subscriptions have what was published, but not longer than *seconds*."""

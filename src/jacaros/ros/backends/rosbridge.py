@@ -44,7 +44,8 @@ from jacaros.ros.backends.rosbridge_types import BridgeSchema, written_on_ros1
 from jacaros.ros.calling import settle
 from jacaros.ros.errors import CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.handoff import in_thread, post
+from jacaros.ros.handoff import post
+from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.ros.node import Node, NodeSettings
 from jacaros.ros.parameter_news import ParameterNews
@@ -86,7 +87,7 @@ class RosbridgeBackend(Node):
         self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
         self.requests = Requests(self._link.send)
         self._schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
-        super().__init__(settings, self._schema, finish=self._leave, threaded_hooks=True)
+        super().__init__(settings, self._schema, Lifetime(settings.log, self._leave, threaded=True))
         self.translator = Translator(self._schema)
         self.members = Members(self)
         self.goals: dict[str, Any] = {}
@@ -118,7 +119,7 @@ class RosbridgeBackend(Node):
         """Connect, or say that the server is awaited and go on trying in the background."""
         self._loop = asyncio.get_running_loop()
         self._first_look = self._loop.create_future()
-        self.exit_hooks.watch_thread()
+        self.lifetime.join()
         self._link.start()
         await asyncio.wait([self._first_look], timeout=FIRST_LOOK)
         if not self._link.up and not self._first_look.done():
@@ -128,8 +129,7 @@ class RosbridgeBackend(Node):
 
     async def close(self) -> None:
         """Run the exit hooks and disconnect."""
-        await in_thread(self.loop, self.exit_hooks.run, "closing")
-        self.exit_hooks.stop_watching()
+        await self.lifetime.leave()
         if self._greeting is not None:
             self._greeting.cancel()
         self.attached = False
@@ -321,7 +321,7 @@ class RosbridgeBackend(Node):
             self._greeting.cancel()
         self.requests.fail_all()
         self.members.lost()
-        if not self.exit_hooks.ran:
+        if not self.lifetime.leaving:
             self._await_server()
         self.set_connected(False)
 

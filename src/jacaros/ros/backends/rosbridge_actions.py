@@ -125,10 +125,14 @@ class Ros2Goals:
             "args": node.translator.encode(goal_type(sender.type_name), goal),
             "feedback": True,
         }
-        if not node.send(operation):
-            raise CallFailed(f"action {sender.name}: there is no connection to the rosbridge server")
+        # Known before it is sent: an exit hook in another thread must find it.
         self._goals[goal_id] = _Sent()
         node.goals[goal_id] = self
+        sent: list[bool] = []
+        node.lifetime.send(lambda _: sent.append(node.send(operation)), None)
+        if sent != [True]:
+            self.forget_goal(goal_id)
+            raise CallFailed(f"action {sender.name}: there is no connection to the rosbridge server")
         node.clock.call_later(TOLD_WITHIN, lambda: self._expect_sign(goal_id))
 
     def cancel_goal(self, goal_id: str) -> None:

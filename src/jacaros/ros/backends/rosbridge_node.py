@@ -8,7 +8,7 @@ from jacaros.clock import Clock
 from jacaros.ros.backend import Sample
 from jacaros.ros.backends.rosbridge_messages import Translator
 from jacaros.ros.backends.rosbridge_requests import Done, Requests, Sight
-from jacaros.ros.exit_hooks import ExitHooks
+from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory
 
 
@@ -109,7 +109,7 @@ class BridgeNode(Protocol):
     clock: Clock
     log: Callable[[str], None]
     factory: MessageFactory
-    exit_hooks: ExitHooks
+    lifetime: Lifetime
     connected: bool
     attached: bool
     packs: bool

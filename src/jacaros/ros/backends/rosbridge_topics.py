@@ -53,7 +53,10 @@ class BridgePublisher:
         """Send *message*."""
         if not isinstance(message, self._class):
             message = published_message(self._node.factory, self.topic, self._type_name, message)
-        if self._closed or not self._node.exit_hooks.admits():
+        self._node.lifetime.send(self._pass_on, message)
+
+    def _pass_on(self, message: Any) -> None:
+        if self._closed:
             return
         self._kept.append(message)
         # Before the server has been asked whose graph this is, the notation is not known.
@@ -98,7 +101,9 @@ class BridgePublisher:
 
     def _send(self, message: Any) -> bool:
         values = self._node.translator.encode(self._type_name, message)
-        return self._node.send({"op": "publish", "topic": self.topic, "msg": values}, self._droppable)
+        # What stops a robot at the end of the process must arrive, however slow the network is.
+        droppable = self._droppable and not self._node.lifetime.leaving
+        return self._node.send({"op": "publish", "topic": self.topic, "msg": values}, droppable)
 
 
 class TopicFeed:

@@ -129,7 +129,7 @@ def test_a_robot_that_was_sent_a_velocity_stops_when_the_process_ends() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         lab.record()
         await lab.do(artifact, "go", 0.5)
-        lab.backend.exit_hooks.run()  # type: ignore[attr-defined]  # what a signal of the system does
+        lab.backend.lifetime.stop()  # type: ignore[attr-defined]  # what a signal of the system does
         await settle()
         assert lab.last_command == STANDSTILL
 

@@ -1,0 +1,330 @@
+"""The one owner of how a node joins its graph and how the process leaves it: zero velocity is the last message.
+
+The exit hooks of a node stop its robots: each publishes zero or sends requests to cancel, nothing else.  They run when the
+backend is closed, at SIGINT, SIGTERM and SIGHUP, and when the loop's thread or the interpreter ends (which an uncaught
+exception leads to).  No hook runs in a process that is killed (SIGKILL, power): a robot's base must stop by itself when
+commands cease.
+
+Hooks run on the loop, between two callbacks.  Only when the loop does not get there within `PATIENCE` do they run in a
+thread.  From the first hook on, only hooks may publish; a message that was already on its way to the client library is
+followed by another run of the hooks (`Lifetime.send`).
+"""
+
+import asyncio
+import atexit
+import queue
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from enum import StrEnum
+from types import FrameType
+from typing import Any, TypeVar
+
+from jacaros.ros.handoff import in_thread, post
+
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+"""Signals that end a process; Windows has no SIGHUP."""
+PATIENCE = 0.2
+"""Seconds that the loop has to run the hooks after a signal."""
+LOOKING = 0.2
+"""Seconds between two checks whether the loop's thread is alive."""
+LONGEST_WAIT = 3.0
+"""Seconds that the end of the process may be held up by sending the last messages."""
+
+M = TypeVar("M")
+Serve = Callable[[int, FrameType | None], None]
+
+
+class State(StrEnum):
+    """Where a node is on its way through the graph.
+
+    Attributes:
+        JOINING: not connected yet.
+        JOINED: connected.
+        LOST: the connection is gone, and is being made again.
+        LEAVING: the robots were told to stop; only exit hooks may publish.
+        LEFT: the node is not in the graph any more.
+    """
+
+    JOINING = "joining"
+    JOINED = "joined"
+    LOST = "lost"
+    LEAVING = "leaving"
+    LEFT = "left"
+
+
+class Lifetime:
+    """The life of one node.
+
+    Args:
+        log: takes one line about a hook that failed.
+        finish: blocks until the messages published so far are sent, and lets go of whatever else would keep the
+            process from ending.  It runs on any thread, and must not touch the loop.
+        threaded: run the hooks in a thread when the loop is stuck or its thread has ended.  On the graph inside the process
+            robots and agents share the loop, so a thread could stop nobody.
+
+    Attributes:
+        state: changed on the loop, but for `State.LEAVING`.
+    """
+
+    def __init__(
+        self, log: Callable[[str], None], finish: Callable[[], None] = lambda: None, threaded: bool = False
+    ) -> None:
+        self.state = State.JOINING
+        self.threaded = threaded
+        self._log = log
+        self._finish = finish
+        self._hooks: list[Callable[[], None]] = []
+        self._open = True
+        self._hooking: set[int] = set()
+        """Threads that are running the hooks."""
+        self._told = False
+        self._stopped = threading.Event()
+        self._finishing = threading.Lock()
+        self._finished = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread: threading.Thread | None = None
+
+    def join(self) -> None:
+        """Note the running loop and its thread; from now on signals and the end of the thread stop the robots."""
+        self._loop = asyncio.get_running_loop()
+        self._thread = threading.current_thread()
+        if self.threaded:
+            _process.watch(self)
+
+    def connected(self, connected: bool) -> None:
+        """Note that the graph was found or lost."""
+        if not self.leaving:
+            self.state = State.JOINED if connected else State.LOST
+
+    @property
+    def leaving(self) -> bool:
+        """Whether the node is leaving its graph, or has left it."""
+        return self.state in (State.LEAVING, State.LEFT)
+
+    def add(self, hook: Callable[[], None]) -> Callable[[], None]:
+        """Have *hook* called when the process stops, perhaps several times; return what takes it back.
+
+        Args:
+            hook: publishes, or sends requests to cancel.  It may run in any thread, so it must not touch the loop.
+        """
+        self._hooks.append(hook)
+        _process.watch(self)
+
+        def remove() -> None:
+            if hook in self._hooks:
+                self._hooks.remove(hook)
+
+        return remove
+
+    def admits(self) -> bool:
+        """Return whether a message may be published: when the robots are being stopped, only by hooks.
+
+        Otherwise a motion that has not noticed the end yet could send the robot off again.
+        """
+        return self._open or threading.get_ident() in self._hooking
+
+    def send(self, send: Callable[[M], object], message: M) -> None:
+        """Call *send* with *message* if that is admitted, and stop the robots again if they were stopped meanwhile.
+
+        A signal may interrupt, or another thread overtake, what is between the check and the client library's own
+        publishing.  Without the second look the old velocity would follow the zero.
+        """
+        if not self.admits():
+            return
+        try:
+            send(message)
+        finally:
+            if not self.admits():
+                self._run_hooks()
+
+    def stop(self) -> None:
+        """Stop the robots: close the node for all but the hooks, and run them on this thread."""
+        if self.state is State.LEFT:
+            return
+        self.state = State.LEAVING
+        self._open = False
+        self._run_hooks()
+        self._stopped.set()
+
+    def stop_soon(self) -> None:
+        """Stop the robots as soon as the loop has a turn; callable in a signal handler."""
+        self._told = True
+        if self._loop is None or not post(self._loop, self.stop):
+            self.stop()
+
+    async def leave(self) -> None:
+        """Stop the robots, wait in a thread until the last messages are sent, and leave; on the loop."""
+        self.stop()
+        if self.threaded:
+            await in_thread(asyncio.get_running_loop(), self._finish_once, "closing")
+        self.left()
+
+    def left(self) -> None:
+        """Note that the node has left its graph; on the loop."""
+        self.state = State.LEFT
+        _process.unwatch(self)
+
+    def stop_if_late(self, deadline: float) -> None:
+        """Stop the robots here, in a thread, if the loop was told to and has not done so by *deadline* (monotonic)."""
+        if self._told and not self._stopped.wait(max(0.0, deadline - time.monotonic())):
+            self.stop()
+
+    def leave_if_orphaned(self) -> None:
+        """Leave, in a thread, when the loop's thread has ended without closing the node."""
+        if self._thread is not None and not self._thread.is_alive():
+            self.leave_now()
+
+    def leave_now(self) -> None:
+        """Stop the robots and leave without the loop, which runs no more."""
+        self.stop()
+        self._finish_once()
+        self.left()
+
+    def _run_hooks(self) -> None:
+        this = threading.get_ident()
+        outermost = this not in self._hooking
+        self._hooking.add(this)
+        try:
+            for hook in list(self._hooks):
+                try:
+                    hook()
+                except Exception as problem:  # the next hook may stop another robot
+                    self._log(f"an exit hook failed: {type(problem).__name__}: {problem}")
+        finally:
+            if outermost:
+                self._hooking.discard(this)
+
+    def _finish_once(self) -> None:
+        if not self._finishing.acquire(timeout=LONGEST_WAIT):
+            return
+        try:
+            if not self._finished:
+                self._finished = True
+                self._finish()
+        finally:
+            self._finishing.release()
+
+
+class _Process:
+    """What the process learns about its own end: the only place that handles signals.
+
+    A run of agents says by `serving` what a signal means to it.  Otherwise the handler that was there before decides: that
+    of a program in which JaCaROS is a guest, or of Python.
+    """
+
+    def __init__(self) -> None:
+        self._watched: list[Lifetime] = []
+        self._serve: Serve | None = None
+        self._previous: dict[int, Any] = {}
+        self._at_exit = False
+        self._signalled: queue.SimpleQueue[None] = queue.SimpleQueue()  # safe in a signal handler
+        self._watcher: threading.Thread | None = None
+        self._lock = threading.Lock()
+
+    def watch(self, lifetime: Lifetime) -> None:
+        """Stop the robots of *lifetime* at signals and at the process's end; again is harmless."""
+        with self._lock:
+            if lifetime not in self._watched:
+                self._watched.append(lifetime)
+            if lifetime.threaded and self._watcher is None:
+                self._watcher = threading.Thread(target=self._watch, name="lifetime", daemon=True)
+                self._watcher.start()
+        if not self._at_exit:
+            self._at_exit = True
+            atexit.register(self._leave_all)
+        self._take_signals()
+
+    def unwatch(self, lifetime: Lifetime) -> None:
+        """Do so no more."""
+        with self._lock:
+            if lifetime in self._watched:
+                self._watched.remove(lifetime)
+        self._give_signals_back()
+
+    @contextmanager
+    def serving(self, serve: Serve) -> Iterator[None]:
+        """Have *serve* called with each signal, after the robots were told to stop; on the main thread only."""
+        self._serve = serve
+        self._take_signals()
+        try:
+            yield
+        finally:
+            self._serve = None
+            self._give_signals_back()
+
+    def _take_signals(self) -> None:
+        if self._previous or threading.current_thread() is not threading.main_thread():
+            return
+        for number in SIGNALS:
+            before = signal.getsignal(number)
+            # An ignored signal (nohup) stays ignored; a handler from outside Python (None) stays in charge.
+            if before not in (signal.SIG_IGN, None):
+                self._previous[number] = before
+                signal.signal(number, self._at_signal)
+
+    def _give_signals_back(self) -> None:
+        if self._watched or self._serve is not None:
+            return
+        if threading.current_thread() is threading.main_thread():
+            for number, before in self._previous.items():
+                if signal.getsignal(number) == self._at_signal:
+                    signal.signal(number, before)
+            self._previous.clear()
+
+    def _at_signal(self, number: int, frame: FrameType | None) -> None:
+        for lifetime in list(self._watched):
+            lifetime.stop_soon()
+        self._signalled.put(None)
+        before = self._previous.get(number, signal.SIG_DFL)
+        if self._serve is not None:
+            self._serve(number, frame)
+        elif callable(before):
+            before(number, frame)
+        else:
+            # As KeyboardInterrupt does for SIGINT: unwind, let `finally` run, then the interpreter's end.
+            sys.exit(128 + number)
+
+    def _watch(self) -> None:
+        """See to it, in a thread, that robots stop when the loop is stuck, or its thread has ended.
+
+        The interpreter calls what is registered with `atexit` only after all threads but daemons have ended; a library
+        with such a thread would keep a robot driving after an uncaught exception.
+        """
+        while True:
+            try:
+                self._signalled.get(timeout=LOOKING)
+            except queue.Empty:
+                for lifetime in self._threaded():
+                    lifetime.leave_if_orphaned()
+            else:
+                deadline = time.monotonic() + PATIENCE
+                for lifetime in self._threaded():
+                    lifetime.stop_if_late(deadline)
+            with self._lock:
+                if not any(lifetime.threaded for lifetime in self._watched):
+                    self._watcher = None
+                    return
+
+    def _threaded(self) -> list[Lifetime]:
+        with self._lock:
+            return [lifetime for lifetime in self._watched if lifetime.threaded]
+
+    def _leave_all(self) -> None:
+        for lifetime in list(self._watched):
+            lifetime.leave_now()
+
+
+_process = _Process()
+
+
+def serving(serve: Serve) -> AbstractContextManager[None]:
+    """Have *serve* called with each signal that ends a process, and the frame that it interrupted.
+
+    The robots were told to stop before that.  The result is a context manager for the main thread: entered before asyncio's
+    runner begins, it keeps that from taking SIGINT itself.
+    """
+    return _process.serving(serve)
