@@ -88,6 +88,12 @@ class ActionCommands:
             return {"last": number, "message": "stopped"}
         return {"last": number}
 
+    async def _do_stop_slowly(self, goal: Any) -> Any:
+        try:
+            return await self._do_count(goal)
+        finally:
+            await self._clock.sleep(0.5)
+
     async def _do_nothing(self, goal: Any) -> None:
         return None
 

@@ -139,6 +139,19 @@ def test_a_newer_goal_takes_over_where_goals_preempt(graph: Any, pair: Pair, top
     assert right.deeds(topic) == [["begin", 500], ["end", 500, False], ["begin", 1], ["end", 1, False]]
 
 
+def test_a_goal_is_sent_when_the_cancelled_one_before_it_has_ended(
+    graph: Any, pair: Pair, topic: str
+) -> None:
+    left, right = serving(graph, pair, topic, "stop_slowly")
+    left.send_goal(topic + "old", topic, SLOW, timeout=60)
+    graph.wait_until(lambda: left.feedback(topic + "old"), "the old goal is under way")
+    assert left.cancel_goal(topic + "old", timeout=60) is True
+    left.send_goal(topic + "new", topic, {"target": 1, "period": 0.05}, timeout=60)
+    assert left.outcome(topic + "old", timeout=60)["status"] == "canceled"
+    assert left.outcome(topic + "new", timeout=60)["status"] == "succeeded"
+    assert right.deeds(topic) == [["begin", 500], ["end", 500, True], ["begin", 1], ["end", 1, False]]
+
+
 def test_goals_that_wait_for_their_server_arrive_in_their_order(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     targets = [1, 2, 3, 4, 5]

@@ -25,17 +25,22 @@ class Server:
 
     13: gives up at 3.  9: its process is gone at 3.  Above 100: refuses.
 
+    Args:
+        policy: in place of its own.
+        stopping: seconds from being cancelled to the end of a goal.
+
     Attributes:
         deeds: what it did, with the seconds since the beginning.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, policy: ActionPolicy | None = None, stopping: float = 0.0) -> None:
         self.deeds: list[str] = []
+        self.policy = policy or ActionPolicy(lambda goal: "too many" if goal.target > 100 else None)
+        self.stopping = stopping
 
     def offer(self, mas: System) -> None:
         self.clock, self._began = mas.clock, mas.clock.now()
         self.backend = mas.ros.backend()
-        self.policy = ActionPolicy(lambda goal: "too many" if goal.target > 100 else None)
         self.come()
 
     def come(self) -> None:
@@ -59,6 +64,8 @@ class Server:
                 if target == 9 and number == 3:
                     self.server.vanish()
         except asyncio.CancelledError:
+            if self.stopping:
+                await self.clock.sleep(self.stopping)
             self.note(f"cancelled {target}")
             raise
         self.note(f"done {target}")
@@ -174,6 +181,67 @@ def test_a_goal_that_is_cancelled_while_suspended_is_sent_again(tmp_path: Path) 
         "begin 5 at 12.5",
         "done 5 at 17.5",
     ]
+
+
+def test_a_suspended_goal_is_sent_again_though_another_goal_came_in_between(tmp_path: Path) -> None:
+    server = Server(ActionPolicy(preempt=True))
+    result = run(
+        tmp_path,
+        """
+        +!go <- !!job; .wait(2500); .suspend(job); count(1, 0.1, _); .resume(job); .wait({+counted}).
+        +!job <- countOrRest(5, 1); .print(counted); +counted.
+        """,
+        server,
+    )
+    assert result.of("counter") == ["counted"]
+    assert server.deeds == [
+        "begin 5 at 0",
+        "cancelled 5 at 2.5",
+        "begin 1 at 2.5",
+        "done 1 at 2.6",
+        "begin 5 at 2.6",
+        "done 5 at 7.6",
+    ]
+
+
+DROP_AND_COUNT = """
+    +!go <- !!job; .wait(2500); .drop_intention(job); count(1, 0.1, _); .print(counted); .wait(10000).
+    +!job <- count(50, 1, _).
+    """
+
+
+def test_the_next_goal_waits_until_a_dropped_one_has_ended(tmp_path: Path) -> None:
+    server = Server(stopping=2.0)
+    result = run(tmp_path, DROP_AND_COUNT, server)
+    assert result.of("counter") == ["counted"]
+    assert server.deeds == ["begin 50 at 0", "cancelled 50 at 4.5", "begin 1 at 4.5", "done 1 at 4.6"]
+    assert result.errors == []
+
+
+def test_a_goal_that_does_not_end_keeps_the_next_one_waiting_for_five_seconds_and_people_are_warned(
+    tmp_path: Path,
+) -> None:
+    server = Server(stopping=60.0)
+    result = run(tmp_path, DROP_AND_COUNT, server)
+    assert result.of("counter") == ["counted"]
+    assert server.deeds == ["begin 50 at 0", "begin 1 at 7.5", "done 1 at 7.6"]
+    told = "\n".join(result.errors)
+    assert (
+        "warning: action /count: a cancelled goal has not ended within 5 s; sending the next one all the same"
+        in told
+    )
+    assert (
+        "warning: action /count: an abandoned goal has not ended 5 s after it was cancelled; the robot may still be moving"
+        in told
+    )
+
+
+def test_a_goal_that_its_server_does_not_cancel_keeps_no_other_waiting(tmp_path: Path) -> None:
+    server = Server(ActionPolicy(may_cancel=lambda goal: False))
+    result = run(tmp_path, DROP_AND_COUNT, server)
+    assert result.of("counter") == ["counted"]
+    assert server.deeds[:3] == ["begin 50 at 0", "begin 1 at 2.5", "done 1 at 2.6"]
+    assert "the robot may still be moving" in "\n".join(result.errors)
 
 
 def test_two_intentions_have_a_goal_each(tmp_path: Path) -> None:

@@ -62,6 +62,15 @@ class GoalHandle(Protocol):
             ServerLost: there is no server any more.
         """
 
+    def abandon(self, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
+        """Cancel the goal and return immediately.
+
+        Its client owns the goal until it has ended, and logs a warning when that takes more than 5 s.
+
+        Args:
+            afterwards: awaited when the goal has ended.
+        """
+
 
 class ActionClient(Protocol):
     """Sends goals to an action server."""
@@ -81,6 +90,9 @@ class ActionClient(Protocol):
         self, goal: Any = None, on_feedback: Callable[[Any], None] | None = None, timeout: float | None = None
     ) -> GoalHandle:
         """Send a goal and wait until the server has accepted it.
+
+        Goals of this node that were asked to be cancelled go first: the goal is sent when they have ended, at the latest
+        5 s after each was asked.  That time does not count for *timeout*.
 
         Args:
             goal: a goal message, or a mapping of its fields, or None for the defaults.
@@ -143,7 +155,7 @@ Execute = Callable[[ServerGoal], Awaitable[Any]]
 What it gives (result message, mapping of its fields, None for the defaults) is the result of a goal that succeeded;
 `Abort` ends it as aborted, any other exception as well and is logged.  When cancelling was requested and accepted, or a
 newer goal took over, ``CancelledError`` is thrown into it, and what it raises or gives then is the end: cancelled for a
-request, aborted for a newer goal.  Its ``finally`` is where motion is stopped.
+request, `ActionPolicy.overtaken` for a newer goal.  Its ``finally`` is where motion is stopped.
 """
 
 Accept = Callable[[Any], str | None]
@@ -157,13 +169,16 @@ class ActionPolicy:
     Attributes:
         accept: judges goals; None accepts all.
         may_cancel: judges a request for cancelling; None agrees always.
-        preempt: a new goal takes over from the one under way (which is aborted, with the text ``preempted by a newer
-            goal``), as navigation and motion servers do; False carries out any number of goals side by side.
+        preempt: a new goal takes over from the one under way (whose text is ``preempted by a newer goal``), as under
+            Nav2's ``SimpleActionServer``; False carries out any number of goals side by side.
+        overtaken: how a goal ends from which a new one has taken over: aborted as under Nav2, or cancelled as under
+            actionlib's ``SimpleActionServer``.
     """
 
     accept: Accept | None = None
     may_cancel: Callable[[ServerGoal], bool] | None = None
     preempt: bool = False
+    overtaken: GoalStatus = GoalStatus.ABORTED
 
 
 class ActionServer(Protocol):

@@ -5,7 +5,7 @@ Everything here happens on the loop.
 """
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any, Protocol
 
@@ -22,6 +22,7 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import goal_type
+from jacaros.ros.pending_goal import ENDING, LeavingGoals, PendingGoal
 from jacaros.ros.serving import checked_message
 from jacaros.ros.waiting import Absence, Waiting, within
 
@@ -57,77 +58,6 @@ class GoalWire(Protocol):
         """Leave; what was sent just before is still to reach the server."""
 
 
-class PendingGoal:
-    """A goal on the client's side, a `GoalHandle`.  It ends once, for all who wait then or later."""
-
-    def __init__(self, sender: "GoalSender", goal_id: str, on_feedback: Callable[[Any], None] | None) -> None:
-        self.goal_id = goal_id
-        self.on_feedback = on_feedback
-        self.acceptance: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self.accepted = False
-        self.abandoned = False
-        self.end: Outcome | ServiceError | None = None
-        self._sender = sender
-        self._waiting: list[asyncio.Future[Outcome]] = []
-        self._asking: list[asyncio.Future[bool]] = []
-
-    async def outcome(self, timeout: float | None = None) -> Outcome:
-        """Wait for the goal's end."""
-        if isinstance(self.end, Outcome):
-            return self.end
-        if self.end is not None:
-            raise self.end.with_traceback(None)
-        waiter: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
-        self._waiting.append(waiter)
-        try:
-            return await within(self._sender.clock, waiter, timeout)
-        except TimeoutError:
-            raise CallTimedOut(
-                f"goal {self.goal_id} of action {self._sender.name} is still under way after {timeout:g} s"
-            ) from None
-        finally:
-            if waiter in self._waiting:
-                self._waiting.remove(waiter)
-
-    async def cancel(self, timeout: float | None = None) -> bool:
-        """Ask the server to cancel the goal."""
-        if isinstance(self.end, Outcome):
-            return False
-        if self.end is not None:
-            raise self.end.with_traceback(None)
-        answer: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
-        self._asking.append(answer)
-        self._sender.ask_to_cancel(self.goal_id)
-        try:
-            return await within(self._sender.clock, answer, timeout)
-        except TimeoutError:
-            raise CallTimedOut(
-                f"the server of action {self._sender.name} did not answer within {timeout:g} s "
-                f"whether it cancels goal {self.goal_id}"
-            ) from None
-        finally:
-            if answer in self._asking:
-                self._asking.remove(answer)
-
-    def cancel_answered(self, agreed: bool) -> None:
-        """The server has agreed to cancel, or not."""
-        for answer in self._asking:
-            settle(answer, agreed, None)
-
-    def finish(self, end: Outcome | ServiceError) -> None:
-        """Note the goal's end and tell all who wait."""
-        if self.end is not None:
-            return
-        self.end = end
-        problem = None if isinstance(end, Outcome) else end
-        settle(self.acceptance, None, problem)
-        for waiter in self._waiting:
-            settle(waiter, end, problem)
-        for answer in self._asking:
-            # What the server answered was lost or overtaken: how the goal ended tells it too.
-            settle(answer, isinstance(end, Outcome) and end.status == "canceled", problem)
-
-
 class GoalSender:
     """An action client, whatever the middleware.
 
@@ -137,13 +67,21 @@ class GoalSender:
         factory: makes the goal messages.
         name: absolute name of the action.
         type_name: action type in full form.
+        leaving: by action, the goals of all clients of the node that were asked to be cancelled and have not ended;
+            None: of this client alone.
     """
 
     wire: GoalWire
     """To be set by whoever makes this, before the first goal."""
 
     def __init__(
-        self, clock: Clock, log: Callable[[str], None], factory: MessageFactory, name: str, type_name: str
+        self,
+        clock: Clock,
+        log: Callable[[str], None],
+        factory: MessageFactory,
+        name: str,
+        type_name: str,
+        leaving: LeavingGoals | None = None,
     ) -> None:
         self.clock = clock
         self.name = name
@@ -152,6 +90,8 @@ class GoalSender:
         self._factory = factory
         self._goal_type = goal_type(type_name)
         self._goals: dict[str, PendingGoal] = {}
+        self._leaving: LeavingGoals = {} if leaving is None else leaving
+        self._abandoning: set[asyncio.Task[None]] = set()
         self._arrivals: list[asyncio.Future[None]] = []
         self._losing: Timer | None = None
         self._absence = Absence()
@@ -181,6 +121,7 @@ class GoalSender:
     ) -> PendingGoal:
         """Send a goal and wait until the server has accepted it."""
         message = checked_message(self._factory, self._goal_type, goal)
+        await self._predecessors()
         deadline = None if timeout is None else self.clock.elapsed + timeout
         while True:
             await self._server(deadline, timeout)
@@ -209,9 +150,41 @@ class GoalSender:
             settle(arrival, None, problem)
         self.wire.close()
 
-    def ask_to_cancel(self, goal_id: str) -> None:
-        """Send a request for cancelling; `cancel_answered` will tell."""
-        self.wire.cancel_goal(goal_id)
+    def ask_to_cancel(self, pending: PendingGoal) -> None:
+        """Send a request for cancelling; `cancel_answered` brings the answer.
+
+        Raises:
+            ServiceError: the server cannot be reached.
+        """
+        self._leaves(pending)
+        self.wire.cancel_goal(pending.goal_id)
+
+    def abandon(
+        self, pending: PendingGoal, afterwards: Callable[[], Awaitable[object]] | None = None
+    ) -> None:
+        """Cancel a goal that nobody wants any more: now if it was accepted, else when it is.
+
+        It stays a goal of this client until it has ended: newer goals of the action wait for that.
+
+        Args:
+            pending: the goal.
+            afterwards: awaited when it has ended.
+        """
+        if pending.end is not None:
+            return
+        pending.abandoned = True
+        self._leaves(pending)
+        if pending.accepted:
+            with suppress(ServiceError):  # the server cannot be reached, so that the goal is lost soon
+                self.wire.cancel_goal(pending.goal_id)
+        task = asyncio.get_running_loop().create_task(self._see_off(pending, afterwards))
+        self._abandoning.add(task)
+        task.add_done_callback(self._abandoning.discard)
+
+    def has_left(self, pending: PendingGoal) -> None:
+        """A goal has ended, or its server refuses to cancel it: newer goals wait for it no longer."""
+        self._leaving.get(self.name, {}).pop(pending, None)
+        pending.no_longer_leaves()
 
     # What the wire tells:
 
@@ -224,7 +197,6 @@ class GoalSender:
         pending.accepted = True
         if pending.abandoned:
             self.wire.cancel_goal(goal_id)
-            self._forget(goal_id)
         else:
             settle(pending.acceptance, None, None)
 
@@ -257,6 +229,8 @@ class GoalSender:
         self._sign()
         pending = self._goals.get(goal_id)
         if pending is not None:
+            if not agreed:
+                self.has_left(pending)
             pending.cancel_answered(agreed)
 
     def fail(self, goal_id: str, problem: ServiceError) -> None:
@@ -297,12 +271,12 @@ class GoalSender:
                 self.clock, pending.acceptance, None if deadline is None else deadline - self.clock.elapsed
             )
         except TimeoutError:
-            self._abandon(pending)
+            self.abandon(pending)
             raise CallTimedOut(
                 f"the server of action {self.name} did not say within {timeout:g} s whether it accepts the goal"
             ) from None
         except asyncio.CancelledError:
-            self._abandon(pending)
+            self.abandon(pending)
             raise
         except ServiceError:
             self._forget(pending.goal_id)
@@ -337,12 +311,43 @@ class GoalSender:
                 finally:
                     self._arrivals.remove(arrival)
 
-    def _abandon(self, pending: PendingGoal) -> None:
-        """Nobody wants the goal any more: cancel it now if it was accepted, else when it is."""
-        pending.abandoned = True
-        if pending.accepted and pending.end is None:
-            self.wire.cancel_goal(pending.goal_id)
-            self._forget(pending.goal_id)
+    def _leaves(self, pending: PendingGoal) -> None:
+        if pending.end is None and pending.leaves_by is None:
+            pending.leaves_by = self.clock.elapsed + ENDING
+            self._leaving.setdefault(self.name, {})[pending] = None
+
+    async def _predecessors(self) -> None:
+        """Wait for the ends of cancelled goals of the action, each at most `ENDING` seconds.
+
+        A server that takes a newer goal before it has dealt with the request ends the older one as it likes, and one
+        that takes no second goal refuses the newer one.
+        """
+        for pending in list(self._leaving.get(self.name, ())):
+            if not await pending.gone():
+                self.has_left(pending)
+                self._log(
+                    f"warning: action {self.name}: a cancelled goal has not ended within {ENDING:g} s; "
+                    "sending the next one all the same"
+                )
+
+    async def _see_off(
+        self, pending: PendingGoal, afterwards: Callable[[], Awaitable[object]] | None
+    ) -> None:
+        try:
+            await pending.outcome(ENDING)
+        except CallTimedOut:
+            if pending.accepted:
+                self._log(
+                    f"warning: action {self.name}: an abandoned goal has not ended {ENDING:g} s after it was cancelled; "
+                    "the robot may still be moving"
+                )
+            return
+        except (
+            ServiceError
+        ):  # lost with its server, refused, or its client was closed: nobody is left to tell
+            return
+        if afterwards is not None:
+            await afterwards()
 
     def _finish(self, goal_id: str, end: Outcome | ServiceError) -> None:
         pending = self._goals.get(goal_id)

@@ -8,6 +8,7 @@ import asyncio
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from jacaros.clock import Clock, Timer
 from jacaros.ros.action import Abort, ActionPolicy, Execute, GoalStatus, Outcome, ServerGoal
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.message import MessageFactory, field_names
@@ -16,6 +17,8 @@ from jacaros.ros.serving import checked_message
 
 PREEMPTED = "preempted by a newer goal"
 CLOSED = "the server was closed"
+LOOKING = 0.01
+"""Seconds within which a server whose goals preempt looks at new goals and requests for cancelling, as Nav2's does."""
 TEXT_FIELDS = ("error_msg", "message")
 """Where results of actions say in words how it went."""
 
@@ -69,8 +72,7 @@ class GoalUnderWay:
         self.request = request
         self.cancel_requested = False
         self.task: asyncio.Task[Any] | None = None
-        self.why_aborted = ""
-        self.over = False
+        self.overtaken = self.stopped = self.over = False
         self._send = send
         self._tell = tell
 
@@ -89,6 +91,7 @@ class GoalUnderWay:
 
     def stop(self) -> None:
         """Throw ``CancelledError`` into the code that carries the goal out."""
+        self.stopped = True
         if self.task is not None:
             self.task.cancel()
 
@@ -96,7 +99,12 @@ class GoalUnderWay:
 class ServedGoals:
     """The goals of one action server.
 
+    Where goals preempt, they do as under Nav2's ``SimpleActionServer``: a new goal waits until the server looks, at most
+    `LOOKING` seconds.  Then the one under way ends as aborted, even when it was asked to be cancelled in that time;
+    without a new goal it ends as cancelled.  A goal that waits gives way to a newer one.
+
     Args:
+        clock: measures `LOOKING`.
         factory: makes the messages.
         name: absolute name of the action.
         type_name: action type in full form.
@@ -107,6 +115,7 @@ class ServedGoals:
 
     def __init__(
         self,
+        clock: Clock,
         factory: MessageFactory,
         name: str,
         type_name: str,
@@ -114,6 +123,7 @@ class ServedGoals:
         policy: ActionPolicy,
         log: Callable[[str], None],
     ) -> None:
+        self._clock = clock
         self._factory = factory
         self._name = name
         self._result_type = result_type(type_name)
@@ -122,7 +132,9 @@ class ServedGoals:
         self._policy = policy
         self._log = log
         self._goals: dict[str, GoalUnderWay] = {}
-        self._stopping: set[asyncio.Task[Any]] = set()
+        self._current: GoalUnderWay | None = None
+        self._waiting: GoalUnderWay | None = None
+        self._look_timer: Timer | None = None
         self._closed = False
 
     def judge(self, request: Any) -> str | None:
@@ -148,25 +160,27 @@ class ServedGoals:
             listener.feedback(checked_message(self._factory, self._feedback_type, given))
 
         goal = GoalUnderWay(goal_id, request, send, lambda goal, outcome: self._end(goal, outcome, listener))
-        before: list[asyncio.Task[Any]] = []
-        if self._policy.preempt:
-            before = self._preempt()
         self._goals[goal_id] = goal
-        goal.task = asyncio.get_running_loop().create_task(self._carry_out(goal, before))
-        goal.task.add_done_callback(lambda task: goal.end(self._outcome(goal, task)))
+        if self._policy.preempt:
+            self._queue(goal)
+        else:
+            self._start(goal)
         return goal
 
     def cancel(self, goal_id: str) -> bool:
         """Handle a client's request for cancelling; True when it is agreed to."""
         goal = self._goals.get(goal_id)
-        if goal is None or goal.why_aborted:
+        if goal is None or goal.overtaken:
             return False
         if goal.cancel_requested:
             return True
         if not self._may_cancel(goal):
             return False
         goal.cancel_requested = True
-        goal.stop()
+        if self._policy.preempt:
+            self._look_soon()
+        else:
+            goal.stop()
         return True
 
     def under_way(self) -> list[str]:
@@ -175,33 +189,76 @@ class ServedGoals:
 
     def close(self) -> None:
         """Abort what is under way: its clients are told at once, its code is cancelled."""
-        self._closed = True
+        self._shut()
         for goal in list(self._goals.values()):
             goal.end(self._ended(GoalStatus.ABORTED, None, CLOSED))
             goal.stop()
 
     def abandon(self) -> None:
         """Stop what is under way and tell nobody: what a killed process does."""
-        self._closed = True
+        self._shut()
         for goal in list(self._goals.values()):
             goal.over = True
             goal.stop()
         self._goals.clear()
 
-    def _preempt(self) -> list[asyncio.Task[Any]]:
-        for goal in self._goals.values():
-            if not goal.why_aborted and not goal.cancel_requested:
-                goal.why_aborted = PREEMPTED
-            if goal.task is not None:
-                self._stopping.add(goal.task)
-                goal.task.add_done_callback(self._stopping.discard)
-                goal.stop()
-        return list(self._stopping)
+    def _shut(self) -> None:
+        self._closed, self._waiting = True, None
+        if self._look_timer is not None:
+            self._look_timer.cancel()
 
-    async def _carry_out(self, goal: GoalUnderWay, before: list[asyncio.Task[Any]]) -> Any:
-        if before:
-            await asyncio.wait(before)
+    def _start(self, goal: GoalUnderWay) -> None:
+        goal.task = asyncio.get_running_loop().create_task(self._carry_out(goal))
+        goal.task.add_done_callback(lambda task: self._ran(goal, task))
+
+    async def _carry_out(self, goal: GoalUnderWay) -> Any:
         return await self._execute(goal)
+
+    def _ran(self, goal: GoalUnderWay, task: "asyncio.Task[Any]") -> None:
+        goal.end(self._outcome(goal, task))
+        if goal is self._current:
+            self._current, waiting = None, self._waiting
+            self._waiting = None
+            if waiting is not None and not self._closed:
+                self._queue(waiting)
+
+    # Goals that preempt: one is under way, and at most one waits for it to end.
+
+    def _queue(self, goal: GoalUnderWay) -> None:
+        if self._current is not None:
+            self._drop_waiting()
+            self._waiting = goal
+            self._look_soon()
+            return
+        self._current = goal
+        self._start(goal)
+        if goal.cancel_requested:
+            self._look_soon()
+
+    def _drop_waiting(self) -> None:
+        """End the goal that waits, without having begun."""
+        waiting, self._waiting = self._waiting, None
+        if waiting is not None:
+            waiting.overtaken = not waiting.cancel_requested
+            waiting.end(self._cancelled(waiting, None))
+
+    def _look_soon(self) -> None:
+        if self._look_timer is None and not self._closed:
+            self._look_timer = self._clock.call_later(LOOKING, self._look)
+
+    def _look(self) -> None:
+        self._look_timer = None
+        current, waiting = self._current, self._waiting
+        if current is None or current.stopped or self._closed:
+            return
+        if waiting is not None and waiting.cancel_requested:
+            # As Nav2 does: cancelling the goal that waits ends both.
+            self._drop_waiting()
+            current.overtaken = not current.cancel_requested
+        else:
+            current.overtaken = waiting is not None
+        if current.overtaken or current.cancel_requested:
+            current.stop()
 
     def _may_cancel(self, goal: ServerGoal) -> bool:
         if self._policy.may_cancel is None:
@@ -234,16 +291,16 @@ class ServedGoals:
             message = checked_message(self._factory, self._result_type, result)
         except MessageMismatch as problem:
             return self._failed(str(problem))
-        if goal.cancel_requested or goal.why_aborted:
+        if goal.stopped:
             return self._cancelled(goal, message)
         return Outcome(GoalStatus.SUCCEEDED, message, text_of(message))
 
     def _cancelled(self, goal: GoalUnderWay, result: Any) -> Outcome:
+        if goal.overtaken:
+            return self._ended(self._policy.overtaken, result, PREEMPTED)
         if goal.cancel_requested:
             return self._ended(GoalStatus.CANCELED, result, "")
-        return self._ended(
-            GoalStatus.ABORTED, result, goal.why_aborted or "the code of the goal was cancelled"
-        )
+        return self._ended(GoalStatus.ABORTED, result, "the code of the goal was cancelled")
 
     def _aborted(self, problem: Abort) -> Outcome:
         try:

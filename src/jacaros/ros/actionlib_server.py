@@ -75,7 +75,7 @@ class ActionlibServer:
         self.name = name
         self._node = node
         self._result_type = result_type(type_name)
-        self._served = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
+        self._served = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
         self._goals: dict[str, _Goal] = {}
         self._ending: dict[str, Callable[[], None]] = {}
         """Goals whose results wait for their feedback to be on its way."""

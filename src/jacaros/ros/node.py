@@ -18,6 +18,7 @@ from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
 from jacaros.ros.parameter import Parameters, ParameterValue
+from jacaros.ros.pending_goal import LeavingGoals
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.rosout import RosoutWriter
 from jacaros.ros.tf import TransformBroadcaster, TransformListener
@@ -75,6 +76,8 @@ class Node:
         self.connected = False
         self.delivered: Callable[[], None] = lambda: None
         """Called on the loop when a message that came from outside has been delivered."""
+        self.leaving_goals: LeavingGoals = {}
+        """Goals of all action clients that were asked to be cancelled and have not ended."""
         self.given_parameters = GivenParameters(settings.parameters)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._on_connection: list[Callable[[bool], None]] = []

@@ -1,7 +1,8 @@
 """An action server that does what a test tells it, at the moment that the test says, behind the port of action clients."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Coroutine
+from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
@@ -21,6 +22,7 @@ class FakeServer:
         refusal: text with which it refuses goals; None: it accepts them.
         agrees: whether it agrees to cancel.
         ending: seconds from agreeing to the end of the goal; None: it never ends.
+        cancelled_as: how a goal ends that it agreed to cancel.
         goals: the goals that it accepted, in their order.
         events: what happened: (seconds, text).
     """
@@ -32,9 +34,11 @@ class FakeServer:
         self.refusal: str | None = None
         self.agrees = True
         self.ending: float | None = 0.1
+        self.cancelled_as = GoalStatus.CANCELED
         self.goals: list[FakeGoal] = []
         self.events: list[tuple[float, str]] = []
         self.clients: list[FakeClient] = []
+        self.tasks: list[asyncio.Future[None]] = []
         lab.backend.action_client = self._client  # type: ignore[method-assign]
 
     def _client(self, name: str, type_name: str) -> Any:
@@ -48,6 +52,10 @@ class FakeServer:
 
     def note(self, text: str) -> None:
         self.events.append((round(self.lab.clock.elapsed, 3), text))
+
+    def keep(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run *work* beside the test."""
+        self.tasks.append(asyncio.ensure_future(work))
 
     def leave(self) -> None:
         """Go away in the middle of all goals."""
@@ -99,8 +107,19 @@ class FakeGoal:
         if not self.server.agrees or self.over:
             return False
         if self.server.ending is not None:
-            self.server.lab.clock.call_later(self.server.ending, lambda: self.end(GoalStatus.CANCELED))
+            self.server.lab.clock.call_later(self.server.ending, lambda: self.end(self.server.cancelled_as))
         return True
+
+    def abandon(self, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
+        if not self.over:
+            self.server.keep(self._see_off(afterwards))
+
+    async def _see_off(self, afterwards: Callable[[], Awaitable[object]] | None) -> None:
+        with suppress(CallTimedOut, ServerLost):
+            await self.cancel()
+            await self.outcome(5.0)
+            if afterwards is not None:
+                await afterwards()
 
 
 class FakeClient:

@@ -231,21 +231,6 @@ def test_feedback_that_comes_while_a_dropped_goal_ends_is_not_heard() -> None:
     in_lab(body, None)
 
 
-@pytest.mark.parametrize("traits", [{"agrees": False}, {"ending": None}], ids=["refused", "only agreed"])
-def test_a_dropped_goal_that_goes_on_is_told(traits: dict[str, object]) -> None:
-    async def body(lab: Lab) -> None:
-        server, going = await begun(lab, "go", **traits)
-        going.execution.cancel()
-        await lab.sleep(4)
-        assert lab.logged == []
-        await lab.sleep(2)
-        told = "[a5] a goal of /go was given up, but it has not ended yet: the robot may go on"
-        assert lab.logged == [told]
-        assert not server.goals[0].over
-
-    in_lab(body, None)
-
-
 def test_a_dropped_goal_that_ends_is_not_told() -> None:
     async def body(lab: Lab) -> None:
         for end in (lambda server: None, FakeServer.leave):

@@ -34,6 +34,42 @@ def test_cancelled_while_suspended_and_sent_again() -> None:
     in_lab(body, None)
 
 
+def test_a_cancelled_goal_that_the_server_ends_as_aborted_is_sent_again_too() -> None:
+    async def body(lab: Lab) -> None:
+        server, going = await suspended(lab, "goOrRest", cancelled_as=GoalStatus.ABORTED)
+        await lab.sleep(2)
+        assert server.told == ["accepted 0", "cancel 0", "aborted 0"]
+        going.execution.resume()
+        await lab.sleep(3)
+        server.goals[1].end()
+        await succeeded(going)
+
+    in_lab(body, None)
+
+
+def test_a_goal_that_is_aborted_before_the_server_hears_that_it_is_cancelled_is_sent_again() -> None:
+    async def body(lab: Lab) -> None:
+        server, going = await suspended(lab, "goOrRest", agrees=False)
+        server.goals[0].end(GoalStatus.ABORTED)
+        await lab.sleep(2)
+        going.execution.resume()
+        await lab.sleep(3)
+        server.goals[1].end()
+        await succeeded(going)
+
+    in_lab(body, None)
+
+
+def test_a_goal_that_the_server_does_not_cancel_and_aborts_later_has_failed() -> None:
+    async def body(lab: Lab) -> None:
+        server, going = await suspended(lab, "goOrRest", agrees=False)
+        await lab.sleep(5)
+        server.goals[0].end(GoalStatus.ABORTED, "lost the way", error_code=7)
+        await failed(going, 'aborted(7,"lost the way")')
+
+    in_lab(body, None)
+
+
 def test_time_in_which_the_goal_rests_does_not_count_but_the_rest_does() -> None:
     async def body(lab: Lab) -> None:
         server, going = await begun(lab, "goOrRest", Structure("timeout", (5,)), after=0)

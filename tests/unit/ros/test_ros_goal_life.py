@@ -16,6 +16,7 @@ from jacaros.ros.action_calling import GoalSender, PendingGoal
 from jacaros.ros.action_serving import CLOSED, PREEMPTED, ServedGoals
 from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.message import MessageFactory
+from jacaros.ros.pending_goal import ENDING
 from jacaros.ros.typestore import RosbagsSchema
 
 COUNT = "jacaros_interfaces/action/Count"
@@ -80,7 +81,9 @@ class ServerLife(RuleBasedStateMachine):
 
     def _made(self, preempt: bool) -> ServedGoals:
         policy = ActionPolicy(None, lambda goal: self.agree, preempt)
-        return ServedGoals(FACTORY, "/count", COUNT, self._carry_out, policy, lambda text: None)
+        return ServedGoals(
+            self.run.clock, FACTORY, "/count", COUNT, self._carry_out, policy, lambda text: None
+        )
 
     async def _carry_out(self, goal: Any) -> Any:
         name = goal.goal_id
@@ -156,7 +159,7 @@ class ServerLife(RuleBasedStateMachine):
         for name, listener in self.listeners.items():
             assert len(listener.ends) <= 1, name
             assert not listener.feedback_after_end, name
-            if listener.ends and name in self.cancelled:
+            if listener.ends and name in self.cancelled and not self.preempting:
                 assert listener.ends[0].status is not GoalStatus.SUCCEEDED, name
                 assert listener.ends[0].text != PREEMPTED, name
         if self.preempting:
@@ -293,7 +296,7 @@ class ClientLife(RuleBasedStateMachine):
     def _end(self) -> None:
         self.wire.offered = True
         self.run.do(self.sender.server_present, True)  # whoever waits for it goes on
-        self.run.turn()
+        self.run.turn(ENDING + 1.0)  # and whoever waits for the end of a goal that was cancelled
         self.wire.offered = False
         self.run.do(self.sender.server_present, False)
         self.run.turn(SERVER_LOST_AFTER + 1.0)

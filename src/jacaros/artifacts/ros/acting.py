@@ -19,11 +19,11 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
-from jacaros.artifacts.ros.giving_up import ENDING, give_up
 from jacaros.clock import Clock
 from jacaros.env.execution import OperationExecution
 from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
 from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServiceError
+from jacaros.ros.pending_goal import ENDING
 
 T = TypeVar("T")
 
@@ -169,14 +169,10 @@ class Pursuit:
             await self._release()
             return outcome
         except BaseException:
-            if not ending.done():
-                self._give_up(handle)
+            handle.abandon(self._release)
             raise
         finally:
             _forget(ending)
-
-    def _give_up(self, handle: GoalHandle) -> None:
-        give_up(handle, self._client.name, self._log, self._release)
 
     async def _send(self) -> GoalHandle | None:
         """Send the goal; None when the intention was suspended before the server accepted it, which cancels it."""
@@ -198,7 +194,7 @@ class Pursuit:
             return sending.result()
         except asyncio.CancelledError:
             if sending.done() and not sending.cancelled() and sending.exception() is None:
-                self._give_up(sending.result())
+                sending.result().abandon()
             raise
         finally:
             _forget(sending)
@@ -227,34 +223,37 @@ class Pursuit:
             raise GoalFailed(f"the goal of {self._client.name} could not be resumed", "canceled")
 
     async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> bool:
-        """Cancel the goal for a suspended intention; False when it ends otherwise, or goes on."""
+        """Cancel the goal for a suspended intention; False when it succeeds meanwhile, or goes on.
+
+        A goal that was asked to be cancelled counts as cancelled however it ends, unless it succeeded: a server that
+        takes the next goal before it has dealt with the request ends this one as aborted.
+        """
         self._heed(False)
         try:
             agreed = await handle.cancel(ENDING)
         except CallTimedOut as error:
             self._log(f"{error}; it may go on although its intention is suspended")
             agreed = False
-        if not agreed:
-            self._heed(True)
-            await self._go_on(ending)
-            return False
-        await any_of(self._clock, (ending,), ENDING)
-        if not ending.done():
-            raise ServerLost(f"action {self._client.name} agreed to cancel a goal but did not end it")
-        return ending.result().status is GoalStatus.CANCELED
-
-    async def _go_on(self, ending: "asyncio.Future[Outcome]") -> None:
-        """Wait as if nothing had been asked: the server does not cancel."""
-        if not await self._resumed_or(ending, GRACE):
+        if agreed:
+            await any_of(self._clock, (ending,), ENDING)
+            if not ending.done():
+                raise ServerLost(f"action {self._client.name} agreed to cancel a goal but did not end it")
+        else:
+            # A server also refuses because the goal has just ended, and that may be on its way.
+            await self._resumed_or(ending, GRACE)
+        if ending.done():
+            return ending.result().status is not GoalStatus.SUCCEEDED
+        self._heed(True)
+        if self._paused:
             self._log(f"the goal of {self._client.name} goes on although its intention is suspended")
             await self._resumed_or(ending, None)
+        return False
 
-    async def _resumed_or(self, ending: "asyncio.Future[Outcome]", seconds: float | None) -> bool:
-        """Wait for the end of the pause, or of the goal; False when neither came in so many seconds."""
+    async def _resumed_or(self, ending: "asyncio.Future[Outcome]", seconds: float | None) -> None:
+        """Wait for the end of the pause, or of the goal, at most *seconds*."""
         resumed = asyncio.ensure_future(self._execution.resumed())
         try:
             await any_of(self._clock, (ending, resumed), seconds)
-            return ending.done() or resumed.done()
         finally:
             _forget(resumed)
 

@@ -22,7 +22,7 @@ class MemoryActionServer:
         self.vanished = False
         self._node = node
         self._graph = node.graph
-        self._goals = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
+        self._goals = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
         self._graph.offer_action(self)
 
     def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
@@ -79,7 +79,7 @@ class MemoryGoalWire:
     def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
         self.name = name
         self.graph = node.graph
-        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name)
+        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
         self.sender.wire = self
         self._node = node
         self._type_name = type_name

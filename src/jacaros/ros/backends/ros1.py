@@ -101,7 +101,9 @@ class Ros1Backend(Ros1Node):
     def action_client(self, name: str, type_name: str) -> GoalSender:
         """Make a client of an action."""
         full_type = action_type(type_name)
-        sender = GoalSender(self.clock, self.log, self.factory, self.resolve(name), full_type)
+        sender = GoalSender(
+            self.clock, self.log, self.factory, self.resolve(name), full_type, self.leaving_goals
+        )
         sender.wire = ActionlibWire(self, sender)
         self.actions[sender] = None
         return sender

@@ -80,7 +80,7 @@ class Ros2ActionServer:
         self.name = name
         self._node = node
         self._impl: Any = node.schema.message_class(type_name).Impl
-        self._under_way = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
+        self._under_way = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
         self._goals: dict[str, _ServedGoal] = {}
         self._closed = False
         rcl, impl = node.rcl, self._impl

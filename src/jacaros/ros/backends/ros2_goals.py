@@ -70,7 +70,7 @@ class Ros2GoalWire:
 
     def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
         self.name = name
-        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name)
+        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
         self.sender.wire = self
         self._node = node
         self._type_name = type_name
@@ -345,11 +345,17 @@ class Ros2GoalWire:
 
     def _send(self, identity: str) -> None:
         goal = self._goals.get(identity)
-        if goal is not None and self.sender.wants(identity):
+        if goal is None:
+            return
+        if self.sender.wants(identity):
             goal.sent = True
             take = partial(self._answered, identity)
             self._node.lifetime.send(
                 lambda request: self._call(self._goal_client, request, take), goal.request
+            )
+        elif not goal.sent:
+            self.sender.fail(
+                identity, CallFailed(f"action {self.name}: the goal was dropped before it was sent")
             )
 
     def _probe(self) -> None:

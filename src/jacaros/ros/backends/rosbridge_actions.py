@@ -263,7 +263,7 @@ class Ros2GoalService:
         self.name = name
         self._node = node
         self._type_name = type_name
-        self._goals = ServedGoals(node.factory, name, type_name, execute, policy, node.log)
+        self._goals = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
         node.send({"op": "advertise_action", "type": type_name, "action": name})
 
     def abandon(self) -> None:

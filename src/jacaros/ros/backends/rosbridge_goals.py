@@ -18,7 +18,7 @@ class BridgeActionClient(GoalSender):
     """Action client of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        super().__init__(node.clock, node.log, node.factory, name, type_name)
+        super().__init__(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
         self._node = node
         self._wire = _Wire(node, self)
         self.wire = self._wire

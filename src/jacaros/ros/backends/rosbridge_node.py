@@ -10,6 +10,7 @@ from jacaros.ros.backends.rosbridge_messages import Translator
 from jacaros.ros.backends.rosbridge_requests import Done, Requests, Sight
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory
+from jacaros.ros.pending_goal import LeavingGoals
 
 
 class Member(Protocol):
@@ -116,6 +117,7 @@ class BridgeNode(Protocol):
     requests: Requests
     translator: Translator
     goals: dict[str, Any]
+    leaving_goals: LeavingGoals
     delivered: Callable[[], None]
 
     @property

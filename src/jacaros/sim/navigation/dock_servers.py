@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from jacaros.ros.action import GoalStatus
 from jacaros.sim.navigation.docking import FAILED_TO_STAGE, Docking
 from jacaros.sim.navigation.failure import NavigationFailure
 from jacaros.sim.navigation.frames import ODOMETRY, Frames, FrameUnknown, fault_of, fill_in
@@ -66,7 +67,12 @@ class DockServers:
 
     def offer_kobuki(self) -> None:
         """``/dock_drive_action``."""
-        self.offers.action("/dock_drive_action", "kobuki_msgs/action/AutoDocking", self._auto_docking)
+        self.offers.action(
+            "/dock_drive_action",
+            "kobuki_msgs/action/AutoDocking",
+            self._auto_docking,
+            overtaken=GoalStatus.CANCELED,
+        )
 
     async def _dock_robot(self, goal: Goal) -> Mapping[str, Any]:
         clock = self._navigator.time.clock

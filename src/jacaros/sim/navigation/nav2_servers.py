@@ -4,11 +4,11 @@ Names, fields and error codes are those of Nav2 (Jazzy; ``error_msg`` of Kilted)
 """
 
 import asyncio
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
+from jacaros.ros.action import GoalStatus
 from jacaros.ros.backend import Backend, Sample, Subscription
 from jacaros.sim.navigation.failure import NO_POSES, TF_ERROR, NavigationFailure, through_poses
 from jacaros.sim.navigation.frames import MAP, Frames, FrameUnknown, fault_of, fill_in
@@ -37,7 +37,7 @@ class NavigationServers:
         self._backend: Backend = offers.backend
         self._subscriptions: list[Subscription] = []
         self._simple: asyncio.Task[None] | None = None
-        self._navigators: Counter[str] = Counter()
+        self._navigator: str | None = None
 
     def offer_nav2(self) -> None:
         """``/navigate_to_pose``, ``/navigate_through_poses``, ``/follow_waypoints``, the topic ``/goal_pose``, and the
@@ -46,13 +46,13 @@ class NavigationServers:
             "/navigate_to_pose",
             "nav2_msgs/action/NavigateToPose",
             self._to_pose,
-            lambda goal: fault_of(goal.pose) or self._occupied(_THROUGH_POSES),
+            lambda goal: fault_of(goal.pose),
         )
         self.offers.action(
             "/navigate_through_poses",
             "nav2_msgs/action/NavigateThroughPoses",
             self._through_poses,
-            lambda goal: _poses_fault(goal) or self._occupied(_TO_POSE),
+            _poses_fault,
         )
         self.offers.action(
             "/follow_waypoints", "nav2_msgs/action/FollowWaypoints", self._waypoints, _poses_fault
@@ -67,7 +67,9 @@ class NavigationServers:
 
     def offer_move_base(self) -> None:
         """``/move_base``, the topic ``/move_base_simple/goal`` and the service ``/move_base/clear_costmaps``."""
-        self.offers.action("/move_base", "move_base_msgs/action/MoveBase", self._move_base)
+        self.offers.action(
+            "/move_base", "move_base_msgs/action/MoveBase", self._move_base, overtaken=GoalStatus.CANCELED
+        )
         self.offers.service("/move_base/clear_costmaps", "std_srvs/srv/Empty", self._forget_obstacles)
         self._hear("/move_base_simple/goal")
 
@@ -88,22 +90,21 @@ class NavigationServers:
         self._subscriptions.append(self._backend.subscription(name, POSE, self._simple_goal))
 
     @contextmanager
-    def _navigating(self, navigator: str) -> Iterator[None]:
-        self._navigators[navigator] += 1
+    def _navigating(self, navigator: str, goal: Goal) -> Iterator[None]:
+        """Nav2's two navigators take over from themselves only: the other one accepts a goal and aborts it."""
+        if self._navigator not in (None, navigator):
+            goal.abort(f"{self._navigator} is at work; cancel that goal first")
+        self._navigator = navigator
         try:
             yield
         finally:
-            self._navigators[navigator] -= 1
-
-    def _occupied(self, navigator: str) -> str | None:
-        """Nav2's two navigators do not take over from each other, only from themselves."""
-        return f"{navigator} is at work; cancel that goal first" if self._navigators[navigator] else None
+            self._navigator = None
 
     async def _to_pose(self, goal: Goal) -> Mapping[str, Any]:
         def tell(progress: Progress) -> None:
             goal.feedback(**self._feedback(progress))
 
-        with self._navigating(_TO_POSE):
+        with self._navigating(_TO_POSE, goal):
             await self._go(goal, [goal.request.pose], tell)
         return {}
 
@@ -114,7 +115,7 @@ class NavigationServers:
         poses = _poses(goal.request)
         if not poses:
             goal.abort("there are no poses to go through", error_code=NO_POSES)
-        with self._navigating(_THROUGH_POSES):
+        with self._navigating(_THROUGH_POSES, goal):
             await self._go(goal, poses, tell, through_poses)
         return {}
 

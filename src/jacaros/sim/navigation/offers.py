@@ -6,7 +6,7 @@ Results fit whatever release is installed.
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, NoReturn
 
-from jacaros.ros.action import Abort, Accept, ActionPolicy, ActionServer, ServerGoal
+from jacaros.ros.action import Abort, Accept, ActionPolicy, ActionServer, GoalStatus, ServerGoal
 from jacaros.ros.backend import ACTIONS, Backend, Handler, Service
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.names import result_type
@@ -50,8 +50,18 @@ class Offers:
         self.backend, self.prefix = backend, prefix
         self._servers: list[ActionServer | Service] = []
 
-    def action(self, name: str, type_name: str, execute: Execute, accept: Accept | None = None) -> None:
-        """Offer an action whose newer goals take over from older ones; where its type is unknown, say so and go on."""
+    def action(
+        self,
+        name: str,
+        type_name: str,
+        execute: Execute,
+        accept: Accept | None = None,
+        overtaken: GoalStatus = GoalStatus.ABORTED,
+    ) -> None:
+        """Offer an action whose newer goals take over from older ones, which then end as *overtaken*.
+
+        An action whose type is unknown is left out, and that is logged.
+        """
         if ACTIONS not in self.backend.capabilities:
             return
 
@@ -62,7 +72,7 @@ class Offers:
             except Overtaken:
                 goal.abort(OVERTAKEN, success=False)
 
-        policy = ActionPolicy(accept=accept, preempt=True)
+        policy = ActionPolicy(accept=accept, preempt=True, overtaken=overtaken)
         try:
             server = self.backend.action_server(self.prefix + name, type_name, carry_out, policy)
         except UnknownInterface:
