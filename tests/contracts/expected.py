@@ -6,11 +6,13 @@ COMMON = {"topics", "services", "service errors", "transforms", "actions", "para
 
 CAPABILITIES = {
     "memory": COMMON | {"qos", "declared parameters", "parameter events", "deadlines", "qos in the graph"},
-    "ros1": COMMON | {"registration", "parameter events"},
+    "ros1": COMMON | {"discovery", "registration", "parameter events"},
     "ros2": COMMON - {"service errors"}
-    | {"qos", "declared parameters", "parameter events", "deadlines", "qos in the graph"},
+    | {"discovery", "qos", "declared parameters", "parameter events", "deadlines", "qos in the graph"},
     **{
-        kind: (COMMON - {"service errors"}) | ({"parameter events"} if "ros2" in kind else set())
+        kind: (COMMON - {"service errors"})
+        | {"discovery"}
+        | ({"parameter events"} if "ros2" in kind else set())
         for kind in BRIDGED
     },
 }

@@ -1,9 +1,11 @@
 """ROS 1 alone: a master that is late, goes away, and comes back without memory."""
 
+import asyncio
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -12,6 +14,7 @@ from masters import Master
 from presence import is_wanted
 
 from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
+from jacaros.ros.qos import QoS
 
 pytestmark = [pytest.mark.ros1, pytest.mark.slow]
 
@@ -67,6 +70,46 @@ def test_a_restarted_master_learns_everything_again(master: Master, ros1: InProc
     exchange(ros1, left, newcomer, 4)
     assert newcomer.call("/add", {"a": 2, "b": 2}, timeout=60) == {"sum": 4}
     assert any("had forgotten" in line and "/before" in line for line in left.log())
+
+
+def test_an_early_message_that_cannot_be_serialised_does_not_silence_its_topic(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # rospy serialises only when somebody is connected, which at this moment is a race; so its publisher is a stand-in.
+    import rospy
+
+    from jacaros.ros.backends import ros1_topics
+
+    sent: list[int] = []
+
+    class Connected:
+        def publish(self, message: Any) -> None:
+            if message.data < 0:
+                raise rospy.ROSSerializationException("field data is wrong")
+            sent.append(message.data)
+
+    monkeypatch.setattr(rospy, "Publisher", lambda *arguments, **options: Connected())
+    loop = asyncio.new_event_loop()
+    log: list[str] = []
+    registrations: list[Callable[[], None]] = []
+    node: Any = SimpleNamespace(
+        factory=SimpleNamespace(message_class=lambda name: SimpleNamespace),
+        lifetime=SimpleNamespace(send=lambda send, message: send(message)),
+        link=SimpleNamespace(do=registrations.append),
+        members={},
+        unsent={},
+        loop=loop,
+        log=log.append,
+    )
+    publisher = ros1_topics.Ros1Publisher(node, "/before", "std_msgs/msg/Int32", QoS())
+    for number in (1, -1, 2):
+        publisher.publish(SimpleNamespace(data=number))
+    registrations[0]()
+    publisher.publish(SimpleNamespace(data=3))
+    loop.run_until_complete(asyncio.sleep(0))
+    loop.close()
+    assert sent == [1, 2, 3]
+    assert log == ["topic /before: a message was dropped: field data is wrong"]
 
 
 def test_a_master_restarted_in_a_moment_learns_everything_again(master: Master, ros1: InProcesses) -> None:

@@ -338,6 +338,7 @@ def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
           drive:
             publish: cmd_velo
             type: geometry_msgs/msg/Twist
+            fields: {linear.x: 0.1}
             rate: 5
             duration: 1
         """,
@@ -348,8 +349,8 @@ def test_commands_that_nobody_hears_are_told_once(project: Project) -> None:
     )
     assert (code, output) == (0, "[hasty] done\n")
     assert errors == (
-        "[robot] robot.yaml:3:14: nobody hears what drive publishes on /cmd_velo\n"
+        "[robot] robot.yaml:3:14: no subscriber on /cmd_velo; publishing anyway\n"
         "    3 |     publish: cmd_velo\n"
         "                     ^\n"
-        "  cure: is the robot's base running? `jacaros ros list` shows the names and types that it hears\n"
+        "  cure: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph\n"
     )

@@ -15,6 +15,7 @@ from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods
 from jacaros.artifacts.mapping.own_parameters import OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.type_search import TypeSearch
+from jacaros.artifacts.ros.matching import MATCH_OPTIONS
 from jacaros.artifacts.ros.options import text
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
@@ -28,13 +29,15 @@ class MappedArtifact(RosArtifact):
 
     Options:
         tf_prefix(P): stands before names of frames, in place of the namespace (with the node's in front).
+        match_timeout(S): how long operations that publish wait for a subscriber (3 s).
+        unmatched(W): ``warn`` or ``fail`` when there is none by then.
 
     Attributes:
         mapping: the file.
         part: what the file says of this artifact.
     """
 
-    known_options: ClassVar[Mapping[str, Callable[[object], object]]] = {"tf_prefix": text}
+    known_options: ClassVar[Mapping[str, Callable[[object], object]]] = {"tf_prefix": text, **MATCH_OPTIONS}
     mapping: ClassVar[MappingFile]
     part: ClassVar[ArtifactPart]
 

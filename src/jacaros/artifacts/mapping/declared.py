@@ -256,6 +256,8 @@ class OperationPart:
         any_success: nothing is looked at.
         duration: seconds of repeated publishing.
         at_end: fields of the last message; None: zero for velocities, else nothing.
+        match_timeout: seconds to wait for a subscription before the first message; None: the artifact's option.
+        unmatched: ``warn`` or ``fail`` when there is none; None: the artifact's option.
         node: whose parameter is set or given; empty for our own.
         properties: those that are refreshed or read.
         feedback: properties from the feedback.
@@ -278,6 +280,8 @@ class OperationPart:
     rate: float | None = None
     duration: ValuePart | None = None
     at_end: tuple[ValuePart, ...] | None = None
+    match_timeout: float | None = None
+    unmatched: str | None = None
     timeout: float | None = None
     feedback: tuple[TopicPart, ...] = ()
     suspend: str = "go_on"

@@ -6,6 +6,7 @@ from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
 from jacaros.artifacts.mapping.extracting import Row
 from jacaros.artifacts.ros.faults import Faults
+from jacaros.artifacts.ros.matching import Matching
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
 from jacaros.clock import Clock
 from jacaros.env.execution import OperationExecution
@@ -60,6 +61,13 @@ class Host(Protocol):
     def frame(self, name: str) -> str: ...
     def adapted(self, field: str, value: object) -> object: ...
     def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher: ...
+    def matching_of(
+        self,
+        publisher: Publisher,
+        timeout: float | None = ...,
+        unmatched: str | None = ...,
+        warn: Callable[[str, str], None] | None = ...,
+    ) -> Matching: ...
     def client(self, service: str, type_name: str) -> Client: ...
     def action_client(self, name: str, type_name: str) -> ActionClient: ...
     def subscription(

@@ -38,7 +38,9 @@ def _method(artifact: ArtifactPart, number: int, words: Words) -> Callable[..., 
 
 def is_pausable(part: OperationPart) -> bool:
     """Whether it does something at a pause of its intention."""
-    return part.rate is not None or (part.kind is OperationKind.ACTION and part.suspend != "go_on")
+    return part.kind is OperationKind.PUBLISH or (
+        part.kind is OperationKind.ACTION and part.suspend != "go_on"
+    )
 
 
 def is_switch(part: OperationPart) -> bool:

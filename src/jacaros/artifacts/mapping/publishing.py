@@ -1,7 +1,7 @@
 """Operations that publish, once or for a while; a robot that was sent a velocity is always sent zero in the end."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from jacaros.artifacts.mapping.checking import TWISTS
@@ -11,6 +11,7 @@ from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.ros.acting import missing_number
 from jacaros.artifacts.ros.lane import Lane, Ticket, lane_of
+from jacaros.artifacts.ros.matching import Matching
 from jacaros.env.artifact import Out
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch
@@ -29,10 +30,11 @@ class Publishing:
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
         self._publisher: Publisher | None = None
+        self._matching: Matching | None = None
         self._fill: Fill | None = None
         self._fill_end: Fill | None = None
         self._lane = Lane()
-        self._moves = self._moved = False
+        self._drives = self._moves = self._moved = False
         self._arguments: Sequence[object] = ()
         if part.type_name is not None:
             self._open(part.type_name.text)
@@ -48,7 +50,11 @@ class Publishing:
             host.tell(problems)
             host.fail(f"{part.name} does not fit the type {type_name}", "wrong_mapping", part.name)
         self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
-        if type_name in TWISTS:
+        self._matching = host.matching_of(
+            self._publisher, part.match_timeout, part.unmatched, self._warn_unmatched
+        )
+        self._drives = type_name in TWISTS
+        if self._drives:
             self._lane = lane_of(host.ros, host.robot_prefix)
             host.at_dispose(host.ros.add_exit_hook(self._stand))
             host.at_dispose(self._halt)
@@ -64,10 +70,23 @@ class Publishing:
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Publish, once or for a while."""
         await self.ready()
-        if self._part.rate is None:
-            self._send_once(inputs)
+        if self._part.rate is not None:
+            await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
             return
-        await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
+        stops = self._lane.stops
+        for pause in self._pauses(inputs):
+            await self._host.sleep(pause)
+            await self._host.pause_point()
+            if self._lane.stops != stops:
+                self._host.fail(f"{self._part.name} was aborted", "aborted", 0.0)
+        self._send_once(inputs)
+
+    def _pauses(self, inputs: Sequence[object]) -> Iterator[float]:
+        """The pauses until the messages arrive; what stops a robot does not wait."""
+        assert self._matching is not None
+        if self._matching.exists() or (self._drives and not self._filled(inputs)[1]):
+            return iter(())
+        return self._matching.pauses(always=self._drives)
 
     async def ready(self) -> None:
         """Know the type."""
@@ -109,11 +128,14 @@ class Publishing:
         ticket = Ticket(halt)
         host.current.on_pause(stop)
         left = seconds
+        pauses = self._pauses(inputs) if seconds > 0.0 else iter(())
         try:
             while left > 1e-9:
                 await host.pause_point()
                 if not lane.enter(ticket):
                     await host.step(ticket.wait(host.clock, None))
+                elif not ticket.aborted and (pause := next(pauses, None)) is not None:
+                    await host.step(ticket.wait(host.clock, pause))
                 elif not ticket.aborted:
                     began = host.clock.elapsed
                     self._send(inputs)
@@ -121,26 +143,18 @@ class Publishing:
                     left -= host.clock.elapsed - began
                 if ticket.aborted:
                     host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
-            self._tell_if_unheard(seconds)
         finally:
             halt()
             lane.leave(ticket)
 
-    def _tell_if_unheard(self, seconds: float) -> None:
-        """Tell people once when nobody was there to hear what was said for a while: a name or a type may be wrong."""
-        publisher = self._publisher
-        if seconds > 0.0 and publisher is not None and not publisher.subscription_count:
-            self._host.tell_once(
-                (publisher.topic, "unheard"),
-                self._part.target.place,
-                f"nobody hears what {self._part.name} publishes on {publisher.topic}",
-                "is the robot's base running? `jacaros ros list` shows the names and types that it hears",
-            )
-
-    def _send(self, inputs: Sequence[object]) -> None:
-        assert self._fill is not None
+    def _warn_unmatched(self, message: str, cure: str) -> None:
+        """Warn once of a topic without subscribers: its name or type may be wrong."""
         assert self._publisher is not None
-        self._arguments = inputs
+        self._host.tell_once((self._publisher.topic, "unmatched"), self._part.target.place, message, cure)
+
+    def _filled(self, inputs: Sequence[object]) -> tuple[Any, bool]:
+        """The fields of the message, and whether it sets a robot in motion."""
+        assert self._fill is not None
         try:
             fields = self._fill(inputs, self._host.clock.now())
             missing = missing_number(fields)
@@ -149,14 +163,23 @@ class Publishing:
             moves = self._fill_end is not None and _is_motion(fields)
             if moves and not _is_finite(fields):
                 raise WrongValue("a velocity is infinite; nothing was sent", "velocity")
+        except WrongValue as error:
+            self._host.fail(str(error), "wrong_value", error.field)
+        return fields, moves
+
+    def _send(self, inputs: Sequence[object]) -> None:
+        assert self._publisher is not None
+        self._arguments = inputs
+        fields, moves = self._filled(inputs)
+        try:
             message = self._publisher.message(**fields)
             self._moved = self._moved or moves
             self._publisher.publish(message)
-        except WrongValue as error:
-            self._host.fail(str(error), "wrong_value", error.field)
         except MessageMismatch as error:
             self._host.fail(str(error), "wrong_value", error.field)
         self._moves = moves
+        if self._drives and not moves:
+            self._lane.stops += 1
 
     def _end(self, inputs: Sequence[object]) -> None:
         """Publish the last message, if there is to be one."""

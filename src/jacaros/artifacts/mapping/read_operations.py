@@ -24,7 +24,7 @@ from jacaros.yaml_nodes import Node, Problem
 
 _COMMON = ("parameters", "description")
 KEYS: dict[str, tuple[str, ...]] = {
-    "publish": ("type", "fields", "qos", "rate", "duration", "at_end"),
+    "publish": ("type", "fields", "qos", "rate", "duration", "at_end", "match_timeout", "unmatched"),
     "service": ("type", "request", "outputs", "success", "timeout"),
     "action": ("type", "goal", "outputs", "success", "feedback", "timeout", "suspend"),
     "set_parameter": ("node", "value", "timeout"),
@@ -36,6 +36,7 @@ KEYS: dict[str, tuple[str, ...]] = {
 _ALL_KEYS = tuple(dict.fromkeys((*_COMMON, *(key for keys in KEYS.values() for key in keys))))
 
 _SUSPEND = ("go_on", "cancel")
+_UNMATCHED = ("warn", "fail")
 
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 CALL_TIMEOUT = 10.0
@@ -137,7 +138,16 @@ def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         rate=_seconds(rate) if rate is not None else None,
         duration=spell,
         at_end=read_values(entries["at_end"], part.parameters) if "at_end" in entries else None,
+        match_timeout=_timeout(entries, None, "match_timeout"),
+        unmatched=_unmatched(entries["unmatched"]) if "unmatched" in entries else None,
     )
+
+
+def _unmatched(node: Node) -> str | None:
+    if node.value in _UNMATCHED:
+        return str(node.value)
+    node.wrong(f"'unmatched' is {node.value!r}", f"write {' or '.join(_UNMATCHED)}")
+    return None
 
 
 def _service(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
@@ -272,8 +282,8 @@ def _type(entries: dict[str, Node], kind: str) -> Written | None:
     return type_written(entries["type"], kind) if "type" in entries else None
 
 
-def _timeout(entries: dict[str, Node], usual: float | None) -> float | None:
-    return _seconds(entries["timeout"]) if "timeout" in entries else usual
+def _timeout(entries: dict[str, Node], usual: float | None, key: str = "timeout") -> float | None:
+    return _seconds(entries[key]) if key in entries else usual
 
 
 def _seconds(node: Node) -> float:

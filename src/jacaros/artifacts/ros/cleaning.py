@@ -1,5 +1,8 @@
 """``ArtCleaning``: the household of the thesis, which says what is to be done in which room."""
 
+from typing import ClassVar
+
+from jacaros.artifacts.ros.matching import MATCH_OPTIONS
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Publisher
@@ -30,12 +33,18 @@ class ArtCleaning(RosArtifact):
     Every task is also published as text, such as ``vacuum carpet living_room``, on ``/cleaning/task`` when
     the system has ROS: the embedded world logs it with the robot's true place.
 
+    Options:
+        match_timeout(S): how long the first task waits for a subscriber of ``/cleaning/task`` (3 s).
+        unmatched(W): what happens when there is none by then: ``warn`` (the default; the task is published all the
+            same) or ``fail``, with ``unmatched(Topic)``.
+
     Properties:
         atRoom(N): number of the room, 0 (hallway) to 3 (bathroom).
         vacuum(Object, Room), mop(Object, Room), scrub(Object, Room): the newest task of a kind; texts, empty
             before the first.
     """
 
+    known_options: ClassVar = MATCH_OPTIONS
     _tasks: Publisher | None = None
 
     def open(self) -> None:
@@ -71,6 +80,8 @@ class ArtCleaning(RosArtifact):
         """
         if room not in TASKS:
             self.fail(f"there is no room {room}; rooms are 0 to {len(ROOMS) - 1}", "unknown_room", room)
+        if self._tasks is not None and TASKS[room]:
+            await self.matched(self._tasks)
         for number, (task, thing) in enumerate(TASKS[room]):
             if number:
                 await self._work(BETWEEN_TASKS)

@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from jacaros.artifacts.ros.connection import Connection
 from jacaros.artifacts.ros.faults import Faults
 from jacaros.artifacts.ros.listener import Listener
+from jacaros.artifacts.ros.matching import MATCH_TIMEOUT, Matching
 from jacaros.artifacts.ros.missing import MissingTopic
 from jacaros.artifacts.ros.offering import Offer
 from jacaros.artifacts.ros.options import Reader, WrongOption, read_arguments, text, watching
@@ -17,6 +18,7 @@ from jacaros.env.values import Structure
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
 from jacaros.ros.backend import (
     DEFAULT_POLICY,
+    DISCOVERY,
     Backend,
     Client,
     Publisher,
@@ -115,6 +117,58 @@ class ConnectedArtifact(Artifact):
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
         """Publish on the robot's *topic* until the artifact is disposed."""
         return self.kept(self.ros.publisher(self.robot_topic(topic), type_name, qos))
+
+    def matching_of(
+        self,
+        publisher: Publisher,
+        timeout: float | None = None,
+        unmatched: str | None = None,
+        warn: Callable[[str, str], None] | None = None,
+    ) -> Matching:
+        """Prepare operations to wait for subscriptions of *publisher*; see `matched` for the simple way.
+
+        Args:
+            publisher: made by `publisher`.
+            timeout: seconds; None: the option ``match_timeout``.
+            unmatched: ``warn`` or ``fail``; None: the option ``unmatched``.
+            warn: takes the warning and the help; None: they are logged, once for each time that the topic is without
+                subscribers.
+        """
+        found = (
+            timeout if timeout is not None else float(str(self.options.get("match_timeout", MATCH_TIMEOUT)))
+        )
+        fails = (unmatched or self.options.get("unmatched")) == "fail"
+
+        def missed(topic: str, seconds: float, again: bool) -> None:
+            waited = f" after {seconds:g} s" if seconds else ""
+            if fails:
+                self.fail(f"no subscriber on {topic}{waited}; nothing was published", "unmatched", topic)
+            if again or not self.ros.connected:
+                return  # a graph that cannot be reached is reported by its backend
+            message = f"no subscriber on {topic}{waited}; publishing anyway"
+            cure = "start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
+            if warn is not None:
+                warn(message, cure)
+            else:
+                self.log(f"warning: {message}\n  help: {cure}")
+
+        return Matching(publisher, found if DISCOVERY in self.ros.capabilities else 0.0, missed)
+
+    async def matched(self, publisher: Publisher) -> None:
+        """Wait until a subscription of *publisher* is matched, so that the next message arrives.
+
+        It is a step boundary, but only while it waits: at most ``match_timeout`` seconds, the first time.  Without a
+        subscriber it then logs a warning and returns.  While the intention is suspended it does not return.
+
+        Raises:
+            OperationFailed: ``unmatched(Topic)``, with the option ``unmatched(fail)``.
+        """
+        known: dict[Publisher, Matching] = self.__dict__.setdefault("_matchings", {})
+        if publisher not in known:
+            known[publisher] = self.matching_of(publisher)
+        for seconds in known[publisher].pauses():
+            await self.sleep(seconds)
+            await self.pause_point()
 
     def subscription(
         self,

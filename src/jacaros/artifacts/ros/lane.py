@@ -58,9 +58,14 @@ class Ticket:
 
 
 class Lane:
-    """Who drives, and who waits to drive."""
+    """Who drives, and who waits to drive.
+
+    Attributes:
+        stops: how often the robot was told to stop, for a command that waits to be sent and must not follow.
+    """
 
     def __init__(self) -> None:
+        self.stops = 0
         self._holder: Ticket | None = None
         self._queue: deque[Ticket] = deque()
 
@@ -87,6 +92,7 @@ class Lane:
 
     def abort(self) -> None:
         """Abort the motion that drives and all that wait; those that left the lane are not concerned."""
+        self.stops += 1
         concerned = [*self._queue] if self._holder is None else [self._holder, *self._queue]
         for ticket in concerned:
             ticket.abort()

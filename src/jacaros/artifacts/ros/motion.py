@@ -10,6 +10,7 @@ from typing import Any, Protocol
 from jacaros.artifacts.ros.control import STANDSTILL, Limits, Pose, Velocity
 from jacaros.artifacts.ros.lane import Lane, Ticket
 from jacaros.artifacts.ros.maneuver import Maneuver
+from jacaros.artifacts.ros.matching import Matching
 from jacaros.artifacts.ros.odometer import Odometer
 
 STALE = 0.5
@@ -62,6 +63,7 @@ class Wheels(Protocol):
 
     clock: Any
     lane: Lane
+    matching: Matching
     odometer: Odometer
     settings: MotionSettings
 
@@ -161,14 +163,17 @@ class Motion:
                 await self._wait(None)
 
     async def _stand(self) -> bool:
-        """Bring the robot to a stand; False when the agent suspends the motion meanwhile."""
+        """Bring a robot that receives commands to a stand; False when the agent suspends the motion meanwhile."""
         braking = 0.0
+        blind = not self._maneuver.needs_odometry
+        pauses = self._wheels.matching.pauses(always=blind)
         while not self._execution.paused:
-            seen = not self._maneuver.needs_odometry or self._has_odometry()
-            if seen and (self._stands() or braking >= LONGEST_BRAKING):
+            seen = blind or self._has_odometry()
+            pause = next(pauses, None)
+            if pause is None and seen and (self._stands() or braking >= LONGEST_BRAKING):
                 return True
-            await self._command(STANDSTILL)
-            braking += self._maneuver.period
+            await self._command(STANDSTILL, pause)
+            braking += self._maneuver.period if pause is None else pause
         return False
 
     async def _follow(self) -> bool:
@@ -199,13 +204,14 @@ class Motion:
                 settled += 1
         return True
 
-    async def _command(self, velocity: Velocity) -> None:
-        """Give one command and wait for the next moment to give one."""
+    async def _command(self, velocity: Velocity, seconds: float | None = None) -> None:
+        """Give one command and wait for the next moment to give one; None: the period of the maneuver."""
+        period = self._maneuver.period if seconds is None else seconds
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(velocity)
         self._before = velocity
-        await self._wait(self._maneuver.period)
-        self._active += self._maneuver.period
+        await self._wait(period)
+        self._active += period
 
     async def _wait(self, seconds: float | None) -> None:
         await self._wheels.step(self._ticket.wait(self._wheels.clock, seconds))

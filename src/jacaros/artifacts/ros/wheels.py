@@ -6,6 +6,7 @@ from typing import ClassVar
 from jacaros.artifacts.ros.control import STANDSTILL, Limits, Velocity
 from jacaros.artifacts.ros.lane import Lane, lane_of
 from jacaros.artifacts.ros.maneuver import Maneuver
+from jacaros.artifacts.ros.matching import MATCH_OPTIONS, Matching
 from jacaros.artifacts.ros.motion import Motion, MotionFailed, MotionSettings
 from jacaros.artifacts.ros.odometer import ODOMETRY, Odometer, Odometry
 from jacaros.artifacts.ros.odometry import pose_values
@@ -35,6 +36,10 @@ class WheeledArtifact(RosArtifact):
             default.
         odometry_timeout(S): how long a motion stands and waits for odometry before it fails (5 s).
         command_topic(T), odometry_topic(T): other topics.
+        match_timeout(S): how long a motion stands and waits until the robot's base is connected to the command
+            topic (3 s); without that its first commands would be lost.
+        unmatched(W): what happens when no base is connected by then: ``warn`` (the default; the motion begins) or
+            ``fail``, with ``unmatched(Topic)``.
         odometry_frame(F): the only frame in which odometry is believed; that of the first message by default.
 
     Properties:
@@ -42,6 +47,7 @@ class WheeledArtifact(RosArtifact):
 
     Attributes:
         lane: who drives the robot; shared with all artifacts of the same robot.
+        matching: lets motions wait until the robot's base receives commands.
         odometer: the newest odometry.
         settings: speeds and time-outs.
         newest_pose: x, y and heading in degrees, for operations that give them.
@@ -59,11 +65,13 @@ class WheeledArtifact(RosArtifact):
         "command_topic": text,
         "odometry_topic": text,
         "odometry_frame": text,
+        **MATCH_OPTIONS,
     }
     robot_in_properties = True
     command_topic: ClassVar[str] = "cmd_vel"
 
     lane: Lane
+    matching: Matching
     odometer: Odometer
     settings: MotionSettings
     newest_pose: Reading
@@ -76,6 +84,7 @@ class WheeledArtifact(RosArtifact):
         self.lane = lane_of(self.ros, self.robot_prefix)
         self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock)
         self._commands = self.publisher(str(self.options.get("command_topic", self.command_topic)), TWIST)
+        self.matching = self.matching_of(self._commands)
         topic = str(self.options.get("odometry_topic", "odom"))
         self.odometer = Odometer(
             self.faults_of(topic), self.clock, self.on_odometry, str(self.options.get("odometry_frame", ""))

@@ -14,6 +14,7 @@ from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import (
     ACTIONS,
     DEFAULT_POLICY,
+    DISCOVERY,
     PARAMETER_EVENTS,
     PARAMETERS,
     REGISTRATION,
@@ -51,6 +52,7 @@ class Ros1Backend(Ros1Node):
             SERVICE_ERRORS,
             TRANSFORMS,
             ACTIONS,
+            DISCOVERY,
             REGISTRATION,
             PARAMETERS,
             PARAMETER_EVENTS,

@@ -10,7 +10,7 @@ import rospy  # type: ignore[import-not-found]
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.backends.ros1_node import Ros1Node, wait_until_sent
 from jacaros.ros.errors import MessageMismatch
-from jacaros.ros.handoff import Handoff
+from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.qos import QoS
 from jacaros.ros.serving import published_message
 
@@ -80,7 +80,14 @@ class Ros1Publisher:
         publisher = rospy.Publisher(self.topic, self._class, latch=latch, queue_size=self._qos.depth)
         with self._lock:
             for message in self._early:
-                publisher.publish(message)
+                try:
+                    publisher.publish(message)
+                except rospy.ROSException as problem:  # a field that does not fit shows only now
+                    post(
+                        self._node.loop,
+                        self._node.log,
+                        f"topic {self.topic}: a message was dropped: {problem}",
+                    )
             self._early.clear()
             self._publisher = publisher
 

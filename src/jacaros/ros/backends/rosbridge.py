@@ -19,6 +19,7 @@ from jacaros.ros.action import ActionPolicy, Execute
 from jacaros.ros.backend import (
     ACTIONS,
     DEFAULT_POLICY,
+    DISCOVERY,
     PARAMETER_EVENTS,
     PARAMETERS,
     SERVICES,
@@ -113,7 +114,7 @@ class RosbridgeBackend(Node):
         """What can be done with the robot's ROS."""
         # Failed handlers are told of by those services of ROS 1 alone that are not served over a bridge.
         news = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
-        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, PARAMETERS, *news})
+        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, DISCOVERY, PARAMETERS, *news})
 
     async def start(self) -> None:
         """Connect, or say that the server is awaited and go on trying in the background."""

@@ -1,14 +1,17 @@
 """Operations of mapped artifacts: publishing, services, actions, parameters, on the graph inside the process."""
 
 import math
+from collections.abc import Awaitable, Callable
 
 import pytest
-from mapped_lab import settle, with_mapped
-from robot_lab import STANDSTILL, Lab
+from mapped_lab import mapped, settle, with_mapped
+from robot_lab import STANDSTILL, Lab, in_lab
 
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.ros.lane import lane_of
 from jacaros.env import ArtifactId, Atom, Out, Structure
+from jacaros.ros.backend import DISCOVERY
 from jacaros.ros.parameter import Declaration
 
 DRIVE = """
@@ -194,6 +197,135 @@ operations:
         assert heard == [True] * 4 + [False]
 
     with_mapped(text, body)
+
+
+# ---- waiting for a subscriber
+
+SAY = """
+operations:
+  say: {parameters: [text], publish: speech, type: std_msgs/msg/String, fields: {data: $text}}
+  must_say:
+    parameters: [text]
+    publish: speech
+    type: std_msgs/msg/String
+    fields: {data: $text}
+    match_timeout: 1
+    unmatched: fail
+"""
+
+
+def on_a_graph(text: str, body: Callable[[Lab, ArtifactId], Awaitable[None]], *arguments: object) -> Lab:
+    """Run *body* where a subscription that a test makes later is like one that is matched late."""
+
+    async def in_it(lab: Lab) -> None:
+        lab.backend.capabilities |= {DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
+        await body(lab, await lab.make(mapped(text), *arguments))
+
+    return in_lab(in_it, world=None)
+
+
+def test_the_first_message_waits_until_a_subscriber_is_matched() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        said = lab.begin(artifact, "say", "first")
+        await lab.sleep(1.0)
+        heard: list[str] = []
+        lab.backend.subscription(
+            "speech", "std_msgs/msg/String", lambda sample: heard.append(sample.message.data)
+        )
+        await said.done
+        began = lab.clock.elapsed
+        await lab.do(artifact, "say", "second")
+        await settle()
+        assert (heard, lab.clock.elapsed) == (["first", "second"], began)
+
+    on_a_graph(SAY, body)
+
+
+def test_a_message_without_subscribers_is_delayed_and_warned_about_once() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        await lab.do(artifact, "say", "first")
+        assert lab.clock.elapsed == pytest.approx(3.0)
+        await lab.do(artifact, "say", "second")
+        assert lab.clock.elapsed == pytest.approx(3.0)
+        assert len(lab.logged) == 1
+        assert "m.yaml:3:38: no subscriber on /speech after 3 s; publishing anyway" in lab.logged[0]
+
+    on_a_graph(SAY, body)
+
+
+def test_a_message_without_subscribers_fails_if_the_mapping_says_so() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        for _ in range(2):
+            assert (await lab.call(artifact, "must_say", "first")).reason == 'unmatched("/speech")'
+        assert lab.clock.elapsed == pytest.approx(1.0)
+        assert lab.logged == []
+
+    on_a_graph(SAY, body)
+
+
+def test_what_the_mapping_does_not_say_is_an_option_of_the_artifact() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        assert (await lab.call(artifact, "say", "first")).reason == 'unmatched("/speech")'
+        assert lab.clock.elapsed == pytest.approx(0.5)
+
+    on_a_graph(SAY, body, Structure("match_timeout", (0.5,)), Structure("unmatched", (Atom("fail"),)))
+
+
+def test_velocities_wait_until_the_base_is_matched() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        run = lab.begin(artifact, "drive", 0.5, 0, 1)
+        await lab.sleep(1.0)
+        lab.record()
+        await run.done
+        await settle()
+        assert len(lab.commands) == 11
+        assert lab.last_command == STANDSTILL
+
+    on_a_graph(DRIVE, body)
+
+
+def test_zero_velocity_never_waits() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        await lab.do(artifact, "go", 0)
+        assert lab.clock.elapsed == 0.0
+        await lab.do(artifact, "drive", 0, 0, 1)
+        assert lab.clock.elapsed == pytest.approx(1.0)
+
+    on_a_graph(DRIVE, body)
+
+
+def test_a_velocity_that_waits_for_its_base_is_not_sent_after_a_stop() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        run = lab.begin(artifact, "go", 0.5)
+        await lab.sleep(0.5)
+        await lab.do(artifact, "go", 0)
+        assert lab.clock.elapsed == pytest.approx(0.5)
+        lab.record()
+        await run.done
+        await settle()
+        assert run.reason == "aborted(0)"
+        assert lab.commands == []
+
+    on_a_graph(DRIVE, body)
+
+
+@pytest.mark.parametrize("end", ["drop", "suspend", "abort"])
+def test_a_velocity_that_waits_for_its_base_is_not_sent_after(end: str) -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        runs = [lab.begin(artifact, "drive", 0.5, 0, 1), lab.begin(artifact, "go", 0.5)]
+        await lab.sleep(0.5)
+        for run in runs:
+            if end == "drop":
+                run.execution.cancel()
+            elif end == "suspend":
+                run.execution.pause()
+        if end == "abort":
+            lane_of(lab.backend, "").abort()
+        lab.record()
+        await lab.sleep(5.0)
+        assert all(tuple(command) == STANDSTILL for _, *command in lab.commands)
+
+    on_a_graph(DRIVE, body)
 
 
 # ---- services

@@ -1,0 +1,182 @@
+"""Operations that publish wait until a subscription is matched, so that their first message arrives."""
+
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import pytest
+from robot_lab import STANDSTILL, Lab, in_lab
+
+from jacaros.artifacts.ros.cleaning import ArtCleaning
+from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.env import Structure
+from jacaros.ros.backend import DISCOVERY, Sample
+
+
+def on_a_graph(body: Callable[[Lab], Awaitable[Any]]) -> Lab:
+    """Run *body* where a subscription that a test makes later is like one that is matched late."""
+
+    async def with_discovery(lab: Lab) -> None:
+        lab.backend.capabilities |= {DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
+        await body(lab)
+
+    return in_lab(with_discovery, world=None)
+
+
+def driving(lab: Lab) -> list[float]:
+    """The times of the commands that move the robot."""
+    return [time for time, *command in lab.commands if tuple(command) != STANDSTILL]
+
+
+def warnings(lab: Lab) -> list[str]:
+    return [line for line in lab.logged if "no subscriber" in line]
+
+
+def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_late() -> None:
+    async def body(lab: Lab) -> None:
+        wheels = await lab.make(ArtCmdVel)
+        motion = lab.begin(wheels, "move", 25)
+        await lab.sleep(1.0)
+        lab.record()
+        await motion.done
+        await lab.sleep(0.1)
+        assert len(driving(lab)) == 26
+        assert driving(lab)[0] == pytest.approx(1.25, abs=0.06)
+        assert lab.last_command == STANDSTILL
+        assert warnings(lab) == []
+
+    on_a_graph(body)
+
+
+def test_a_motion_begins_immediately_when_a_base_is_matched() -> None:
+    async def body(lab: Lab) -> None:
+        lab.record()
+        await lab.do(await lab.make(ArtCmdVel), "move", 4)
+        await lab.sleep(0.1)
+        assert driving(lab) == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4])
+
+    on_a_graph(body)
+
+
+def test_in_the_graph_inside_the_process_nothing_waits() -> None:
+    async def body(lab: Lab) -> None:
+        await lab.do(await lab.make(ArtCmdVel), "move", 4)
+        assert lab.clock.elapsed == pytest.approx(0.5)
+        assert len(warnings(lab)) == 1
+
+    in_lab(body, world=None)
+
+
+def test_a_motion_that_no_base_hears_warns_once_and_begins() -> None:
+    async def body(lab: Lab) -> None:
+        wheels = await lab.make(ArtCmdVel)
+        for ends in (3.5, 7.0):
+            await lab.do(wheels, "move", 4)
+            assert lab.clock.elapsed == pytest.approx(ends, abs=0.11)
+        (warning,) = warnings(lab)
+        assert warning.endswith(
+            " warning: no subscriber on /cmd_vel after 3 s; publishing anyway\n"
+            "  help: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
+        )
+
+    on_a_graph(body)
+
+
+def test_a_base_that_left_is_waited_for_again() -> None:
+    async def body(lab: Lab) -> None:
+        wheels = await lab.make(ArtCmdVel)
+        base = lab.backend.subscription("/cmd_vel", "geometry_msgs/msg/Twist", lambda sample: None)
+        await lab.do(wheels, "move", 4)
+        base.close()
+        motion = lab.begin(wheels, "move", 4)
+        await lab.sleep(2.0)
+        lab.record()
+        await motion.done
+        await lab.sleep(0.1)
+        assert len(driving(lab)) == 5
+
+    on_a_graph(body)
+
+
+def test_a_motion_fails_by_option_when_no_base_is_matched() -> None:
+    async def body(lab: Lab) -> None:
+        wheels = await lab.make(
+            ArtCmdVel, Structure("unmatched", ("fail",)), Structure("match_timeout", (1,))
+        )
+        run = await lab.call(wheels, "move", 4)
+        assert lab.clock.elapsed == pytest.approx(1.0)
+        assert run.reason == 'unmatched("/cmd_vel")'
+        assert warnings(lab) == []
+
+    on_a_graph(body)
+
+
+def test_a_motion_that_waits_for_its_base_is_aborted_immediately() -> None:
+    async def body(lab: Lab) -> None:
+        wheels = await lab.make(ArtCmdVel)
+        motion = lab.begin(wheels, "move", 25)
+        await lab.sleep(0.5)
+        await lab.do(wheels, "abortMoving")
+        await motion.done
+        assert lab.clock.elapsed == pytest.approx(0.5)
+        assert motion.reason == "aborted(0)"
+
+    on_a_graph(body)
+
+
+def test_a_motion_that_is_dropped_while_it_waits_for_its_base_never_drives() -> None:
+    async def body(lab: Lab) -> None:
+        wheels = await lab.make(ArtCmdVel)
+        motion = lab.begin(wheels, "move", 25)
+        await lab.sleep(0.5)
+        motion.execution.cancel()
+        lab.record()
+        await lab.sleep(5.0)
+        assert driving(lab) == []
+
+    on_a_graph(body)
+
+
+def test_a_motion_that_is_suspended_while_it_waits_for_its_base_drives_when_it_is_resumed() -> None:
+    async def body(lab: Lab) -> None:
+        wheels = await lab.make(ArtCmdVel)
+        motion = lab.begin(wheels, "move", 4)
+        await lab.sleep(0.5)
+        motion.execution.pause()
+        lab.record()
+        await lab.sleep(5.0)
+        assert driving(lab) == []
+        motion.execution.resume()
+        await motion.done
+        await lab.sleep(0.1)
+        assert len(driving(lab)) == 5
+
+    on_a_graph(body)
+
+
+def test_the_first_task_of_the_household_is_published_when_its_listener_is_matched() -> None:
+    async def body(lab: Lab) -> None:
+        household = await lab.make(ArtCleaning)
+        work = lab.begin(household, "clean", 3)
+        await lab.sleep(1.0)
+        tasks: list[str] = []
+
+        def take(sample: Sample) -> None:
+            tasks.append(sample.message.data)
+
+        lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", take)
+        await work.done
+        assert tasks == ["scrub tub bathroom", "mop floor bathroom"]
+
+    on_a_graph(body)
+
+
+def test_a_household_that_nobody_listens_to_is_delayed_once() -> None:
+    async def body(lab: Lab) -> None:
+        household = await lab.make(ArtCleaning)
+        await lab.do(household, "clean", 1)
+        assert lab.clock.elapsed == pytest.approx(5.5)
+        await lab.do(household, "clean", 1)
+        assert lab.clock.elapsed == pytest.approx(8.0)
+        assert len(warnings(lab)) == 1
+
+    on_a_graph(body)
