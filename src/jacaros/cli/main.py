@@ -12,10 +12,8 @@ from importlib import import_module
 
 import click
 
+from jacaros.cli.outputs import OUTPUT_GONE
 from jacaros.errors import JacarosError, UsageError
-
-OUTPUT_GONE = 141
-"""Whoever read the output has gone, as in ``| head``: 128 and the number of SIGPIPE."""
 
 ENDED_BY_SIGNAL = (130, 143)
 """Exit codes of a run that Ctrl-C or SIGTERM ended."""

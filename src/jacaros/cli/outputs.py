@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+OUTPUT_GONE = 141
+"""Exit code when the reader of the output is gone, as in ``| head``: 128 and the number of SIGPIPE."""
+
 
 @dataclass(frozen=True, slots=True)
 class Outputs:

@@ -1,22 +1,28 @@
 """``jacaros run FILE``."""
 
-from collections.abc import Callable, Sequence
+import asyncio
+import sys
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
 from jacaros.cli.graph_options import graph_options, parameter_options, read_remaps
-from jacaros.cli.outputs import Outputs
+from jacaros.cli.outputs import OUTPUT_GONE, Outputs
 from jacaros.errors import UsageError
-from jacaros.mas.console import Console, StandardConsole
+from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import ROS_KINDS, RunOptions
 from jacaros.mas.system import System
+from jacaros.output import CLOSING, PATIENCE
 from jacaros.text_files import is_file
 
+FAST_PATIENCE = 1.0
+"""Seconds that a run on the virtual clock waits for a reader; its agents miss nothing meanwhile."""
 SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 """Of files that can be run."""
 
@@ -148,10 +154,15 @@ def command(
         diagnostics=diagnostics,
         mappings=mappings,
     )
-    console = StandardConsole("warning" if quiet else "info")
-    if not watched:
-        return launch(project, options, console)
-    return _launch_watched(project, options, console, Outputs(record, replay, ground_truth, view))
+    console = StandardConsole(
+        "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE
+    )
+    code = 1
+    try:
+        code = _launch(project, options, console, Outputs(record, replay, ground_truth, view))
+        return code
+    finally:
+        _close(console, code)
 
 
 def _parameters(
@@ -164,13 +175,34 @@ def _parameters(
     return read_parameters(written, files, name, "/" if ros == "ros1" else ".")
 
 
-def _launch_watched(file: Path | Deployment, options: RunOptions, console: Console, outputs: Outputs) -> int:
+def _launch(file: Path | Deployment, options: RunOptions, console: StandardConsole, outputs: Outputs) -> int:
+    def begin(mas: System) -> None:
+        if options.fast:
+            # As in `| head`: nobody wants the rest, and no robot depends on the agents.
+            loop = asyncio.get_running_loop()
+            end = partial(mas.stop_system, 0.0, OUTPUT_GONE)
+            console.when_gone(lambda: loop.call_soon_threadsafe(end))
+
+    if outputs == Outputs():
+        return launch(file, options, console, begin)
     # Imported here: numpy, rich and the simulator are for those who want to see something.
     from jacaros.cli.watching import Watching
 
+    def begin_watched(mas: System) -> None:
+        begin(mas)
+        watching.begin(mas)
+
     with Watching(console, outputs) as watching:
-        begin: Callable[[System], None] = watching.begin
-        return launch(file, options, watching, begin)
+        return launch(file, options, watching, begin_watched)
+
+
+def _close(console: StandardConsole, code: int) -> None:
+    if code > 128:
+        console.close(limit=CLOSING)  # a signal is not to be waited for
+    elif sys.stderr is not None and sys.stderr.isatty():
+        console.close(patience=None)  # `| less`: you may read for as long as you like
+    else:
+        console.close()
 
 
 def check_file(file: Path) -> None:

@@ -17,9 +17,6 @@ from jacaros.mas.ports import Services
 from jacaros.mas.scheduler import Scheduler
 from jacaros.terms.values import String, Term, atom, functor
 
-OUTPUT_GONE = 141
-"""Exit code of a run whose output nobody reads any more: 128 and the number of SIGPIPE."""
-
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
 
@@ -285,14 +282,7 @@ class AgentHost:
     def print(self, text: str) -> None:
         """Show a line of the program's output; an agent that has ended prints nothing more."""
         if not self._ended:
-            self._show(text)
-
-    def _show(self, text: str) -> None:
-        try:
             self._run.console.print(self.name, text)
-        except BrokenPipeError:
-            # Whoever read the output has gone, as in `| head`: nobody wants the rest.
-            self._run.stop_system(0.0, OUTPUT_GONE)
 
     def log(self, level: str, text: str) -> None:
         """Tell people about trouble, and what else the agent's option ``verbose`` lets through."""

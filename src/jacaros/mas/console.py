@@ -1,7 +1,10 @@
-"""Where a run writes: what the agents print goes out as ``[agent] text``, everything else to the errors."""
+"""Where a run writes: output of the agents goes out as ``[agent] text``, everything else to the errors."""
 
 import sys
-from typing import Protocol, TextIO
+from collections.abc import Callable
+from typing import Protocol
+
+from jacaros.output import CLOSING, PATIENCE, Output, Stream
 
 LEVELS = ("debug", "info", "warning", "error")
 
@@ -17,29 +20,48 @@ class Console(Protocol):
 
 
 class StandardConsole:
-    """Agents' lines on the standard output, complete lines at once; logs on the standard error output.
+    """Agents' lines on the standard output, complete lines immediately; logs on the standard error output.
+
+    Neither raises nor waits for a reader: see `jacaros.output.Output`.
 
     Args:
         level: the least level that is shown.
+        output: takes the lines of agents; the standard output of the moment unless given.
+        errors: takes the logs; the standard error output of the moment unless given.
+        patience: seconds to wait for a reader that takes nothing while the queue is full.
     """
 
     def __init__(
-        self, level: str = "info", output: TextIO | None = None, errors: TextIO | None = None
+        self,
+        level: str = "info",
+        output: Stream | None = None,
+        errors: Stream | None = None,
+        patience: float = PATIENCE,
     ) -> None:
-        self._output = output if output is not None else sys.stdout
-        self._errors = errors if errors is not None else sys.stderr
+        self._errors = Output(errors or (lambda: sys.stderr), "standard error", None, patience)
+        self._output = Output(output or (lambda: sys.stdout), "standard output", self._warn, patience)
         self._least = LEVELS.index(level)
 
     def print(self, agent: str, text: str) -> None:
-        """Write a line, so that it is complete for whoever reads along."""
+        """Write a line, so that it is complete for every reader."""
         self._output.write(line_of(agent, text))
-        self._output.flush()
 
     def log(self, text: str, level: str = "info") -> None:
         """Write a line for people."""
         if LEVELS.index(level) >= self._least:
             self._errors.write(f"{text}\n")
-            self._errors.flush()
+
+    def when_gone(self, told: Callable[[], object]) -> None:
+        """Call *told*, in any thread, instead of warning when the reader closes the pipe of the agents' lines."""
+        self._output.when_gone = told
+
+    def close(self, patience: float | None = CLOSING, limit: float | None = None) -> None:
+        """Write what waits for a slow reader; see `jacaros.output.Output.close`."""
+        self._output.close(patience, limit)
+        self._errors.close(patience, limit)
+
+    def _warn(self, text: str) -> None:
+        self.log(f"warning: {text}", "warning")
 
 
 def line_of(agent: str, text: str) -> str:

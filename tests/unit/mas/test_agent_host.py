@@ -7,7 +7,7 @@ from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import VirtualClock, run
 from jacaros.mas.activity import Activity
-from jacaros.mas.agent_host import OUTPUT_GONE, AgentHost
+from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.scheduler import Scheduler
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, atom, functor
@@ -67,7 +67,7 @@ class Body:
 
 
 class FakeRun:
-    """A run with one agent; its output can be taken away."""
+    """A run with one agent."""
 
     def __init__(self) -> None:
         self.clock = VirtualClock()
@@ -75,11 +75,8 @@ class FakeRun:
         self.activity = Activity()
         self.console = self
         self.lines: list[str] = []
-        self.pipe_is_broken = False
 
     def print(self, agent: str, text: str) -> None:
-        if self.pipe_is_broken:
-            raise BrokenPipeError
         self.lines.append(f"[{agent}] {text}")
 
     def log(self, text: str, level: str = "info") -> None:
@@ -182,10 +179,3 @@ def test_what_the_mind_asks_goes_to_the_run() -> None:
     assert host.read_program("x.asl") == ("x.asl", "")
     host.receive(SpeechAct("tell", "bob", "ann", atom("x"), "mid1"))
     assert mind.log == ["receive x"]
-
-
-def test_a_run_whose_output_nobody_reads_ends() -> None:
-    host, _, run_ = host_and_mind()
-    run_.pipe_is_broken = True
-    host.print("hello")
-    assert run_.lines == [f"stop 0.0 {OUTPUT_GONE}"]

@@ -1,6 +1,5 @@
 """What the agents of an embedded system print, and what people are told."""
 
-import sys
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -39,9 +38,10 @@ class PrintedConsole:
     """
 
     def __init__(self, on_print: OnPrint | None, on_log: OnLog | None) -> None:
-        standard = StandardConsole(output=_Standard("stdout"), errors=_Standard("stderr"))  # type: ignore[arg-type]
-        self._on_print = on_print or standard.print
-        self._on_log = on_log or standard.log
+        # Finds the standard outputs at the time of writing: tests and notebooks put others in their place.
+        self._standard = StandardConsole()
+        self._on_print = on_print or self._standard.print
+        self._on_log = on_log or self._standard.log
         self._listeners: list[OnPrint] = []
 
     def listen(self, told: OnPrint) -> Callable[[], None]:
@@ -62,17 +62,14 @@ class PrintedConsole:
 
     def log(self, text: str, level: str = "info") -> None:
         """Tell people about what happens."""
-        self._on_log(text, level)
+        try:
+            self._on_log(text, level)
+        except Exception as error:
+            self._standard.log(text, level)
+            self._standard.log(
+                f"error: a callback for logs failed: {said(error)}{place_of_fault(error)}", "error"
+            )
 
-
-class _Standard:
-    """A standard output as it is at the time of writing: tests and notebooks put others in its place."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-
-    def write(self, text: str) -> int:
-        return int(getattr(sys, self._name).write(text))
-
-    def flush(self) -> None:
-        getattr(sys, self._name).flush()
+    def close(self) -> None:
+        """Write what waits for a slow reader."""
+        self._standard.close()

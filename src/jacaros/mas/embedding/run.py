@@ -80,7 +80,10 @@ class EmbeddedRun:
         for close in self._at_end:
             close()
         system.end(0)
-        await system.close()
+        try:
+            await system.close()
+        finally:
+            self._console.close()
         if system.error is not None and (error is None or isinstance(error, RunEnded)):
             raise system.error
 

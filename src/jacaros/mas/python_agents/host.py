@@ -219,7 +219,7 @@ class PythonAgentHost(AgentHost):
     def print(self, text: str) -> None:
         """Show a line of output; also while the agent is ending."""
         if not self._closed and (self._tasks or not self._ended):
-            self._show(text)
+            self._run.console.print(self.name, text)
 
 
 class _Task:

@@ -1,0 +1,362 @@
+"""Output that cannot hurt the program that writes it, whatever becomes of the reader or the disk.
+
+The loop of a run must not wait for a terminal, a pipe or a disk, and a step must not fail because of one.  An `Output`
+writes directly as long as its sink takes everything.  What the sink does not take waits in a bounded queue, which a daemon
+thread writes.  A queue that stays full, and a sink that raises, lose lines: they are counted and reported.
+"""
+
+import contextlib
+import errno
+import io
+import os
+import select
+import stat
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Protocol
+
+LIMIT = 8 << 20
+"""Bytes that may wait for a sink."""
+PATIENCE = 0.2
+"""Seconds that a writer waits for a full queue of which the sink takes nothing."""
+CLOSING = 2.0
+"""Seconds without progress after which `Output.close` drops what still waits."""
+_RETRY = 1.0
+"""Seconds until a sink that raised an error is tried again."""
+_PIECE = 1 << 16
+_ATOMIC = 4096
+"""Bytes that a pipe takes in one piece as soon as it is writable (PIPE_BUF of Linux)."""
+
+
+class Stream(Protocol):
+    """What is needed of a text stream."""
+
+    def write(self, text: str, /) -> Any:
+        """Write *text*."""
+
+    def flush(self) -> Any:
+        """Pass on what was written."""
+
+
+class Output:
+    """A sink of text.  `write` raises no error and waits for at most `patience` seconds; safe in any thread.
+
+    Args:
+        stream: the text stream, or a function that gives the present one; None stands for one that is closed.
+        name: what warnings call it.
+        warn: takes a warning of one line, without ``warning:``; None for no warnings.
+        patience: seconds that `write` waits when the queue is full and the sink takes nothing; then lines are dropped until
+            half of the queue is free.
+        delay: seconds that text may be collected, to be written by the thread; 0 writes directly while the sink takes it.
+
+    Attributes:
+        when_gone: called once, in any thread, instead of a warning when the reader has closed its end of a pipe.
+    """
+
+    def __init__(
+        self,
+        stream: Stream | Callable[[], Stream | None] | None,
+        name: str,
+        warn: Callable[[str], None] | None = None,
+        patience: float = PATIENCE,
+        delay: float = 0.0,
+    ) -> None:
+        self._find = stream if callable(stream) else lambda: stream
+        self._name, self._warn, self._patience, self._delay = name, warn, patience, delay
+        self.when_gone: Callable[[], object] | None = None
+        # Reentrant: a signal handler may log in the middle of a write.
+        self._changed = threading.Condition(threading.RLock())
+        self._stream: Stream | None = None
+        self._descriptor: _Descriptor | None = None
+        self._queue: deque[bytes] = deque()
+        self._waiting = 0
+        self._progress = 0.0
+        self._thread: threading.Thread | None = None
+        self._hurry = self._closed = False
+        self._retry_at: float | None = None
+        self._blocked = False
+        self._failures = self._lost = 0
+
+    def write(self, text: str) -> None:
+        """Write whole lines."""
+        with self._changed:
+            if self._retry_at is not None and time.monotonic() < self._retry_at:
+                self._lost += text.count("\n")
+                return
+            if self._closed and self._waiting:
+                return
+            stream = self._find()
+            if stream is not self._stream:
+                self._adopt(stream)
+            if self._descriptor is None or self._closed:
+                self._write_to_stream(text)
+                return
+            data = self._descriptor.encode(text)
+            if not self._waiting and not self._delay:  # the common case
+                data = self._write_directly(data)
+            elif not self._has_room(len(data)):
+                self._lost += data.count(b"\n")
+                return
+            if data:
+                self._enqueue(data)
+
+    def _adopt(self, stream: Stream | None) -> None:
+        if self._descriptor is not None and not self._waiting:
+            self._descriptor.close()
+        self._stream = stream
+        self._descriptor = _descriptor_of(stream)
+
+    def _write_to_stream(self, text: str) -> None:
+        try:
+            if self._stream is None:
+                raise OSError(errno.EBADF, "it is closed")
+            self._stream.write(text)
+            self._stream.flush()
+        except Exception as error:
+            self._lost += text.count("\n")
+            self._fail(error)
+        else:
+            self._recover()
+
+    def _write_directly(self, data: bytes) -> bytes:
+        """Write what the sink takes now; the rest."""
+        assert self._descriptor is not None
+        try:
+            if self._stream is not None:
+                self._stream.flush()  # what others have printed comes first
+            while data:
+                written = self._descriptor.write(data)
+                data = data[written:]
+        except BlockingIOError:
+            return data
+        except Exception as error:
+            self._lost += data.count(b"\n")
+            self._fail(error)
+            return b""
+        if self._retry_at is not None or self._blocked:
+            self._recover()
+        return b""
+
+    # ---- the queue
+
+    def _has_room(self, size: int) -> bool:
+        """Wait for room as long as the sink makes progress; False when it makes none."""
+        if self._blocked and self._waiting > LIMIT // 2:
+            return False
+        while self._waiting and self._waiting + size > LIMIT:
+            left = self._progress + self._patience - time.monotonic()
+            if left <= 0:
+                self._blocked = True
+                self._fail(None)
+                return False
+            self._changed.wait(left)
+        return True
+
+    def _enqueue(self, data: bytes) -> None:
+        if not self._waiting:
+            self._progress = time.monotonic()
+        before = self._waiting
+        self._queue.append(data)
+        self._waiting += len(data)
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._drain, name=self._name, daemon=True)
+            self._thread.start()
+        elif not before or before < _PIECE <= self._waiting:
+            self._changed.notify_all()
+
+    def _drain(self) -> None:
+        """Write what waits until `close`; the body of the thread."""
+        while True:
+            with self._changed:
+                while not self._queue:
+                    if self._closed:
+                        return
+                    self._changed.wait()
+                due = time.monotonic() + self._delay
+                while self._waiting < _PIECE and not self._hurry and (left := due - time.monotonic()) > 0:
+                    self._changed.wait(left)
+                descriptor, piece = self._descriptor, self._next_piece()
+            written, error = 0, None
+            try:
+                if descriptor is None:
+                    raise OSError(errno.EBADF, "it is closed")
+                descriptor.wait()
+                written = descriptor.write(piece)
+            except BlockingIOError:
+                pass
+            except Exception as raised:
+                error = raised
+            with self._changed:
+                self._progressed(piece, written, error)
+
+    def _next_piece(self) -> bytes:
+        taken, size = [], 0
+        while self._queue and size < _PIECE:
+            taken.append(self._queue.popleft())
+            size += len(taken[-1])
+        return b"".join(taken)
+
+    def _progressed(self, piece: bytes, written: int, error: Exception | None) -> None:
+        if error is not None:
+            self._lost += piece.count(b"\n") + sum(data.count(b"\n") for data in self._queue)
+            self._queue.clear()
+            self._waiting = 0
+            self._fail(error)
+        else:
+            if written < len(piece):
+                self._queue.appendleft(piece[written:])
+            self._waiting -= written
+            if written:
+                self._progress = time.monotonic()
+                if self._retry_at is not None or (self._blocked and self._waiting <= LIMIT // 2):
+                    self._recover()
+        self._changed.notify_all()
+
+    # ---- trouble
+
+    def _fail(self, error: Exception | None) -> None:
+        """Take note of an error of the sink, or that it blocks (None)."""
+        if error is not None:
+            first, self._retry_at = self._retry_at is None, time.monotonic() + _RETRY
+            if not first:
+                return
+        if isinstance(error, BrokenPipeError) and self.when_gone is not None:
+            told, self.when_gone, self._warn = self.when_gone, None, None
+            told()
+            return
+        self._failures += 1
+        if _worth_telling(self._failures):
+            why = "the reader takes nothing" if error is None else _said(error)
+            self._report(f"cannot write to {self._name}: {why}; dropping lines until it works again")
+
+    def _recover(self) -> None:
+        """Take note that the sink has taken something."""
+        if self._retry_at is None and not self._blocked:
+            return
+        self._retry_at, self._blocked = None, False
+        if _worth_telling(self._failures) and self._lost:
+            self._report(f"{self._name} works again; {_lines(self._lost)} lost")
+            self._lost = 0
+
+    def _report(self, text: str) -> None:
+        if self._warn is not None:
+            with contextlib.suppress(Exception):
+                self._warn(text)
+
+    # ---- the end
+
+    def close(self, patience: float | None = CLOSING, limit: float | None = None) -> None:
+        """Write what waits, drop what the sink does not take, and report the lines that were lost.
+
+        The stream itself stays open; later text is dropped if it is stuck.
+
+        Args:
+            patience: seconds to wait without progress; None for no limit.
+            limit: seconds to wait in all; None for no limit.
+        """
+        with self._changed:
+            self._hurry = True
+            self._changed.notify_all()
+            self._wait_until_written(patience, limit)
+            self._closed = True
+            self._lost += sum(data.count(b"\n") for data in self._queue)
+            if self._waiting:
+                self._lost = max(self._lost, 1)  # the thread is stuck with a piece of it
+            self._queue.clear()
+            self._changed.notify_all()
+            if self._descriptor is not None and not self._waiting:
+                self._descriptor.close()
+            if self._lost:
+                self._report(f"{_lines(self._lost)} could not be written to {self._name}")
+                self._lost = 0
+
+    def _wait_until_written(self, patience: float | None, limit: float | None) -> None:
+        begun = time.monotonic()
+        while self._waiting:
+            now = time.monotonic()
+            if patience is not None and now >= max(self._progress, begun) + patience:
+                return
+            if limit is not None and now >= begun + limit:
+                return
+            self._changed.wait(0.1)
+
+
+class _Descriptor:
+    """A file descriptor that is written without waiting for a reader.
+
+    On Linux a terminal or a pipe is opened once more: whether an open file blocks, all processes that write to it share.
+    """
+
+    def __init__(self, number: int, encoding: str, errors: str) -> None:
+        self._encoding, self._errors = encoding, errors
+        self._number, self._own, self._piece = number, False, _PIECE
+        mode = os.fstat(number).st_mode
+        self._poll: select.poll | None = None
+        if stat.S_ISREG(mode):
+            return
+        with contextlib.suppress(OSError):
+            if sys.platform == "linux" and (stat.S_ISFIFO(mode) or os.isatty(number)):
+                flags = os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
+                self._number, self._own = os.open(f"/proc/self/fd/{number}", flags), True
+        self._poll = select.poll()
+        self._poll.register(self._number, select.POLLOUT)
+        if not self._own:
+            self._piece = _ATOMIC
+
+    def encode(self, text: str) -> bytes:
+        """The bytes of *text*; characters that the encoding lacks are escaped."""
+        try:
+            return text.encode(self._encoding, self._errors)
+        except UnicodeError:
+            return text.encode(self._encoding, "backslashreplace")
+
+    def write(self, data: bytes) -> int:
+        """Write what is taken now; the number of bytes.
+
+        Raises:
+            BlockingIOError: nothing is taken now.
+            OSError: the sink is full, gone or broken.
+        """
+        if self._poll is not None and not self._own and not self._poll.poll(0):
+            raise BlockingIOError
+        return os.write(self._number, data if len(data) <= self._piece else data[: self._piece])
+
+    def wait(self) -> None:
+        """Wait until something can be written."""
+        if self._poll is not None:
+            self._poll.poll()
+
+    def close(self) -> None:
+        """Close what was opened here; closing twice does no harm."""
+        if self._own:
+            self._own = False
+            os.close(self._number)
+
+
+def _descriptor_of(stream: Stream | None) -> _Descriptor | None:
+    """The descriptor of a stream of the process; None for one that somebody else has made, for instance a test."""
+    if os.name != "posix" or type(stream) is not io.TextIOWrapper:
+        return None
+    buffer = stream.buffer
+    if not isinstance(getattr(buffer, "raw", buffer), io.FileIO):  # python -u has no buffer
+        return None
+    try:
+        return _Descriptor(stream.fileno(), stream.encoding, stream.errors or "strict")
+    except (OSError, ValueError):
+        return None
+
+
+def _worth_telling(times: int) -> bool:
+    """Whether it is the first, 10th, 100th … time."""
+    return str(times).rstrip("0") == "1"
+
+
+def _said(error: Exception) -> str:
+    return str(getattr(error, "strerror", None) or error or type(error).__name__)
+
+
+def _lines(number: int) -> str:
+    return "1 line" if number == 1 else f"{number} lines"

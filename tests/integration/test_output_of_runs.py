@@ -1,0 +1,57 @@
+"""What becomes of a run whose output nobody takes: the agents go on."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+JACAROS = [sys.executable, "-m", "jacaros"]
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks Linux for its pipes")
+
+FLOOD = """
+!count(0).
+!work.
++!count(N) <- .print("line ", N, " of a text that fills the pipe soon"); !count(N + 1).
++!work <- .wait(300); .wait(300); .stopMAS(0, 7).
+"""
+
+THREE = """
+!go.
++!go <- .print("one"); .wait(10); .print("two"); .stopMAS.
+-!go <- .stopMAS(0, 3).
+"""
+
+
+def run(folder: Path, program: str, *arguments: str, **how: object) -> "subprocess.CompletedProcess[bytes]":
+    (folder / "agent.asl").write_text(program, encoding="utf-8")
+    command = [*JACAROS, "run", str(folder / "agent.asl"), *arguments]
+    return subprocess.run(command, stderr=subprocess.PIPE, timeout=60, check=False, **how)  # type: ignore[call-overload, no-any-return]
+
+
+def test_agents_go_on_when_nobody_reads_their_output(tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    ended = run(tmp_path, FLOOD, stdout=writer)
+    os.close(reader)
+    os.close(writer)
+    assert ended.returncode == 7
+    assert b"lines could not be written to standard output" in ended.stderr
+
+
+@pytest.mark.parametrize("target", ["/dev/full", "&-"])
+def test_output_that_cannot_be_written_fails_no_step(tmp_path: Path, target: str) -> None:
+    (tmp_path / "agent.asl").write_text(THREE, encoding="utf-8")
+    command = f'"{sys.executable}" -m jacaros run "{tmp_path}/agent.asl" --clock fast >{target}'
+    ended = subprocess.run(command, shell=True, stderr=subprocess.PIPE, timeout=60, check=False)
+    assert ended.returncode == 0
+    assert ended.stderr.count(b"warning: cannot write to standard output: ") == 1
+
+
+def test_a_run_on_the_virtual_clock_ends_with_its_reader(tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    ended = run(tmp_path, FLOOD.replace("!work.", "", 1), "--clock", "fast", stdout=writer)
+    os.close(writer)
+    assert (ended.returncode, ended.stderr) == (141, b"")
