@@ -38,7 +38,11 @@ SMOKE = ("tests/unit/compiler", "tests/unit/env", "tests/unit/extension")
 
 REAL_GRAPHS = {
     "integration": ("tests/integration",),
-    "contracts": ("tests/contracts", "tests/packaging/test_ament.py"),
+    "contracts": (
+        "tests/contracts",
+        "tests/packaging/test_ament.py",
+        "tests/unit/ros/test_ros_ros1_types.py",
+    ),
 }
 """Suites that run on every real graph, those that take longest first."""
 
@@ -133,7 +137,7 @@ def parts() -> list[Part]:
             python, kind = str(ROOT / f".venv-{name}" / "bin" / "python"), name.partition("-")[0]
             # Discovery in a real graph loses a first message now and then.
             command = (python, *PYTEST[1:], *folders, "-m", kind, f"--require-{kind}", *ONCE_MORE)
-            found.append(Part(f"{name}-{suite}", command, "waiting", f"{name}-install"))
+            found.append(Part(f"{name}-{suite}", command, "waiting", f"{name}-install", budget=90))
     return found
 
 

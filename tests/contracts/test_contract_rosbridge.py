@@ -1,8 +1,11 @@
 """What is particular to the rosbridge backend: the link comes and goes, and the server says little."""
 
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +19,7 @@ from jacaros.ros.errors import (
     CapabilityMissing,
     ParameterUnknown,
     ServerLost,
+    ServiceUnavailable,
     UnknownInterface,
 )
 from jacaros.ros.open import open_backend
@@ -442,6 +446,35 @@ def test_a_server_without_rosapi_is_told_and_taken_for_ros2(robot_of_ros2: Behin
     client.advertise("/a", STRING)
     client.subscribe("/a", STRING)
     robot_of_ros2.wait_until(lambda: _arrives(client), "topics work all the same")
+
+
+def test_rosapi_that_ends_at_a_type_is_reported_with_the_type(robot_of_ros2: BehindBridge) -> None:
+    client = robot_of_ros2.peer("client")
+    robot_of_ros2.server.do("rosapi_ends_at", "odd_msgs/msg/Thing")
+    with pytest.raises(UnknownInterface):
+        client.fields("odd_msgs/msg/Other")
+    with pytest.raises(UnknownInterface):
+        client.fields("odd_msgs/msg/Thing")
+    reason = "rosapi went away when it was asked for the type odd_msgs/msg/Thing"
+    robot_of_ros2.wait_until(lambda: any(reason in line for line in client.log()), "it is reported")
+    assert not any("odd_msgs/msg/Other" in line for line in client.log())
+    with pytest.raises(ServiceUnavailable, match=reason):
+        client.contents()
+    with pytest.raises(UnknownInterface):
+        client.fields("odd_msgs/msg/Third")
+    assert sum(reason in line for line in client.log()) == 1
+    robot_of_ros2.server.do("rosapi", True)
+    assert client.contents()["nodes"]
+
+
+def test_the_list_says_why_types_of_actions_are_unknown(robot_of_ros2: BehindBridge) -> None:
+    robot_of_ros2.peer("robot").serve_action("/count")
+    robot_of_ros2.server.do("rosapi_without", "action_type")
+    jacaros = Path(sys.executable).parent / "jacaros"
+    options = ("--ros", "rosbridge", "--bridge", robot_of_ros2.server.url, "--timeout", "30")
+    done = subprocess.run((jacaros, "ros", "list", *options), capture_output=True, text=True, check=True)
+    assert "action /count (unknown)" in done.stdout.splitlines()
+    assert "the types of some actions are (unknown): rosapi on the robot cannot report them" in done.stderr
 
 
 def _arrives(client: Any) -> bool:

@@ -30,6 +30,7 @@ class RosApi:
     Attributes:
         master: the parameters of ROS 1, by absolute name.
         running: whether there is such a node.
+        ends_at: a type at which it ends when it is asked for it.
     """
 
     def __init__(self, node: Node, ros1: bool, under_way: Sequence[str] = ()) -> None:
@@ -39,6 +40,7 @@ class RosApi:
         self._ros1 = ros1
         self.master: dict[str, Any] = {}
         self.running = True
+        self.ends_at = ""
         self._services: dict[str, Callable[..., Any]] = {
             name: getattr(self, "_services_list" if name == "services" else f"_{name}")
             for name in (
@@ -62,9 +64,15 @@ class RosApi:
         """Absolute names of the services."""
         return [f"/rosapi/{name}" for name in self._services]
 
+    def remove(self, name: str) -> None:
+        """Have no service *name*, as older versions."""
+        del self._services[name]
+
     async def call(self, service: str, arguments: dict[str, Any]) -> dict[str, Any]:
         """Answer one call; raises `CallFailed` with what rosbridge would say."""
         answer = self._services.get(service.removeprefix("/rosapi/"))
+        if self.ends_at and arguments.get("type") == self.ends_at:
+            self.running = False
         if answer is None or not self.running:
             raise CallFailed(f"Service {service} does not exist")
         try:

@@ -171,6 +171,10 @@ async def obey(bridge: Bridge, command: dict[str, Any], peers: dict[str, Peer]) 
                 connection.say(*command["args"])
         case "rosapi":
             bridge.rosapi.running = command["args"][0]
+        case "rosapi_without":
+            bridge.rosapi.remove(*command["args"])
+        case "rosapi_ends_at":
+            bridge.rosapi.ends_at = command["args"][0]
         case "node":
             made = Peer("memory", WallClock(), *command["args"], graph=bridge.graph, **command["kwargs"])
             peers[command["peer"]] = made

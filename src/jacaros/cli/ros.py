@@ -89,6 +89,8 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
         else:
             for line in listing.as_lines(joined.contents, counted):
                 click.echo(line)
+        for note in listing.notes(joined.contents):
+            click.echo(note, err=True)
 
     _in_graph(look, **graph)
 

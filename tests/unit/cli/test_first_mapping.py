@@ -10,6 +10,7 @@ from jacaros.artifacts.mapping.interfaces import StoredInterfaces
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
 from jacaros.cli.graph.usual import robots
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.ros.qos import QoS
 
 DEFINITIONS = {
     "msg/Part": "uint8 IDLE=0\nuint8 BUSY=1\nstring name\nuint8 state\nfloat64[] weights\ngeometry_msgs/Point position\n",
@@ -81,6 +82,7 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
         ("std_msgs/msg/Float32MultiArray", ["fields: [{path: data, round: 3}]"]),
         ("std_msgs/msg/Float32", ["{path: data, round: 3}"]),
         ("std_msgs/msg/UInt64", ["- data\n"]),
+        ("std_msgs/msg/String", ["signals:\n  t:  # t(Data)"]),
         ("std_msgs/msg/Empty", ["signals:\n", "# t, for each message"]),
         ("builtin_interfaces/msg/Time", ["# t(Seconds): seconds", "{path: ., round: 2, name: seconds}"]),
         ("geometry_msgs/msg/WrenchStamped", ["t(ForceX, ForceY, ForceZ, TorqueX, TorqueY, TorqueZ)"]),
@@ -124,6 +126,12 @@ def test_properties_show_what_says_most_in_few_digits(
     text = shown(types, type_name)
     for part in parts:
         assert part in text
+
+
+def test_a_latched_text_is_a_property(types: StoredInterfaces) -> None:
+    latched = Endpoint("/n", QoS(durability="transient_local"))
+    entry = property_of(types, "t", "t", TopicInfo("/t", ("std_msgs/msg/String",), (latched,)))
+    assert "properties:\n" in checked(types, entry)
 
 
 def test_lists_are_parameters_and_frames_are_of_what_has_a_place(types: StoredInterfaces) -> None:

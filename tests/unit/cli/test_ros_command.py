@@ -162,6 +162,7 @@ def test_robots_have_an_artifact_each(capsys: pytest.CaptureFixture[str]) -> Non
 def test_one_robot_in_a_namespace_needs_no_list_of_artifacts(capsys: pytest.CaptureFixture[str]) -> None:
     text = told(capsys, "map", "odom", "scan", "--namespace", "robot_1", "--world", "two_robots")
     assert "\nnamespace: robot_1 " in text
+    assert '# connected("/robot_1/odom") and so on' in text
     assert "    topic: scan\n" in text
     assert "artifacts:" not in text
 

@@ -60,9 +60,13 @@ def test_times_look_as_on_ros2() -> None:
     assert to_seconds(factory.make("builtin_interfaces/msg/Duration", {"sec": -1, "nanosec": 0})) == -1.0
 
 
-def test_a_missing_package_names_the_cure() -> None:
-    with pytest.raises(UnknownInterface, match="apt-get install python3-no-such-msgs"):
+def test_a_missing_package_is_named_and_debians_only_where_debian_has_it() -> None:
+    with pytest.raises(UnknownInterface, match="; install no_such_msgs, or put its definition into a folder"):
         GenpySchema().new("no_such_msgs/msg/Thing")
+    with pytest.raises(
+        UnknownInterface, match=r"install nav_msgs \(on Debian: apt-get install python3-nav-msgs\), or"
+    ):
+        GenpySchema().new("nav_msgs/msg/NoSuchThing")
 
 
 def test_octets_are_bytes() -> None:

@@ -234,7 +234,8 @@ def _namespace(artifact: _Artifact) -> Iterator[str]:
 
 def _connected(artifact: _Artifact) -> Iterator[str]:
     if any(entry.section == "properties" for entry in artifact.entries):
-        comment = 'connected("/odom") and so on, while somebody publishes it'
+        odometry = f"/{artifact.namespace}/odom" if artifact.namespace else "/odom"
+        comment = f'connected("{odometry}") and so on, while somebody publishes it'
         yield _with_comment("connected: true", comment)
 
 

@@ -83,5 +83,14 @@ def show_tables(contents: GraphContents, rates: dict[str, float]) -> None:
             console.print()
 
 
+def notes(contents: GraphContents) -> Iterator[str]:
+    """Explain what is missing in the list."""
+    if not all(contents.actions.values()):
+        yield (
+            f"note: the types of some actions are {UNKNOWN}: rosapi on the robot cannot report them "
+            "(it has no service /rosapi/action_type)"
+        )
+
+
 def _types(info: TopicInfo) -> str:
     return ",".join(info.types) or UNKNOWN

@@ -24,6 +24,9 @@ _BIG = (
 """Nobody believes a picture: agents get a reference, for operations and internal actions in Python."""
 
 
+_WORDS = "std_msgs/msg/String"
+
+
 @dataclass(frozen=True, slots=True)
 class Entry:
     """A property, signal or operation of a mapping file.
@@ -46,9 +49,10 @@ def property_of(types: Interfaces, name: str, topic: str, info: TopicInfo) -> En
     type_name = info.types[0]
     known = KNOWN.get(type_name)
     section, comment, body = known(name) if known is not None else _property(types, name, type_name)
-    return Entry(
-        section, name, comment, (f"topic: {topic}", f"type: {type_name}", *body, *_kept(info, type_name))
-    )
+    kept = _kept(info, type_name)
+    if type_name == _WORDS and not kept:
+        section = "signals"  # two equal words in a row are two events, and one belief
+    return Entry(section, name, comment, (f"topic: {topic}", f"type: {type_name}", *body, *kept))
 
 
 def _property(types: Interfaces, name: str, type_name: str) -> Body:

@@ -20,6 +20,21 @@ ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 ACTION_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
 """Ends of the names of the messages that an action is made of, longer ones first."""
 
+_ON_DEBIAN = (
+    *(
+        "actionlib_msgs",
+        "diagnostic_msgs",
+        "geometry_msgs",
+        "map_msgs",
+        "move_base_msgs",
+        "nav_msgs",
+        "pcl_msgs",
+    ),
+    *("rosgraph_msgs", "sensor_msgs", "shape_msgs", "std_msgs", "stereo_msgs", "tf2_msgs", "trajectory_msgs"),
+    "visualization_msgs",
+)
+"""Packages of messages that Debian has, as ``python3-NAME``."""
+
 _TIME_FIELDS = {
     TIME: {"sec": FieldType("uint32"), "nanosec": FieldType("uint32")},
     DURATION: {"sec": FieldType("int32"), "nanosec": FieldType("int32")},
@@ -109,9 +124,11 @@ class GenpySchema:
             return self.action_class(action, part)
         found = _imported(package, kind, name) or self._generated_message(package, name)
         if found is None:
+            cure = f"install {package}"
+            if package in _ON_DEBIAN:
+                cure += f" (on Debian: apt-get install python3-{package.replace('_', '-')})"
             raise UnknownInterface(
-                f"message type {type_name} is not installed for ROS 1; on Debian: "
-                f"apt-get install python3-{package.replace('_', '-')}; or put its definition into a folder and "
+                f"message type {type_name} is not installed for ROS 1; {cure}, or put its definition into a folder and "
                 f"name that folder in interface_paths (in a mapping file: interfaces): {type_name}.msg"
             )
         return found

@@ -32,7 +32,7 @@ from jacaros.ros.backend import (
 )
 from jacaros.ros.backends.rosbridge_goals import BridgeActionClient, BridgeActionServer
 from jacaros.ros.backends.rosbridge_graph import look
-from jacaros.ros.backends.rosbridge_greeting import greet
+from jacaros.ros.backends.rosbridge_greeting import PATIENCE, greet
 from jacaros.ros.backends.rosbridge_link import Link, checked_url
 from jacaros.ros.backends.rosbridge_members import Members
 from jacaros.ros.backends.rosbridge_messages import Translator
@@ -43,7 +43,7 @@ from jacaros.ros.backends.rosbridge_services import BridgeClient, BridgeService
 from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.backends.rosbridge_types import BridgeSchema, written_on_ros1
 from jacaros.ros.calling import settle
-from jacaros.ros.errors import CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
+from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
@@ -95,12 +95,16 @@ class RosbridgeBackend(Node):
         self._news = ParameterNews(self.subscription, read)
         self.attached = False
         self.packs = False
+        self._has_rosapi = False
         # Weakly: the members keep them, until they are closed.
         self._services: WeakValueDictionary[str, BridgeService] = WeakValueDictionary()
         self._action_servers: WeakValueDictionary[str, BridgeActionServer] = WeakValueDictionary()
         self._greeting: asyncio.Task[None] | None = None
         self._first_look: asyncio.Future[None] | None = None
         self._waiting: Waiting | None = None
+        self._ended_at = ""
+        """The type at which rosapi went away."""
+        self._checks: set[asyncio.Task[None]] = set()
         self._lost_topics: set[str] = set()
         self._told: set[str] = set()
 
@@ -133,6 +137,8 @@ class RosbridgeBackend(Node):
         await self.lifetime.leave()
         if self._greeting is not None:
             self._greeting.cancel()
+        for check in self._checks:
+            check.cancel()
         self.attached = False
         self.members.close()
         self.requests.fail_all()
@@ -254,7 +260,10 @@ class RosbridgeBackend(Node):
             CallTimedOut, CallFailed: as `Client.call`.
         """
         self.require_connection(f"/rosapi/{service}")
-        return await self._rosapi(service, arguments, timeout)
+        try:
+            return await self._rosapi(service, arguments, timeout)
+        except (ServiceUnavailable, CallTimedOut) as problem:
+            raise type(problem)(f"{problem}{self._loss_of_rosapi()}") from None
 
     async def _rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None) -> Any:
         answer: asyncio.Future[Any] = self.loop.create_future()
@@ -292,6 +301,7 @@ class RosbridgeBackend(Node):
     def _begin_greeting(self) -> None:
         if self._greeting is not None:
             self._greeting.cancel()
+        self._ended_at = ""
         self._lost_topics.clear()
         self._told.clear()
         self._greeting = self.loop.create_task(self._greet())
@@ -307,6 +317,7 @@ class RosbridgeBackend(Node):
                 "assumed. Its launch file starts both"
             )
         self.translator.ros_version, self.packs = found.ros_version, found.packs
+        self._has_rosapi = found.told
         self.attached = True
         self.members.join()
         if self._waiting is not None:
@@ -380,7 +391,38 @@ class RosbridgeBackend(Node):
         post(self.loop, self.log, text)
 
     def _ask_for_type(self, service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
-        return self.requests.call_blocking(service, arguments, FETCHING)
+        answer = None
+        try:
+            answer = self.requests.call_blocking(service, arguments, FETCHING)
+        finally:
+            if answer is None:
+                post(self.loop, self._check_rosapi, str(arguments["type"]))
+        return answer
+
+    def _check_rosapi(self, asked: str) -> None:
+        """Find out whether rosapi still runs: genuine ones end at some types that they are asked for."""
+        check = self.loop.create_task(self._look_for_rosapi(asked))
+        self._checks.add(check)
+        check.add_done_callback(self._checks.discard)
+
+    async def _look_for_rosapi(self, asked: str) -> None:
+        try:
+            await self._rosapi("topics", {}, PATIENCE)
+            self._ended_at = ""
+        except (ServiceUnavailable, CallTimedOut) as problem:
+            if self._has_rosapi and not self._ended_at:
+                self._ended_at = asked
+                self.log(f"{problem}{self._loss_of_rosapi()}")
+        except CallFailed:
+            pass  # the link is lost, which is reported
+
+    def _loss_of_rosapi(self) -> str:
+        if not self._ended_at:
+            return ""
+        return (
+            f": rosapi went away when it was asked for the type {self._ended_at}. Start rosapi again on the robot, and "
+            "name a folder with the definition of this type (in a mapping file: interfaces)"
+        )
 
     def _cannot_ask(self) -> str | None:
         if self.attached:
