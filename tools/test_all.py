@@ -120,6 +120,7 @@ def parts() -> list[Part]:
         Part(
             "examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml"), budget=5
         ),
+        Part("fuzz", (PYTHON, "tools/fuzz.py", "--minutes", "1"), budget=620, repeats=True),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2"), budget=100),
         Part(
             "browser", (*PYTEST, "tests/unit/inspector", "-m", "browser"), needs="chromium", skips_fail=True

@@ -5,12 +5,14 @@ World files and mapping files are read with it.
 
 import difflib
 import math
+import warnings
 from collections.abc import Iterator
 from io import StringIO
-from typing import Any
+from typing import Any, Final
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.constructor import ConstructorError, RoundTripConstructor, SafeConstructor
 from ruamel.yaml.error import YAMLError
 from ruamel.yaml.nodes import MappingNode, SequenceNode
 
@@ -18,7 +20,7 @@ from jacaros.errors import JacarosError
 from jacaros.excerpts import MOST, escaped, marked, printable
 from jacaros.yaml_syntax import Problem, syntax_problem
 
-__all__ = ["Node", "Problem", "YamlFileError", "read_document", "shown"]
+__all__ = ["Node", "Problem", "YamlFileError", "plain_values", "read_document", "shown"]
 
 LARGEST = 1_000_000
 """Values that a document may have, those that aliases repeat included."""
@@ -104,7 +106,8 @@ class Node:
         return Node(self.value[key], line + 1, column + 1, self.problems, f"'{key}'")
 
     def _unknown_key(self, key: object, known: tuple[str, ...]) -> None:
-        line, column = self.value.lc.key(key)
+        known_at = (self.value.lc.data or {}).get(key)  # None: a YAML merge (<<) brought it in
+        line, column = (self.line - 1, self.column - 1) if known_at is None else known_at[:2]
         near = difflib.get_close_matches(str(key), known, 1)
         cure = f"did you mean '{near[0]}'?" if near else f"known keys: {', '.join(known)}"
         self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", cure))
@@ -196,23 +199,65 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
         what: what the document is called in messages, such as ``a world``.
     """
     reader = YAML(typ="rt")
+    reader.Constructor = _PlacingConstructor
     reader.allow_duplicate_keys = True  # they are told below, all of them, and harm nobody till then
-    document = None
+    document, composed = _loaded(reader, text, problems)
+    if composed is not None:
+        problems += _twice(composed, set())
+    return Node(document, 1, 1, problems, what)
+
+
+def plain_values(text: str) -> tuple[Any, Problem | None]:
+    """Return what YAML of plain values means (numbers, texts, lists, mappings), or the first mistake in it."""
+    problems: list[Problem] = []
+    reader = YAML(typ="safe", pure=True)
+    reader.Constructor = _PlacingSafeConstructor
+    document, _ = _loaded(reader, text, problems)
+    return document, problems[0] if problems else None
+
+
+def _loaded(reader: YAML, text: str, problems: list[Problem]) -> tuple[Any, Any]:
+    """Return the document and its nodes; None for both after a mistake, which is added to *problems*."""
     try:
-        composed = reader.compose(StringIO(text))
-        unusable = _unusable(composed)
-        if unusable is None:
-            document = reader.load(StringIO(text))
-            problems += _twice(composed, set())
-        else:
-            problems.append(unusable)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # YAML 1.2 allows an anchor to be given again
+            composed = reader.compose(StringIO(text))
+            unusable = _unusable(composed)
+            if unusable is None:
+                return reader.load(StringIO(text)), composed
+        problems.append(unusable)
     except YAMLError as error:
         problems.append(syntax_problem(error, text))
     except RecursionError:
-        problems.append(
-            Problem(1, 1, "its values are nested too deeply", "mind brackets that are not closed")
-        )
-    return Node(document, 1, 1, problems, what)
+        problems.append(_TOO_DEEP)
+    return None, None
+
+
+_TOO_DEEP: Final = Problem(1, 1, "its values are nested too deeply", "mind brackets that are not closed")
+_DEEPEST: Final = 100
+"""Values within each other; those who use a document go down into it by recursion."""
+
+
+class _Placing:
+    """Makes values of nodes, and says where one is that cannot be made, such as the date 2001-99-99."""
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        """Return the value of a node; called by the YAML reader."""
+        try:
+            return super().construct_object(node, deep)  # type: ignore[misc]
+        except (ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
+            kind = str(node.tag).rpartition(":")[2]
+            raise ConstructorError(
+                None, None, f"not a valid {kind}: {str(error).partition(';')[0]}", node.start_mark
+            ) from error
+
+
+class _PlacingConstructor(_Placing, RoundTripConstructor):
+    """For documents whose values know their places."""
+
+
+class _PlacingSafeConstructor(_Placing, SafeConstructor):
+    """For plain values."""
 
 
 def _parts(node: Any) -> Iterator[Any]:
@@ -226,6 +271,7 @@ def _parts(node: Any) -> Iterator[Any]:
 def _unusable(document: Any) -> Problem | None:
     """An alias that means what it is within, or so many aliases of aliases that the document has no end."""
     sizes: dict[int, int] = {}
+    depths: dict[int, int] = {}
     within: set[int] = set()
 
     def measure(node: Any) -> Problem | None:
@@ -235,14 +281,16 @@ def _unusable(document: Any) -> Problem | None:
         if id(node) in within:
             return Problem(line, column, f"&{node.anchor} contains itself", "leave the alias out")
         within.add(id(node))
-        for part in _parts(node):
+        parts = list(_parts(node))
+        for part in parts:
             if (wrong := measure(part)) is not None:
                 return wrong
         within.discard(id(node))
-        sizes[id(node)] = size = 1 + sum(sizes[id(part)] for part in _parts(node))
+        sizes[id(node)] = size = 1 + sum(sizes[id(part)] for part in parts)
+        depths[id(node)] = depth = 1 + max((depths[id(part)] for part in parts), default=0)
         if size > LARGEST:
             return Problem(line, column, f"it has more than {LARGEST} values", "use fewer aliases")
-        return None
+        return _TOO_DEEP if depth > _DEEPEST else None
 
     return None if document is None else measure(document)
 

@@ -25,6 +25,9 @@ _LEVELS: Final = {
 }
 """The binary operators, loosest first.  Unary minus binds tighter than all of them."""
 
+MAX_CHAIN: Final = 250
+"""Operators in a row: each is one level more for all that go down into the term."""
+
 _NUMERIC: Final = (nodes.Number, nodes.Variable, nodes.Arithmetic, nodes.FunctionCall)
 
 
@@ -44,6 +47,7 @@ class TermParser(LiteralParser):
     def expression(self, loosest: int = _OR, formula: bool = False) -> nodes.Term:
         """An expression whose operators bind at least as tightly as *loosest*."""
         left = self.operand(formula)
+        chained = 0
         while True:
             operator = self.token
             level = _LEVELS.get(operator.kind)
@@ -52,6 +56,13 @@ class TermParser(LiteralParser):
             if level >= _SUM:
                 if level == _SUM and not self._continues_sum(left):
                     return left
+                chained += 1
+                if chained > MAX_CHAIN:
+                    self.fail(
+                        "nested-too-deeply",
+                        "this sum has too many parts",
+                        hint=f"at most {MAX_CHAIN} operators follow each other without brackets",
+                    )
                 left = self._arithmetic(left, level)
             elif level == _RELATION:
                 left = self._relation(left)
@@ -138,7 +149,12 @@ class TermParser(LiteralParser):
     def _arithmetic(self, left: nodes.Term, level: int) -> nodes.Term:
         operator = self.advance()
         # All are left associative but **.
-        right = self.expression(level if level == _POWER else level + 1)
+        if level == _POWER:
+            self.enter()
+            right = self.expression(level)
+            self.leave()
+        else:
+            right = self.expression(level + 1)
         if self._require_number(operator, left):
             self._require_number(operator, right)
         return nodes.Arithmetic(operator.kind, (left, right), span=_across(left, right))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.errors import UsageError
+from jacaros.text_files import file_text
 
 
 def read_parameters(
@@ -40,11 +41,11 @@ def _written(each: str) -> tuple[str, Any]:
 
 def _content(file: Path) -> Any:
     try:
-        text = file.read_text(encoding="utf-8")
-    except OSError as error:
+        text = file_text(file)
+    except FileNotFoundError as error:
         raise UsageError(f"--params-file {file}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"--params-file {file}: it is no text in UTF-8") from None
+    except (OSError, UnicodeError) as error:
+        raise UsageError(f"--params-file {file}: {error}") from None
     content = _yaml(text, f"--params-file {file}")
     if content is not None and not isinstance(content, Mapping):
         raise UsageError(f"--params-file {file}: write NODE: {{ros__parameters: {{NAME: VALUE}}}}")
@@ -88,10 +89,9 @@ def _suits(pattern: list[str], node: list[str]) -> bool:
 
 def _yaml(text: str, where: str) -> Any:
     # Here: only for those who have parameters.
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
+    from jacaros.yaml_nodes import plain_values, shown
 
-    try:
-        return YAML(typ="safe", pure=True).load(text)
-    except YAMLError as error:
-        raise UsageError(f"{where} is no YAML: {error}") from None
+    value, wrong = plain_values(text)
+    if wrong is not None:
+        raise UsageError(shown(where, text.splitlines(), wrong))
+    return value

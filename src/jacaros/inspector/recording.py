@@ -6,7 +6,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from jacaros.errors import JacarosError
+from jacaros.excerpts import printable
 from jacaros.sim import GroundTruth, Sample
+from jacaros.text_files import file_text
+
+LARGEST_RECORDING = 2**32
+"""Bytes of a recording that is read."""
+
+
+_COLUMNS = 6
+_LARGEST = 1e15
 
 
 class Frame(NamedTuple):
@@ -75,16 +84,22 @@ class Recording:
             JacarosError: it is no recording.
         """
         recording, described = cls(), False
-        lines = Path(path).read_text(encoding="utf-8").splitlines()
+        try:
+            lines = file_text(path, LARGEST_RECORDING).split("\n")
+        except UnicodeError as error:
+            raise JacarosError(f"{path} is not a recording: {error}") from None
+        if lines[-1] == "":
+            lines.pop()
         for number, line in enumerate(lines, 1):
             try:
                 record = json.loads(line)
                 recording._take(record)
                 described = described or record["kind"] == "world"
-            except (ValueError, KeyError, TypeError) as error:
+            except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
                 if number == len(lines) and isinstance(error, json.JSONDecodeError):
                     break
-                raise JacarosError(f"{path}:{number}: this is no line of a recording ({error})") from None
+                told = printable(f"{path}:{number}: this is no line of a recording ({error})")
+                raise JacarosError(told) from None
         if not described:
             raise JacarosError(f"{path} is no recording: no line of it describes a world")
         return recording
@@ -92,13 +107,13 @@ class Recording:
     def _take(self, record: dict[str, Any]) -> None:
         kind = record["kind"]
         if kind == "world":
-            self.world = record["world"]
+            self.world = _world(record["world"])
         elif kind == "frame":
-            self.frames.append(Frame(record["t"], tuple(tuple(row) for row in record["robots"])))
+            self.frames.append(Frame(_number(record["t"]), tuple(map(_row, record["robots"]))))
         elif kind == "text":
-            self.texts.append((record["t"], record["agent"], record["text"]))
+            self.texts.append((_number(record["t"]), _text(record["agent"]), _text(record["text"])))
         elif kind == "event":
-            self.events.append((record["t"], record["event"], record["data"]))
+            self.events.append((_number(record["t"]), _text(record["event"]), _mapping(record["data"])))
 
     @classmethod
     def of_ground_truth(cls, truth: GroundTruth) -> "Recording":
@@ -116,6 +131,43 @@ class Recording:
                 row.append(_row_of(path[places[index]]))
             recording.frames.append(Frame(t, tuple(row)))
         return recording
+
+
+def _number(value: Any) -> float:
+    """Return a number of a recording, which pages and pictures can scale."""
+    if not isinstance(value, int | float) or not -_LARGEST < value < _LARGEST:
+        raise TypeError(f"a number is expected, not {str(value)[:40]}")
+    return value
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"a text is expected, not {str(value)[:40]}")
+    return value
+
+
+def _mapping(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise TypeError(f"names with values are expected, not {str(value)[:40]}")
+    return value
+
+
+def _row(values: Any) -> tuple[Any, ...]:
+    row = tuple(map(_number, values))
+    if len(row) != _COLUMNS:
+        raise TypeError(f"a robot has {_COLUMNS} numbers, not {len(row)}")
+    return row
+
+
+def _world(drawing: Any) -> dict[str, Any]:
+    """Return the drawing of a world, which viewers can draw."""
+    world = _mapping(drawing)
+    for robot in world.get("robots", []):
+        _text(_mapping(robot)["name"])
+        _number(robot.get("radius", 0.0))
+    for number in world.get("bounds", []):
+        _number(number)
+    return world
 
 
 def _row_of(sample: Sample) -> tuple[Any, ...]:

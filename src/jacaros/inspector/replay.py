@@ -8,6 +8,7 @@ import base64
 import gzip
 import html
 import json
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -31,8 +32,9 @@ def replay_html(recording: Recording, title: str | None = None) -> str:
     shown = title or str(recording.world.get("name") or "A run")
     packed = gzip.compress(json.dumps(payload(recording), separators=(",", ":")).encode(), 9, mtime=0)
     page = TEMPLATE.read_text(encoding="utf-8")
-    page = page.replace("{{TITLE}}", html.escape(shown))
-    return page.replace("{{RECORDING}}", base64.b64encode(packed).decode("ascii"))
+    parts = {"TITLE": html.escape(shown), "RECORDING": base64.b64encode(packed).decode("ascii")}
+    # In one pass: a world may have a name such as {{RECORDING}}.
+    return re.sub(r"{{(TITLE|RECORDING)}}", lambda found: parts[found[1]], page)
 
 
 def payload(recording: Recording) -> dict[str, Any]:

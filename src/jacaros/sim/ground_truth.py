@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from jacaros.errors import JacarosError
 from jacaros.sim.description import Pose
+from jacaros.text_files import file_text
 
 Record = dict[str, Any]
 """One line of a ground truth file: ``kind`` is ``world``, ``sample`` or ``event``."""
@@ -157,12 +158,16 @@ class GroundTruth:
         Raises:
             JacarosError: when the file does not begin with a ``world`` record.
         """
-        lines = Path(path).read_text(encoding="utf-8").splitlines()
-        records = [json.loads(line) for line in lines[:-1]]
-        with contextlib.suppress(json.JSONDecodeError):
-            records.extend(json.loads(line) for line in lines[-1:])
+        try:
+            return cls._of_records(_records(path))
+        except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
+            told = f"{path} is no ground truth file: {type(error).__name__}: {str(error)[:200]}"
+            raise JacarosError(told) from None
+
+    @classmethod
+    def _of_records(cls, records: list[Record]) -> "GroundTruth":
         if not records or records[0].get("kind") != "world":
-            raise JacarosError(f"{path} is no ground truth file: its first line describes no world")
+            raise ValueError("its first line describes no world")
         truth = cls([robot["name"] for robot in records[0]["world"]["robots"]], records[0]["world"])
         for record in records[1:]:
             truth._take(record)
@@ -174,6 +179,14 @@ class GroundTruth:
         elif record["kind"] == "event":
             record = {**record, "kind": record["event"]}
             self.record_event(Event(*(record[name] for name in Event._fields)))
+
+
+def _records(path: str | Path) -> list[Record]:
+    lines = file_text(path, 2**32).splitlines()
+    records = [json.loads(line) for line in lines[:-1]]
+    with contextlib.suppress(json.JSONDecodeError):
+        records.extend(json.loads(line) for line in lines[-1:])
+    return records
 
 
 def header(world: Record, seed: int, epoch: float) -> Record:

@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-import fuzz_parser  # noqa: E402
+import fuzz  # noqa: E402
 from program_grammar import Grammar  # noqa: E402
 
 from jacaros.asl.formatter import format_plan, format_term  # noqa: E402
@@ -25,14 +25,14 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("number", range(1, 181))
 def test_a_text_is_a_program_or_there_are_diagnostics(number: int) -> None:
-    how, text = fuzz_parser.text_of(2026, number)
-    outcome = fuzz_parser.examine(text)
+    how, text = fuzz.text_of(2026, number)
+    outcome = fuzz.examine(text)
     assert outcome == "program" or how != "made"
 
 
 def test_a_text_belongs_to_its_seed_and_number() -> None:
-    assert fuzz_parser.text_of(3, 14) == fuzz_parser.text_of(3, 14)
-    assert fuzz_parser.text_of(3, 14) != fuzz_parser.text_of(3, 15)
+    assert fuzz.text_of(3, 14) == fuzz.text_of(3, 14)
+    assert fuzz.text_of(3, 14) != fuzz.text_of(3, 15)
 
 
 def numbered(program: Program) -> str:

@@ -261,3 +261,10 @@ Corner(1,2).
         (7, "unclosed-string"),
         (8, "unexpected-token"),
     ]
+
+
+def test_a_sum_has_a_limit_that_a_run_can_bear():
+    (wrong,) = errors(f"p({'+'.join(['1'] * 252)}). q.")
+    assert wrong.code == "nested-too-deeply"
+    (wrong,) = errors(f"p({'**'.join(['1'] * 200)}). q.")
+    assert wrong.code == "nested-too-deeply"

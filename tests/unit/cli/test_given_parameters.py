@@ -70,17 +70,23 @@ def test_mappings_are_given_by_their_parts() -> None:
     ("written", "files", "told"),
     [
         (("speed=1",), (), "is written NAME:=VALUE"),
-        (("x:={",), (), "--param x is no YAML"),
+        (("x:={",), (), "--param x:1:2: this bracket is never closed"),
         (("x:=",), (), "the parameter x has no value"),
+        (("x:=&a [*a]",), (), "&a contains itself"),
+        (("x:=" + "[" * 200 + "]" * 200,), (), "nested too deeply"),
+        ((), ("deep.yaml",), "nested too deeply"),
+        ((), ("/dev/zero",), "--params-file /dev/zero: it is not a regular file"),
+        (("x:=2001-99-99",), (), "not a valid timestamp"),
         ((), ("gone.yaml",), "gone.yaml: No such file"),
         ((), ("list.yaml",), "write NODE: {ros__parameters"),
-        ((), ("latin.yaml",), "no text in UTF-8"),
+        ((), ("latin.yaml",), "not UTF-8; save the file as UTF-8"),
     ],
 )
 def test_mistakes_are_told(
     tmp_path: Path, written: tuple[str, ...], files: tuple[str, ...], told: str
 ) -> None:
     (tmp_path / "list.yaml").write_text("- a", encoding="utf-8")
+    (tmp_path / "deep.yaml").write_text(f"/**: {{ros__parameters: {{x: {'[' * 100_000}", encoding="utf-8")
     (tmp_path / "latin.yaml").write_bytes(b"a: \xe4")
     with pytest.raises(UsageError, match=told):
         read_parameters(written, [tmp_path / file for file in files], "node")

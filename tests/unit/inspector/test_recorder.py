@@ -81,7 +81,24 @@ def test_a_line_cut_off_by_a_crash_is_left_out(tmp_path: Path) -> None:
     assert len(Recording.read(path).frames) == 5
 
 
-@pytest.mark.parametrize("content", ["", '{"kind": "frame", "t": 0}\n{}\n', "hello\nworld\n", "[1]\n[2]\n"])
+MALFORMED = [
+    '{{"kind": "world", "world": {}}}\n{}\n{{}}\n'.format(*each)
+    for each in (
+        ("[]", "{}"),
+        ('{"robots": [{}]}', "{}"),
+        ("{}", '{"kind": "frame", "t": "x", "robots": []}'),
+        ("{}", '{"kind": "frame", "t": NaN, "robots": []}'),
+        ("{}", '{"kind": "frame", "t": 1, "robots": [[1]]}'),
+        ("{}", '{"kind": "text", "t": 1, "agent": [], "text": ""}'),
+        ("{}", '{"kind": "event", "t": 1, "event": "x", "data": 3}'),
+        ("{}", "[" * 100_000),
+    )
+]
+
+
+@pytest.mark.parametrize(
+    "content", ["", '{"kind": "frame", "t": 0}\n{}\n', "hello\nworld\n", "[1]\n[2]\n", *MALFORMED]
+)
 def test_a_file_that_is_no_recording_is_refused(tmp_path: Path, content: str) -> None:
     path = tmp_path / "other.jsonl"
     path.write_text(content)

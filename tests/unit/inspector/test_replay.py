@@ -184,3 +184,11 @@ def test_the_reason_of_goals_that_were_for_one_another_is_shown_once(tmp_path: P
         ("!tour", "action_failed, no way (robot.asl:4)"),
         ("!other", "stuck (robot.asl:9)"),
     ]
+
+
+def test_a_world_may_have_any_name() -> None:
+    made = recording()
+    made.world["name"] = "{{RECORDING}}</title><script>alert(1)</script>"
+    page = replay_html(made)
+    assert "<title>{{RECORDING}}&lt;/title&gt;&lt;script&gt;alert(1)" in page
+    assert unpacked(page)["world"]["name"] == made.world["name"]

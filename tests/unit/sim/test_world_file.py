@@ -169,3 +169,19 @@ def test_navigation_is_switched_off_or_given_a_speed() -> None:
         with pytest.raises(WorldError) as error:
             settings(wrong)
         assert told in str(error.value)
+
+
+def test_a_misspelt_key_that_a_merge_brings_in_is_told() -> None:
+    with pytest.raises(WorldError, match="no key 'nam'"):
+        read_world("x: &x {nam: a}\nrobots:\n  - <<: *x\n    name: r\n")
+
+
+@pytest.mark.parametrize("value", ["2001-99-99", "!!int x", "!!float q", "9" * 5000])
+def test_a_value_that_cannot_be_made_has_its_place(value: str) -> None:
+    with pytest.raises(WorldError, match="world:2:7: not YAML: not a valid"):
+        read_world(f"robots: [{{name: r}}]\nname: {value}\n")
+
+
+def test_a_name_that_no_file_can_have_is_an_unknown_world() -> None:
+    with pytest.raises(WorldError, match="there is no such world file"):
+        World.load("x" * 300)

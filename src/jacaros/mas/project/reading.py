@@ -145,7 +145,7 @@ def _complete(path: Path, part: ProjectPart) -> None:
     part.folders = tuple(dict.fromkeys([*programs, *(folder for folder in code if folder.is_dir())]))
     for agent in part.agents:
         agent.folders = tuple(dict.fromkeys(programs))
-    if part.world is not None and (base / part.world).exists():
+    if part.world is not None and is_file(base / part.world):
         part.world = str(base / part.world)
 
 

@@ -159,9 +159,12 @@ class Link:
                 message = self._fragments.add(message)
             if message is not None and isinstance(message["op"], str):
                 self._on_message(message)
-        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, EOFError) as problem:
+        except (
+            Exception
+        ) as problem:  # a CBOR frame of junk may be dates, fractions, expressions: each has errors of its own
+            told = f"{type(problem).__name__}: {str(problem)[:80]}"
             self._on_problem(
-                f"the rosbridge server sent something that is no operation: {payload[:80]!r} ({problem})"
+                f"the rosbridge server sent a frame that is not an operation; it is ignored: {payload[:80]!r} ({told})"
             )
 
     def failed(self) -> None:

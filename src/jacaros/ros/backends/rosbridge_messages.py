@@ -219,6 +219,7 @@ def _numbers(field: FieldType) -> Decoder:
         numbers = _sequence(values)
         if field.base in FLOATS:
             numbers = [math.nan if number is None else number for number in numbers]
-        return numpy.array(numbers, dtype=dtype)
+        with numpy.errstate(over="ignore"):  # too large for a float32: infinite
+            return numpy.array(numbers, dtype=dtype)
 
     return decode

@@ -1,10 +1,12 @@
-"""Whatever a text is, it is a program or there are diagnostics; and what is a program can be checked, formatted and run.
+"""Give damaged files to their readers: each file is taken, or refused with a message of limited length in limited time.
 
-fuzz_parser.py [--seed N] [--minutes M] [--programs N] [--first N] [--findings DIR]
+fuzz.py [KIND ...] [--seed N] [--minutes M] [--files N] [--first N] [--findings DIR]
 
-Texts are soups of tokens, conformance programs with changes, and programs made by the grammar.  A text belongs to its
-seed and number, so that a finding can be made again: `--seed 1 --first 4711 --programs 1`.  Each finding is written to
-DIR (default runs/fuzz), the text beside the traceback.  Exit code 1 when there were findings.
+Of the kind ``program`` are texts: soups of tokens, conformance programs with changes, and programs made by the grammar;
+what is a program is checked, formatted and run, too.  The other kinds are in `fuzzed_files.py`.  Without KIND all are
+examined, each for M minutes.  A file belongs to its kind, seed and number, so that a finding can be made again: `program
+--seed 1 --first 4711 --files 1`.  Each finding is written to DIR (default runs/fuzz), the file beside the traceback.  Exit
+code 1 when there were findings.
 """
 
 import argparse
@@ -17,7 +19,7 @@ import tempfile
 import time
 import traceback
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -26,6 +28,7 @@ from random import Random
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "unit" / "bdi")]
 
+from fuzzed_files import KINDS  # noqa: E402
 from program_grammar import Grammar  # noqa: E402
 from recording_host import RecordingHost  # noqa: E402
 
@@ -98,6 +101,8 @@ ODD = (
 )
 _DEFECT = re.compile(r"is given up|\b(?!Arithmetic)[A-Z][A-Za-z]+(Error|Fault): ")
 """What an agent tells when something happened that no rule of the language foresees."""
+PROGRAM = "program"
+"""The kind of the texts of programs."""
 CYCLES = 600
 CROWD = 300
 """How many intentions an agent may have before its life is long enough."""
@@ -254,21 +259,23 @@ class Tally:
         return f"{self.outcomes.total()} texts: {dict(self.outcomes)}; findings: {self.findings.total()}"
 
 
-def fuzz(seed: int, numbers: Iterator[int], seconds: float, findings: Path) -> Tally:
-    """Examine text after text until they, or the time, are over."""
+def fuzz(kind: str, seed: int, numbers: Iterable[int], seconds: float, findings: Path) -> Tally:
+    """Examine file after file of a kind until they, or the time, are over; in the current folder, where they may write."""
     tally = Tally()
     began = told = time.monotonic()
+    suffix = ".asl" if kind == PROGRAM else KINDS[kind].suffix
+    current = findings / f"current{suffix}"
     for number in numbers:
-        how, text = text_of(seed, number)
-        (findings / "current.asl").write_text(text, encoding="utf-8", errors="surrogatepass")
+        how, data = made(kind, seed, number)
+        current.write_bytes(data)
         try:
             with limited(SECONDS):
-                outcome = examine(text)
+                outcome = examined(kind, data)
             if how == "made" and outcome == "refused":
                 raise AssertionError("a right program is refused")
         except (Exception, TooLong) as fault:
             outcome = "finding"
-            _keep(tally, findings, f"{seed}-{number}", text, fault)
+            _keep(tally, findings / f"{kind}-{seed}-{number}{suffix}", data, fault)
         tally.outcomes[f"{how}, {outcome}"] += 1
         now = time.monotonic()
         if now - told > 60:
@@ -276,44 +283,68 @@ def fuzz(seed: int, numbers: Iterator[int], seconds: float, findings: Path) -> T
             print(f"{number}: {tally}", flush=True)
         if now - began > seconds:
             break
-    (findings / "current.asl").unlink(missing_ok=True)
+    current.unlink(missing_ok=True)
     return tally
 
 
-def _keep(tally: Tally, findings: Path, name: str, text: str, fault: BaseException) -> None:
+def made(kind: str, seed: int, number: int) -> tuple[str, bytes]:
+    """Return how the file of that number is made, and the file."""
+    if kind == PROGRAM:
+        how, text = text_of(seed, number)
+        return how, text.encode("utf-8", "surrogatepass")
+    return KINDS[kind].made(Random(f"{kind} {seed} {number}"))
+
+
+def examined(kind: str, data: bytes) -> str:
+    """Return ``program``, ``taken`` or ``refused``.  What escapes is a finding."""
+    if kind == PROGRAM:
+        return examine(data.decode("utf-8", "surrogatepass"))
+    return KINDS[kind].examine(data, Path())
+
+
+def _keep(tally: Tally, file: Path, data: bytes, fault: BaseException) -> None:
     """Write a finding down, unless there are some of its kind."""
     where = traceback.extract_tb(fault.__traceback__)[-1]
     kind = f"{type(fault).__name__} at {Path(where.filename).name}:{where.lineno}"
     tally.findings[kind] += 1
     if tally.findings[kind] > 5:
         return
-    print(f"finding {name}: {kind}: {str(fault)[:200]}", flush=True)
-    (findings / f"{name}.asl").write_text(text, encoding="utf-8", errors="surrogatepass")
-    with (findings / f"{name}.txt").open("w", encoding="utf-8", errors="surrogatepass") as file:
-        traceback.print_exception(fault, file=file, limit=-30)
+    print(f"finding {file.stem}: {kind}: {str(fault)[:200]!r}", flush=True)
+    file.write_bytes(data)
+    with file.with_suffix(".txt").open("w", encoding="utf-8", errors="surrogatepass") as told:
+        traceback.print_exception(fault, file=told, limit=-30)
 
 
 def main(arguments: list[str]) -> int:
     """Run as told; the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument(
+        "kinds", nargs="*", metavar="KIND", help=f"{PROGRAM}, {', '.join(KINDS)} (default: all)"
+    )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--minutes", type=float, default=1.0)
-    parser.add_argument("--programs", type=int, default=sys.maxsize, help="how many texts at most")
-    parser.add_argument("--first", type=int, default=1, help="number of the first text")
+    parser.add_argument("--minutes", type=float, default=1.0, help="for each kind")
+    parser.add_argument("--files", type=int, default=sys.maxsize, help="how many files of each kind at most")
+    parser.add_argument("--first", type=int, default=1, help="number of the first file")
     parser.add_argument("--findings", type=Path, default=ROOT / "runs" / "fuzz", help="folder for findings")
     options = parser.parse_args(arguments)
+    kinds = options.kinds or [PROGRAM, *KINDS]
+    if unknown := [each for each in kinds if each not in (PROGRAM, *KINDS)]:
+        parser.error(f"unknown kind: {', '.join(unknown)}")
     findings = options.findings.resolve()
     findings.mkdir(parents=True, exist_ok=True)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    numbers = iter(range(options.first, min(options.first + options.programs, sys.maxsize)))
-    with tempfile.TemporaryDirectory() as scratch:
-        os.chdir(scratch)  # programs may save files
-        tally = fuzz(options.seed, numbers, options.minutes * 60, findings)
-        os.chdir(ROOT)
-    print(tally)
-    for kind, count in tally.findings.most_common():
-        print(f"{count:6}  {kind}")
-    return 1 if tally.findings else 0
+    wrong: Counter[str] = Counter()
+    for kind in kinds:
+        numbers = range(options.first, min(options.first + options.files, sys.maxsize))
+        with tempfile.TemporaryDirectory() as scratch:
+            os.chdir(scratch)  # programs may save files
+            tally = fuzz(kind, options.seed, numbers, options.minutes * 60, findings)
+            os.chdir(ROOT)
+        print(f"{kind}: {tally}")
+        wrong.update({f"{kind}: {what}": count for what, count in tally.findings.items()})
+    for what, count in wrong.most_common():
+        print(f"{count:6}  {what}")
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":
