@@ -119,8 +119,9 @@ def message_types(kind: OperationKind, type_name: str) -> tuple[str, ...]:
 def check_answer(
     operation: OperationPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
 ) -> None:
-    """Check outputs and success against a response or result."""
-    for field in operation.outputs:
+    """Check outputs, success and what tells of failures against a response or result."""
+    code = () if operation.code is None else (operation.code,)
+    for field in (*operation.outputs, *code, *operation.aborted):
         _tried(
             field.place, lambda field=field: taker(field, FieldType(type_name), None, interfaces), problems
         )

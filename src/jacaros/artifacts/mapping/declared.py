@@ -261,6 +261,8 @@ class OperationPart:
         node: whose parameter is set or given; empty for our own.
         properties: those that are refreshed or read.
         feedback: properties from the feedback.
+        code: field of the result that is the Code of ``aborted(Code,Text)``; None: a field ``error_code`` if there is one.
+        aborted: fields of the result that follow Code and Text.
         suspend: what a suspended intention means for the goal: ``go_on``, ``cancel``, or ``pause`` by two operations.
         pause, resume: names of these operations.
     """
@@ -284,7 +286,9 @@ class OperationPart:
     unmatched: str | None = None
     timeout: float | None = None
     feedback: tuple[TopicPart, ...] = ()
-    suspend: str = "go_on"
+    code: FieldPart | None = None
+    aborted: tuple[FieldPart, ...] = ()
+    suspend: str = "cancel"
     pause: Written = NOTHING
     resume: Written = NOTHING
     node: str = ""

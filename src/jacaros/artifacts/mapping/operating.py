@@ -176,6 +176,10 @@ class _Calling(_Answered):
         self._host.fail(f"service {name} refused{told}", "service_refused", Atom(name.lstrip("/")), text)
 
 
+NOT_SHOWN = Atom("unknown")
+"""A value of a failed goal's result that agents cannot have, such as NaN."""
+
+
 class _Pursuing(_Answered):
     """One operation with ``action``."""
 
@@ -185,10 +189,16 @@ class _Pursuing(_Answered):
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._feeds: list[Feed] = [feedback_feed(host, each) for each in part.feedback]
         self._under_way = 0
+        self._code: Take | None = None
+        self._aborted: list[Take] = []
         self.switches: tuple[Switch, Switch] | tuple[()] = ()
         super().__init__(host, part)
 
     def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
+        part, answer, ros = self._part, FieldType(types[1]), self._host.ros
+        if not problems:
+            self._code = None if part.code is None else taker(part.code, answer, None, ros)
+            self._aborted = [taker(field, answer, None, ros) for field in part.aborted]
         for feed in self._feeds:
             feed.prepare(types[2], problems)
 
@@ -211,12 +221,25 @@ class _Pursuing(_Answered):
             suspend=part.suspend,
             pause=pause,
             resume=resume,
+            aborted=self._explain,
         )
         if not self._succeeded(result):
-            code, text = error_code(result), error_text(result)
+            text = error_text(result)
+            code, *more = self._explain(result)
             told = f": {text}" if text else ""
-            host.fail(f"action {self._client.name} had no success{told}", "aborted", code, text)
+            host.fail(f"action {self._client.name} had no success{told}", "aborted", code, text, *more)
         self._give(result, outs)
+
+    def _explain(self, result: Any) -> tuple[object, ...]:
+        """The code of a result that tells of a failure, and the other values that the mapping wants with it."""
+        code = error_code(result) if self._code is None else self._shown(self._code, result)[0]
+        return (code, *(value for take in self._aborted for value in self._shown(take, result)))
+
+    def _shown(self, take: Take, result: Any) -> Sequence[object]:
+        try:
+            return take(result, result, 0)
+        except Unshowable:
+            return (NOT_SHOWN,)
 
     def _count(self, begins: bool) -> None:
         self._under_way += 1 if begins else -1

@@ -26,7 +26,7 @@ _COMMON = ("parameters", "description")
 KEYS: dict[str, tuple[str, ...]] = {
     "publish": ("type", "fields", "qos", "rate", "duration", "at_end", "match_timeout", "unmatched"),
     "service": ("type", "request", "outputs", "success", "timeout"),
-    "action": ("type", "goal", "outputs", "success", "feedback", "timeout", "suspend"),
+    "action": ("type", "goal", "outputs", "success", "feedback", "timeout", "suspend", "code", "aborted"),
     "set_parameter": ("node", "value", "timeout"),
     "get_parameter": ("node", "outputs", "timeout"),
     "refresh": (),
@@ -169,6 +169,8 @@ def _action(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         **_filled(entries.get("goal"), part.parameters),
         feedback=tuple(read_feedback(key, value) for key, value in feedback),
         timeout=_timeout(entries, None),
+        code=_code(entries["code"]) if "code" in entries else None,
+        aborted=_outputs(entries["aborted"]) if "aborted" in entries else (),
         **_suspend(entries.get("suspend")),
     )
 
@@ -197,21 +199,32 @@ def _suspend(node: Node | None) -> dict[str, Any]:
     return {"suspend": "pause", **named}
 
 
+def _code(node: Node) -> FieldPart:
+    if isinstance(node.value, list):
+        node.wrong("'code' is one field", "write code: error_code, or code: {path: error_code, as: name}")
+        return FieldPart(WHOLE, place_of(node))
+    return _outputs(node)[0]
+
+
 def _answered(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
     success = entries.get("success")
-    outputs = read_fields(entries["outputs"]) if "outputs" in entries else ()
-    for field in outputs:
-        if field.path.of_message or "i" in field.path.steps or field.dead_band is not None:
-            entries["outputs"].problems.append(
-                field.place.problem("an output is a path and a conversion alone", "leave the rest out")
-            )
     nothing = success is not None and success.value == "none"
     return dataclasses.replace(
         part,
-        outputs=outputs,
+        outputs=_outputs(entries["outputs"]) if "outputs" in entries else (),
         any_success=nothing,
         success=_success(success) if success is not None and not nothing else None,
     )
+
+
+def _outputs(node: Node) -> tuple[FieldPart, ...]:
+    fields = read_fields(node)
+    for field in fields:
+        if field.path.of_message or "i" in field.path.steps or field.dead_band is not None:
+            node.problems.append(
+                field.place.problem("an output is a path and a conversion alone", "leave the rest out")
+            )
+    return fields
 
 
 def _success(node: Node) -> Success:

@@ -6,7 +6,8 @@ What ends it early is one of five reasons; a plan gets them as ``env_failure_rea
 R                     what happened
 ====================  ==============================================================================================
 rejected              the server refused the goal; the robot has done nothing
-aborted(Code,Text)    the server gave up: the result's ``error_code`` (0 without one), and what the server says of it
+aborted(Code,Text)    the server gave up: the result's ``error_code`` (0 without one), and what the server says of it;
+                      `Conduct.aborted` may give another code, and more arguments
 canceled              somebody else cancelled the goal
 timeout(S)            S seconds were too few; the goal is cancelled
 server_lost           nobody offers the action, or nobody does any more: whether the robot goes on is not known
@@ -70,6 +71,7 @@ class Conduct:
         under_way: told True when a goal is sent, and False when it is over or nobody wants it any more.
         suspend: what a suspended intention means for the goal.
         pause, resume: pause the goal at its server, and let it go on; for ``suspend="pause"``.
+        aborted: gives Code, and what follows Text in ``aborted(Code,Text)``, from the result of an aborted goal.
     """
 
     timeout: float | None = None
@@ -78,6 +80,7 @@ class Conduct:
     suspend: Suspending = "go_on"
     pause: Switch | None = None
     resume: Switch | None = None
+    aborted: "Callable[[Any], tuple[object, ...]] | None" = None
 
 
 class Pursuit:
@@ -297,10 +300,14 @@ class Pursuit:
         if outcome.status is GoalStatus.CANCELED:
             text = outcome.text or f"the goal of {self._client.name} was cancelled by somebody else"
             raise GoalFailed(text, "canceled")
-        code, text = error_code(outcome.result), outcome.text or error_text(outcome.result)
+        explain = self._conduct.aborted
+        code, *more = (error_code(outcome.result),) if explain is None else explain(outcome.result)
+        text = outcome.text or error_text(outcome.result)
         told = f": {text}" if text else ""
         number = f" with code {code}" if code else ""
-        raise GoalFailed(f"action {self._client.name} was aborted{number}{told}", "aborted", code, text)
+        raise GoalFailed(
+            f"action {self._client.name} was aborted{number}{told}", "aborted", code, text, *more
+        )
 
 
 def error_code(result: Any) -> int:

@@ -68,9 +68,10 @@ class RosArtifact(SensingArtifact):
         timeout: float | None = None,
         on_feedback: Callable[[Any], None] | None = None,
         under_way: Callable[[bool], None] | None = None,
-        suspend: Suspending = "go_on",
+        suspend: Suspending | None = None,
         pause: Switch | None = None,
         resume: Switch | None = None,
+        aborted: Callable[[Any], tuple[object, ...]] | None = None,
     ) -> Any:
         """Pursue a goal of an action from an operation and give its result; a step boundary.
 
@@ -88,22 +89,27 @@ class RosArtifact(SensingArtifact):
                 suspended or dropped; no feedback comes after that.  It stands outside of all operations.
             suspend: what happens while the intention is suspended: ``go_on``; ``cancel``, the goal is cancelled, and
                 sent again at ``.resume``; ``pause``, by *pause* and *resume*.  All but ``go_on`` need
-                ``@operation(pausable=True)``, and the time does not count.
+                ``@operation(pausable=True)``, and the time does not count.  None: ``cancel`` in such an operation,
+                else ``go_on``.
             pause, resume: pause the goal at its server and let it go on, such as
                 ``lambda: self.pauser.call({"data": True}, 2.0)``.  A goal that cannot be paused is cancelled, and sent
                 again at ``.resume``.  When a paused goal has ended, or was cancelled, *resume* is called too: others may
                 want the server.
+            aborted: from the result of an aborted goal, gives Code and what follows Text in ``aborted(Code,Text)``;
+                None: the field ``error_code`` (0 without one), and nothing.
 
         Raises:
             OperationFailed: ``rejected``, ``aborted(Code,Text)``, ``canceled``, ``timeout(Seconds)`` or
                 ``server_lost``; ``wrong_value(Field)`` when the fields do not fit or one is not a number (NaN).
             InvalidArtifact: the operation is not pausable, or *pause* and *resume* are missing.
         """
+        if suspend is None:
+            suspend = "cancel" if self.current.pausable else "go_on"
         self._check_suspending(suspend, pause, resume)
         missing = missing_number(goal)
         if missing is not None:
             self.fail(f"the goal's {missing} is not a number; nothing was sent", "wrong_value", missing)
-        conduct = Conduct(timeout, self._feedback(on_feedback), under_way, suspend, pause, resume)
+        conduct = Conduct(timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted)
         try:
             return await self.step(Pursuit(client, goal, conduct, self.clock, self.current, self.log).run())
         except GoalFailed as failed:

@@ -211,8 +211,9 @@ def acting(types: Interfaces, name: str, action: str, type_name: str) -> Entry:
     lines = [*_parameters(inputs), f"action: {action}", f"type: {type_name}", *body, *_outputs(outputs)]
     lines += _feedback(types, name, type_name)
     lines += [_SUCCESS[type_name]] if type_name in _SUCCESS else []
-    if _moves(type_name):
-        lines.append("suspend: cancel   # .suspend stops the robot, .resume sends the goal again")
+    lines.append(
+        "suspend: cancel   # .suspend cancels the goal, so that the robot stops; .resume sends it again"
+    )
     return Entry("operations", name, _call(name, [*inputs, *outputs]), tuple(lines))
 
 
@@ -221,11 +222,6 @@ _SUCCESS = {
     "irobot_create_msgs/action/Undock": "success: {path: is_docked, is: false}",
 }
 """What else than its status tells whether an action went well."""
-
-
-def _moves(type_name: str) -> bool:
-    package = type_name.partition("/")[0]
-    return package in ("nav2_msgs", "move_base_msgs", "irobot_create_msgs", "kobuki_msgs")
 
 
 def _feedback(types: Interfaces, name: str, type_name: str) -> list[str]:

@@ -7,6 +7,10 @@ import pytest
 from mapped_lab import settle, with_mapped
 from robot_lab import Lab
 
+from jacaros.artifacts.mapping.checking import check_mapping
+from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.env import ArtifactId, Out
 from jacaros.ros.action import Abort, ActionPolicy, ServerGoal
 from jacaros.ros.parameter import Declaration
@@ -128,6 +132,61 @@ def test_a_suspended_goal_is_cancelled_and_sent_again() -> None:
         assert out.value == 3
 
     with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
+
+
+def test_a_goal_is_cancelled_while_suspended_unless_the_mapping_says_otherwise() -> None:
+    async def suspended(lab: Lab, artifact: ArtifactId) -> list[str]:
+        events = offer(lab)
+        run = lab.begin(artifact, "count", 3, 1, Out())
+        await lab.sleep(1.5)
+        run.execution.pause()
+        await lab.sleep(1)
+        run.execution.resume()
+        await run.done
+        return events
+
+    async def stops(lab: Lab, artifact: ArtifactId) -> None:
+        assert await suspended(lab, artifact) == ["begin", "cancelled", "begin"]
+
+    async def continues(lab: Lab, artifact: ArtifactId) -> None:
+        assert await suspended(lab, artifact) == ["begin"]
+
+    with_mapped(COUNT.replace("MORE", ""), stops)
+    with_mapped(COUNT.replace("MORE", "suspend: go_on"), continues)
+
+
+DOCK = """
+operations:
+  dock:
+    action: dock
+    type: nav2_msgs/action/DockRobot
+    MORE
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "reason"),
+    [
+        ("", 'aborted(902,"no dock")'),
+        ("code: num_retries", 'aborted(3,"no dock")'),
+        ("code: {path: error_code, as: name}", 'aborted(dock_not_valid,"no dock")'),
+        ("aborted: [num_retries, success]", 'aborted(902,"no dock",3,true)'),
+    ],
+)
+def test_an_aborted_goal_tells_the_code_and_the_fields_that_the_mapping_names(more: str, reason: str) -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        async def execute(goal: ServerGoal) -> Any:
+            raise Abort("no dock", {"error_code": 902, "num_retries": 3})
+
+        lab.backend.action_server("dock", "nav2_msgs/action/DockRobot", execute)
+        assert (await lab.call(artifact, "dock")).reason == reason
+
+    with_mapped(DOCK.replace("MORE", more), body)
+
+
+def test_a_code_or_field_that_the_result_does_not_have_is_an_error() -> None:
+    with pytest.raises(MappingError, match="reason"):
+        check_mapping(read_mapping(DOCK.replace("MORE", "code: reason")), stored_interfaces(()))
 
 
 def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing() -> None:
