@@ -11,6 +11,10 @@ from jacaros.ros.waiting import MISSING_AFTER
 
 _ANSWER = 5.0
 """Seconds for the graph to tell what is in it."""
+_STEP, _LATE = 0.1, 0.02
+"""Seconds between two looks at the loop, and how late it may be to count as on time."""
+_AT_MOST = 30.0
+"""Seconds after which a loop that is always late is waited for no longer."""
 
 
 def _everybody(contents: GraphContents) -> Iterator[str]:
@@ -24,7 +28,9 @@ def _everybody(contents: GraphContents) -> Iterator[str]:
 
 
 class EmptyGraph:
-    """Tells in a log when nobody else is in the graph `MISSING_AFTER` seconds after our node was started.
+    """Logs when nobody else is in the graph `MISSING_AFTER` seconds after our node was started.
+
+    Only seconds in which the loop is on time count: on a busy machine discovery is late, too, and so are other nodes.
 
     Args:
         backend: our node, started.
@@ -36,10 +42,21 @@ class EmptyGraph:
     def __init__(self, backend: Backend, clock: Clock, graph: str, log: Callable[[str], None]) -> None:
         self._backend, self._graph, self._log = backend, graph, log
         self._task: asyncio.Task[None] | None = None
-        self._timer = clock.call_later(MISSING_AFTER, self._begin)
+        self._clock, self._begun = clock, clock.elapsed
+        self._missing = round(MISSING_AFTER / _STEP)
+        self._wait()
 
-    def _begin(self) -> None:
-        self._task = asyncio.get_running_loop().create_task(self._look())
+    def _wait(self) -> None:
+        self._due = self._clock.elapsed + _STEP
+        self._timer = self._clock.call_later(_STEP, self._step)
+
+    def _step(self) -> None:
+        now = self._clock.elapsed
+        self._missing -= now - self._due < _LATE
+        if self._missing > 0 and now - self._begun < _AT_MOST:
+            self._wait()
+        else:
+            self._task = asyncio.get_running_loop().create_task(self._look())
 
     async def _look(self) -> None:
         try:

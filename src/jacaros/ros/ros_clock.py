@@ -24,6 +24,9 @@ OVERTAKEN = 0.1
 """Seconds by which a message may be older than the one before without being a jump: on an unreliable topic they can
 overtake one another."""
 
+AHEAD = 5.0
+"""A step of more seconds is a jump: the simulator leapt, or its messages were lost meanwhile."""
+
 NEARLY = 1e-6
 """Seconds by which the error of a float may make a timer seem not yet due."""
 
@@ -112,7 +115,7 @@ class RosClock:
         """Nothing: the simulator moves the time."""
 
     def on_jump(self, told: Callable[[float], None]) -> Callable[[], None]:
-        """Have *told* called after time jumped back, with the jump in seconds (below zero).
+        """Have *told* called after time jumped, with the jump in seconds: below zero when it jumped back.
 
         Returns:
             what ends that.
@@ -150,6 +153,8 @@ class RosClock:
         else:
             self.elapsed += time - before
             self._ring()
+            if time - before > AHEAD:
+                self._jump(time - before)
         self._note_motion()
 
     def _ring(self) -> None:
@@ -162,9 +167,13 @@ class RosClock:
                 loop.call_soon(timer.ring)
 
     def _jump(self, by: float) -> None:
-        self._log(
-            f"{CLOCK_TOPIC} jumped back by {-by:.3f} s (was the simulator reset?); waits go on for the rest of their time"
-        )
+        if by < 0:
+            self._log(
+                f"{CLOCK_TOPIC} jumped back by {-by:.3f} s (was the simulator reset?); waits go on for the rest of their "
+                "time"
+            )
+        else:
+            self._log(f"{CLOCK_TOPIC} jumped ahead by {by:.3f} s; waits that end in this time are over")
         for told in tuple(self._on_jump):
             told(by)
 

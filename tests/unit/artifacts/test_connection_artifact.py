@@ -173,6 +173,10 @@ def test_a_jump_of_the_simulators_time_is_a_signal() -> None:
         for _ in range(20):
             await asyncio.sleep(0)
         assert signals == [("clock_jumped", (40.0,))]
+        clock.move_to(90.0)
+        for _ in range(20):
+            await asyncio.sleep(0)
+        assert signals[1:] == [("clock_jumped_ahead", (30.0,))]
         await environment.close()
         await backend.close()
 

@@ -1,5 +1,7 @@
 """A graph with nobody else in it is told."""
 
+import asyncio
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -53,6 +55,48 @@ def test_nobody_else_is_told_once() -> None:
 )
 def test_somebody_or_no_knowledge_is_not_told(contents: GraphContents | Exception) -> None:
     assert told(contents) == []
+
+
+class LateClock:
+    """A clock whose timers ring late, as those of a loop that is busy with something else."""
+
+    def __init__(self) -> None:
+        self.elapsed = 0.0
+        self._timer: tuple[float, Callable[[], None]] | None = None
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Any:
+        self._timer = self.elapsed + delay, callback
+        return SimpleNamespace(cancel=lambda: None)
+
+    async def ring(self, late: float) -> None:
+        """Ring the timer so many seconds late."""
+        if self._timer is not None:
+            (when, callback), self._timer = self._timer, None
+            self.elapsed = when + late
+            callback()
+            await asyncio.sleep(0)
+
+
+@pytest.mark.parametrize(("late", "seconds"), [(0.0, 3), (0.05, 30)])
+def test_a_busy_loop_gives_others_more_time_to_be_found(late: float, seconds: float) -> None:
+    lines: list[str] = []
+
+    async def look(timeout: float | None = None) -> GraphContents:
+        return GraphContents({}, {}, {}, ("/agents",))
+
+    async def main() -> None:
+        backend: Any = SimpleNamespace(node_name="/agents", contents=look)
+        clock: Any = LateClock()
+        graph = EmptyGraph(backend, clock, "the ROS 2 graph of domain 7", lines.append)
+        while clock.elapsed < seconds - 0.2:
+            await clock.ring(late)
+            assert lines == []
+        for _ in range(3):
+            await clock.ring(late)
+        assert len(lines) == 1
+        graph.close()
+
+    run(main, VirtualClock())
 
 
 def test_nothing_is_told_after_the_end() -> None:

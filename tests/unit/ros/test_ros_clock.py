@@ -87,6 +87,19 @@ def test_after_a_jump_back_waits_go_on_for_the_rest_of_their_time() -> None:
     assert any("jumped back by 1002.000 s" in line for line in lines)
 
 
+def test_a_leap_ahead_is_reported_and_a_step_is_not() -> None:
+    async def main(clock: RosClock, lines: list[str]) -> None:
+        jumps: list[float] = []
+        clock.on_jump(jumps.append)
+        for time in (1000.0, 1004.0, 1064.0, 1064.1):
+            clock.move_to(time)
+        assert jumps == [60.0]
+        assert round(clock.elapsed, 3) == 64.1
+
+    lines = on_loop(main)
+    assert "/clock jumped ahead by 60.000 s; waits that end in this time are over" in lines
+
+
 def test_a_periodic_timer_rings_once_after_a_jump_and_not_in_a_burst() -> None:
     async def main(clock: RosClock, lines: list[str]) -> None:
         rung: list[float] = []

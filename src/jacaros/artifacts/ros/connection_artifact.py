@@ -45,6 +45,7 @@ class ArtRos(RosArtifact):
 
     Signals:
         clock_jumped(S): with ``--clock ros``: the simulator's time jumped back by S seconds.
+        clock_jumped_ahead(S): with ``--clock ros``: it went S seconds ahead, more than 5, in one step.
     """
 
     known_options: ClassVar = {"timeout": positive}
@@ -59,7 +60,7 @@ class ArtRos(RosArtifact):
         self.ros.on_connection(self._connection_changed)
         self.at_dispose(self._close)
         if isinstance(self.clock, RosClock):
-            self.at_dispose(self.clock.on_jump(lambda by: self.start(self.tell_jump, -by)))
+            self.at_dispose(self.clock.on_jump(lambda by: self.start(self.tell_jump, by)))
 
     def _close(self) -> None:
         self._closed = True
@@ -78,8 +79,8 @@ class ArtRos(RosArtifact):
 
     @internal_operation
     def tell_jump(self, by: float) -> None:
-        """Signal that time jumped back."""
-        self.signal("clock_jumped", by)
+        """Signal that time jumped, back if *by* is below zero."""
+        self.signal("clock_jumped" if by < 0 else "clock_jumped_ahead", abs(by))
 
     # ---- parameters
 
