@@ -1,5 +1,6 @@
 """``jacaros ros list|show|map|check``: looking at a live ROS graph."""
 
+import os
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -60,6 +61,15 @@ def _asking(command: F) -> F:
     return command
 
 
+_INTERFACES = click.option(
+    "--interfaces",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    multiple=True,
+    metavar="FOLDER",
+    help="Folder with definitions of types, PACKAGE/msg/NAME.msg and so on; not for ROS 2. Repeatable.",
+)
+
+
 @click.group("ros", short_help="Look at a live ROS graph, and write mapping files for it.")
 def command() -> None:
     """Look at a live ROS graph, and write and check mapping files for it.
@@ -98,6 +108,7 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
 @command.command("show", short_help="Show one of them, or a type, with its fields.")
 @click.argument("name")
 @_asking
+@_INTERFACES
 @click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
 def show_command(name: str, as_json: bool, **graph: Any) -> None:
     """Show NAME: a topic, service, action or node of the graph, or a type such as nav_msgs/msg/Odometry.
@@ -135,7 +146,10 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
 )
 @click.option("--force", is_flag=True, help="Write over a file that is there.")
 @_asking
-def map_command(names: tuple[str, ...], output: Path | None, force: bool, **graph: Any) -> None:
+@_INTERFACES
+def map_command(
+    names: tuple[str, ...], output: Path | None, force: bool, interfaces: tuple[Path, ...], **graph: Any
+) -> None:
     """Write a first mapping file for things of the graph; without names for the usual things of a robot.
 
     These are odometry, scan, battery, bumpers, map, velocity, actions to drive and dock, and plain services. The file
@@ -148,6 +162,8 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
 
     if output is not None and output.exists() and not force:
         raise UsageError(f"there is a file {output} already; --force writes over it")
+    file = output if output is not None else Path("robot.yaml")
+    folders = [os.path.relpath(folder, file.parent) for folder in interfaces]
 
     async def look(joined: Joined) -> str:
         if names:
@@ -163,10 +179,9 @@ def map_command(names: tuple[str, ...], output: Path | None, force: bool, **grap
                     "nothing that robots usually have is in the graph (odometry, scan, cmd_vel, battery, actions to "
                     "drive); name topics, services and actions of `jacaros ros list`"
                 )
-        file = output.name if output is not None else "robot.yaml"
-        return first_mapping.mapping_for(joined, things, frames, file, _written(**graph), left)
+        return first_mapping.mapping_for(joined, things, frames, file.name, _written(**graph), left, folders)
 
-    text = _in_graph(look, **graph)
+    text = _in_graph(look, interfaces=interfaces, **graph)
     if output is None:
         click.echo(text, nl=False)
         return
@@ -215,6 +230,7 @@ def _in_graph(
     bridge: str | None,
     namespace: str,
     timeout: float,
+    interfaces: tuple[Path, ...] = (),
 ) -> T:
     """Join the graph that the options say, and look at it."""
     from jacaros.cli.graph.joining import clock_for, joined
@@ -227,6 +243,8 @@ def _in_graph(
 
     async def main() -> T:
         async with joined(options, clock, timeout) as there:
+            for folder in interfaces:
+                there.backend.add_interfaces(folder)
             return await look(there)
 
     return run(main, clock)

@@ -1,5 +1,6 @@
 """``jacaros ros map``: a first mapping file for things of the graph, to go on with by hand."""
 
+import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -77,6 +78,7 @@ def mapping_for(
     file: str,
     options: str,
     left: Sequence[Thing] = (),
+    interfaces: Sequence[str] = (),
 ) -> str:
     """The text of a mapping file for things of the graph.
 
@@ -87,6 +89,7 @@ def mapping_for(
         file: name of the file, for the comments.
         options: options for the commands in the comments, such as ``--ros ros2``.
         left: things that are there and were not taken, for a comment.
+        interfaces: folders with definitions of types, as seen from the file.
 
     Raises:
         UnknownInterface: a type has no definition here.
@@ -97,7 +100,7 @@ def mapping_for(
             if _home(joined, artifacts, thing) is artifact:
                 _add(joined, artifact, thing)
         artifact.add(_frame(artifact, frames))
-    return "\n".join([*_file(artifacts, file, options), *_left(left, options)]) + "\n"
+    return "\n".join([*_file(artifacts, file, options, interfaces), *_left(left, options)]) + "\n"
 
 
 def _artifacts(joined: Joined, things: Sequence[Thing]) -> list[_Artifact]:
@@ -166,8 +169,10 @@ def _joins(frames: dict[str, str], target: str, source: str) -> bool:
     return target in frames and source in frames and root(frames, target) == root(frames, source)
 
 
-def _file(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
+def _file(artifacts: list[_Artifact], file: str, options: str, interfaces: Sequence[str]) -> Iterator[str]:
     yield from _head(artifacts, file, options)
+    if interfaces:
+        yield f"interfaces: {json.dumps(list(interfaces))}"
     if len(artifacts) == 1:
         artifact = artifacts[0]
         yield from _namespace(artifact)
