@@ -79,6 +79,7 @@ class Output:
         self._retry_at: float | None = None
         self._blocked = False
         self._failures = self._lost = 0
+        self._cut = self._in_line = False
 
     def write(self, text: str) -> None:
         """Write whole lines."""
@@ -184,6 +185,8 @@ class Output:
                 if descriptor is None:
                     raise OSError(errno.EBADF, "it is closed")
                 descriptor.wait()
+                if self._cut:  # a full disk has taken a part of a line
+                    self._cut = not descriptor.write(b"\n")
                 written = descriptor.write(piece)
             except BlockingIOError:
                 pass
@@ -201,6 +204,7 @@ class Output:
 
     def _progressed(self, piece: bytes, written: int, error: Exception | None) -> None:
         if error is not None:
+            self._cut = self._cut or self._in_line
             self._lost += piece.count(b"\n") + sum(data.count(b"\n") for data in self._queue)
             self._queue.clear()
             self._waiting = 0
@@ -210,6 +214,7 @@ class Output:
                 self._queue.appendleft(piece[written:])
             self._waiting -= written
             if written:
+                self._in_line = piece[written - 1] != 10  # a line feed
                 self._progress = time.monotonic()
                 if self._retry_at is not None or (self._blocked and self._waiting <= LIMIT // 2):
                     self._recover()

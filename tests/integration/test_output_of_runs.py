@@ -1,11 +1,14 @@
 """What becomes of a run whose output nobody takes: the agents go on."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from jacaros.inspector.recording import Recording
 
 JACAROS = [sys.executable, "-m", "jacaros"]
 
@@ -55,3 +58,33 @@ def test_a_run_on_the_virtual_clock_ends_with_its_reader(tmp_path: Path) -> None
     ended = run(tmp_path, FLOOD.replace("!work.", "", 1), "--clock", "fast", stdout=writer)
     os.close(writer)
     assert (ended.returncode, ended.stderr) == (141, b"")
+
+
+TALK = """
+!talk.
++!talk <- .print("alive"); .wait(20); !talk.
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGKILL", "SIGHUP", "SIGTERM"])
+def test_a_recording_survives_signals(tmp_path: Path, name: str) -> None:
+    (tmp_path / "agent.asl").write_text(TALK, encoding="utf-8")
+    record, page = tmp_path / "run.jsonl", tmp_path / "run.html"
+    outputs = ["--record", str(record), "--replay", str(page)]
+    with subprocess.Popen(
+        [*JACAROS, "run", str(tmp_path / "agent.asl"), *outputs], stdout=subprocess.PIPE
+    ) as run:
+        assert run.stdout is not None
+        while b"alive" not in (record.read_bytes() if record.exists() else b""):
+            run.stdout.readline()
+        run.send_signal(getattr(signal, name))
+        run.stdout.read()
+    assert Recording.read(record).texts[0][1:] == ("agent", "alive")
+    assert page.exists() == (name != "SIGKILL")
+
+
+def test_a_recording_on_a_full_disk_does_not_touch_the_goals(tmp_path: Path) -> None:
+    ended = run(tmp_path, THREE, "--clock", "fast", "--record", "/dev/full", stdout=subprocess.PIPE)
+    assert (ended.returncode, ended.stdout) == (0, b"[agent] one\n[agent] two\n")
+    assert b"Traceback" not in ended.stderr
+    assert ended.stderr.count(b"warning: cannot write to /dev/full: No space left on device") == 1

@@ -57,7 +57,7 @@ class Circumstance:
         pending_asks: questions whose answer is awaited, by message id.
         abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
         meta: whether plans or an observer want to hear of changes of goal states.
-        goal_observer: told of the state, text and number of each goal that changes, and why it failed, or None.
+        goal_observer: told of the state, text and identity of each goal that changes, and why it failed, or None.
         probe: the test that looks on, or None.
         intentions_made: number of intentions so far.
         plans_made: number of plans so far, for the labels of those that have none.
@@ -197,7 +197,7 @@ class Circumstance:
         self.pending_asks: dict[str, Any] = {}
         self.abandoned_asks: set[str | None] = set()
         self.meta = False
-        self.goal_observer: Callable[[str, str, int, str], None] | None = None
+        self.goal_observer: Callable[[str, str, object, str], None] | None = None
         self.probe: Probe | None = None
         self.goal_conditions = False
         self.subplans = False

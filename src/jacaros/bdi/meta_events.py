@@ -29,7 +29,7 @@ def goal_state(
     if not kind.kind or kind.operator == "^":
         return
     if agent.goal_observer is not None:
-        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), id(goal), why)
+        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), goal, why)
     meta = trigger("^", kind.kind, kind.functor)
     if agent.selects[meta] is None:
         return
@@ -63,10 +63,10 @@ def _insert(agent: Circumstance, event: Event) -> None:
     agent.events.insert(place, event)
 
 
-def observe_goals(agent: Circumstance, observer: Callable[[str, str, int, str], None]) -> None:
+def observe_goals(agent: Circumstance, observer: Callable[[str, str, object, str], None]) -> None:
     """Have an observer told of every change of a goal.
 
     It gets the state (``executing``, ``achieved``, ``failed``, ``suspended``, ``resumed``, ``dropped`` …), the goal as
-    text, a number that is the same for all news of one goal, and for a failure its reason as people read it."""
+    text, an object that is the same for all news of one goal, and for a failure its reason as people read it."""
     agent.goal_observer = observer
     agent.meta = agent.special = agent.called = True

@@ -1,10 +1,23 @@
-"""What a watched run is written to, apart from what the agents print."""
+"""What a run is written to, apart from what the agents print."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from jacaros.errors import UsageError
+
 OUTPUT_GONE = 141
 """Exit code when the reader of the output is gone, as in ``| head``: 128 and the number of SIGPIPE."""
+RECORD_LIMIT = 500
+"""Megabytes that a recording may have."""
+
+_BEGINNINGS = {
+    "recording": (b'{"kind": "',),
+    "replay page": (b"<!doctype html>",),
+    "ground truth": (b'{"kind": "',),
+    "JUnit report": (b"<?xml", b"<testsuite"),
+}
+"""How a file of each kind begins: no other file is overwritten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,9 +29,79 @@ class Outputs:
         replay: file for the page, or None.
         ground_truth: file for what truly happens in the world, or None.
         view: show the world in the terminal.
+        record_limit: bytes that the recording may have.
     """
 
     record: Path | None = None
     replay: Path | None = None
     ground_truth: Path | None = None
     view: bool = False
+    record_limit: int = RECORD_LIMIT * 1_000_000
+
+    @property
+    def any(self) -> bool:
+        """Whether the run is watched at all."""
+        return self.view or any(path is not None for path in (self.record, self.replay, self.ground_truth))
+
+    def check(self) -> None:
+        """Refuse what cannot be written, before the run.
+
+        Raises:
+            UsageError: a folder is missing, a file is not one of ours, or two outputs are one file.
+        """
+        if self.replay is not None and self.replay.suffix.lower() not in (".html", ".htm"):
+            raise wrong_output(
+                f"not the name of a page: `{self.replay}`", f"--replay {self.replay.with_suffix('.html')}"
+            )
+        paths = {"recording": self.record, "replay page": self.replay, "ground truth": self.ground_truth}
+        known: dict[Path, str] = {}
+        for kind, path in paths.items():
+            if path is None:
+                continue
+            check_output(path, kind)
+            if kind == "recording" and path.with_name(f"{path.name}.1").exists():
+                check_output(path.with_name(f"{path.name}.1"), kind)
+            before = known.setdefault(path.resolve(), kind)
+            if before != kind:
+                raise wrong_output(f"`{path}` cannot be both {before} and {kind}", "name two files")
+
+
+def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
+    """Refuse a path to which an output of *kind* (a key of `_BEGINNINGS`) cannot be written.
+
+    Args:
+        path: of the file.
+        kind: what is to be written.
+        make_folder: the folder is made when the file is written.
+
+    Raises:
+        UsageError: its folder does not exist, it is a folder, it cannot be written, or another file is there.
+    """
+    try:
+        if path.is_dir():
+            raise wrong_output(f"`{path}` is a folder", f"name a file in it for the {kind}")
+        if not path.exists():
+            if make_folder:
+                return
+            if not path.parent.is_dir():
+                raise wrong_output(f"folder does not exist: `{path.parent}`", f"mkdir -p {path.parent}")
+            if not os.access(path.parent, os.W_OK):
+                raise wrong_output(f"no permission to write to `{path.parent}`", "name another folder")
+        elif not os.access(path, os.W_OK):
+            raise wrong_output(f"no permission to write `{path}`", "name another file")
+        elif path.is_file():
+            _check_content(path, kind)
+    except (OSError, ValueError) as error:
+        raise wrong_output(f"cannot write `{path}`: {error}", "name another file") from error
+
+
+def _check_content(path: Path, kind: str) -> None:
+    with path.open("rb") as file:
+        begins = file.read(64)
+    if begins and not begins.lstrip().lower().startswith(_BEGINNINGS[kind]):
+        raise wrong_output(f"not a {kind}, and not overwritten: `{path}`", "name another file, or delete it")
+
+
+def wrong_output(what: str, help_text: str) -> UsageError:
+    """The error about an output that cannot be written."""
+    return UsageError(f"error: {what}\n  = help: {help_text}")

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from jacaros.cli.graph_options import graph_options, parameter_options, read_remaps
-from jacaros.cli.outputs import OUTPUT_GONE, Outputs
+from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
 from jacaros.errors import UsageError
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
@@ -79,6 +79,14 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "--record", type=click.Path(path_type=Path), metavar="FILE", help="Record the run as JSON lines."
 )
 @click.option(
+    "--record-limit",
+    type=click.IntRange(1),
+    default=RECORD_LIMIT,
+    metavar="MB",
+    show_default=True,
+    help="Megabytes that the recording may have; FILE.1 has its older half.",
+)
+@click.option(
     "--replay",
     type=click.Path(path_type=Path),
     metavar="FILE.html",
@@ -112,6 +120,7 @@ def command(
     rosout: bool | None,
     diagnostics: bool | None,
     record: Path | None,
+    record_limit: int,
     replay: Path | None,
     ground_truth: Path | None,
     view: bool,
@@ -123,6 +132,8 @@ def command(
     output.
     """  # fmt: skip
     check_file(file)
+    outputs = Outputs(record, replay, ground_truth, view, record_limit * 1_000_000)
+    outputs.check()
     project: Path | Deployment = file
     parameters: dict[str, Any] = {}
     if param or params_file:
@@ -133,13 +144,12 @@ def command(
             raise UsageError(f"the parameter use_sim_time is true or false, not {simulated!r}")
         if simulated and clock is None and ros != "memory":
             clock = "ros"
-    watched = view or any(output is not None for output in (record, replay, ground_truth))
     options = RunOptions(
         fast=clock == "fast",
         seed=seed,
         ros=ros,
         world=world,
-        show_world=watched,
+        show_world=outputs.any,
         namespace=namespace,
         until_idle=until_idle,
         seconds=seconds,
@@ -159,7 +169,7 @@ def command(
     )
     code = 1
     try:
-        code = _launch(project, options, console, Outputs(record, replay, ground_truth, view))
+        code = _launch(project, options, console, outputs)
         return code
     finally:
         _close(console, code)
@@ -183,7 +193,7 @@ def _launch(file: Path | Deployment, options: RunOptions, console: StandardConso
             end = partial(mas.stop_system, 0.0, OUTPUT_GONE)
             console.when_gone(lambda: loop.call_soon_threadsafe(end))
 
-    if outputs == Outputs():
+    if not outputs.any:
         return launch(file, options, console, begin)
     # Imported here: numpy, rich and the simulator are for those who want to see something.
     from jacaros.cli.watching import Watching

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from jacaros.cli.graph_options import read_remaps, world_options
+from jacaros.cli.outputs import check_output
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.mas.options import ROS_KINDS
@@ -81,6 +82,8 @@ def command(
     time: Clock = VirtualClock() if clock == "fast" else WallClock() if speed is None else ScaledClock(speed)
     address = GraphAddress(ros, domain_id, master, bridge, "", node_name, read_remaps(remap))
     address.check()
+    if ground_truth is not None:
+        check_output(ground_truth, "ground truth")
     loaded = World.load(Path(world) if is_file(Path(world)) else world, seed)
     if full_battery:
         loaded = World(with_full_batteries(loaded.description))

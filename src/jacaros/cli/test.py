@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from jacaros.cli.outputs import check_output
 from jacaros.errors import UsageError
 
 if TYPE_CHECKING:
@@ -117,6 +118,8 @@ def command(
     from jacaros.testing.suites import collect
     from jacaros.testing.trial import TrialOptions
 
+    if junit is not None:
+        check_output(junit, "JUnit report", make_folder=True)
     paint = _Paint(color)
     suites = _chosen(collect(paths or (Path(),)), paths, pattern)
     options = TrialOptions(clock == "fast", seed, timeout, cycles, patience, world, shared, mappings)

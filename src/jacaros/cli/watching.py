@@ -1,5 +1,6 @@
 """Recording, replay page, ground truth and terminal view of a run."""
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -8,6 +9,7 @@ from jacaros.cli.outputs import Outputs
 from jacaros.errors import UsageError
 from jacaros.inspector.goal_news import GoalNews
 from jacaros.inspector.recorder import Recorder
+from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import write_replay
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.inspector.watch import Watch, Watcher
@@ -30,7 +32,9 @@ class Watching:
         self._console = console
         self._outputs = outputs
         record, replay = outputs.record, outputs.replay
-        self._recorder = Recorder(record, keep=replay is not None) if record or replay else None
+        self._recorder: Recorder | None = None
+        if record or replay:
+            self._recorder = Recorder(record, replay is not None, self._warn, outputs.record_limit)
         self._ground_truth: GroundTruthFile | None = None
         self._view: TerminalView | None = None
         self._watch: Watch | None = None
@@ -43,7 +47,7 @@ class Watching:
         """
         world = mas.ros.world
         if self._outputs.ground_truth is not None:
-            self._ground_truth = _ground_truth_file(self._outputs.ground_truth, world, mas)
+            self._ground_truth = _ground_truth_file(self._outputs.ground_truth, world, mas, self._warn)
         watchers: list[Watcher] = []
         if self._recorder is not None:
             watchers.append(self._recorder)
@@ -79,16 +83,27 @@ class Watching:
             self._view.close()
         if self._recorder is not None:
             self._recorder.close()
-            if self._outputs.replay is not None and error is None:
-                write_replay(self._recorder.recording, self._outputs.replay)
+            if self._outputs.replay is not None and self._watch is not None:
+                self._write_replay(self._recorder.recording, self._outputs.replay)
         if self._ground_truth is not None:
             self._ground_truth.__exit__(kind, error, trace)
 
+    def _write_replay(self, recording: Recording, path: Path) -> None:
+        try:
+            write_replay(recording, path)
+        except OSError as error:
+            self._warn(f"cannot write {path}: {error.strerror}")
 
-def _ground_truth_file(path: Path, world: World | None, mas: System) -> GroundTruthFile:
+    def _warn(self, text: str) -> None:
+        self._console.log(f"warning: {text}", "warning")
+
+
+def _ground_truth_file(
+    path: Path, world: World | None, mas: System, warn: Callable[[str], None]
+) -> GroundTruthFile:
     if world is None:
         raise UsageError(
             "the world of this run is a process of its own, or the real one; "
             "jacaros sim has --ground-truth for a world that it runs"
         )
-    return GroundTruthFile(path, world, mas.clock.now() - world.time)
+    return GroundTruthFile(path, world, mas.clock.now() - world.time, warn)

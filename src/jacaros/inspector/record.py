@@ -34,11 +34,11 @@ def record(
         The recording, which grows; None when only a file is written.
 
     Raises:
-        OSError: a file cannot be written.
+        OSError: a file cannot be opened, or the page not written.  Later trouble with the recording is logged.
         RunEnded: the system does not run.
     """
     keep = replay is not None or path is None
-    recorder = Recorder(path, keep=keep)
+    recorder = Recorder(path, keep, lambda text: mas.system.console.log(f"warning: {text}", "warning"))
     watch = watch_of(mas.system, [recorder], mas.world)
     watch.start()
     directory = mas.system.directory

@@ -25,14 +25,19 @@ counts, and robots that are found later are behind the others in the rows of fra
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
-from jacaros.inspector.recording import Frame, Recording
+from jacaros.inspector.recording import Frame, Recording, older_part
 from jacaros.inspector.robot_view import RobotView
+from jacaros.output import CLOSING, PATIENCE, Output
 
 VERSION = 1
+LIMIT = 500_000_000
+"""Bytes that a recording may have."""
+FLUSH = 0.2
+"""Seconds after which a record is in the file: as much is lost when the process is killed."""
 
 
 class Recorder:
@@ -44,23 +49,38 @@ class Recorder:
     Args:
         path: the file to write; None keeps the recording in memory only.
         keep: keep it in memory as well, as `recording`.
+        warn: takes a line about a file that cannot be written; the run goes on without it.
+        limit: bytes that the file and its older part may have together.  A file that has half of that becomes ``FILE.1``,
+            in place of an older part, and a new one begins, with ``"part": 2``; `Recording.read` reads both.
 
     Raises:
         OSError: the file cannot be written.
     """
 
-    def __init__(self, path: str | Path | None = None, keep: bool | None = None) -> None:
+    def __init__(
+        self,
+        path: str | Path | None = None,
+        keep: bool | None = None,
+        warn: Callable[[str], None] | None = None,
+        limit: int = LIMIT,
+    ) -> None:
         self.path = Path(path) if path is not None else None
         self.recording = Recording()
         self._keep = keep if keep is not None else path is None
-        self._file: TextIO | None = self.path.open("w", encoding="utf-8") if self.path else None
+        self._warn, self._limit = warn, limit
+        self._drawing: dict[str, Any] = {}
+        self._part, self._size = 1, 0
+        self._file: TextIO | None = None
+        self._output: Output | None = None
+        if self.path is not None:
+            self._open(self.path)
         self._last: Frame | None = None
         self._held: Frame | None = None
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """The world, as `jacaros.sim.WorldDescription.drawing` gives it, before everything else; the last one counts."""
-        self.recording.world = dict(drawing)
-        self._write({"kind": "world", "version": VERSION, "world": dict(drawing)})
+        self.recording.world = self._drawing = dict(drawing)
+        self._write(self._header())
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """The robots at a moment, in the order of the world."""
@@ -96,13 +116,49 @@ class Recorder:
         if self._held is not None:
             self._take(self._held)
             self._held = None
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        self._close_file(CLOSING)
+
+    def _header(self) -> dict[str, Any]:
+        part = {"part": self._part} if self._part > 1 else {}
+        return {"kind": "world", "version": VERSION, **part, "world": self._drawing}
 
     def _write(self, record: dict[str, Any]) -> None:
-        if self._file is not None:
-            self._file.write(json.dumps(record, ensure_ascii=False, default=str) + "\n")
+        if self._output is None:
+            return
+        line = json.dumps(record, ensure_ascii=False, default=str) + "\n"
+        self._size += len(line)
+        if self._size > self._limit // 2 and self._size > len(line):
+            self._begin_part()
+            self._size += len(line)
+        if self._output is not None:
+            self._output.write(line)
+
+    def _begin_part(self) -> None:
+        """Make the file the older part, and begin a new one; a device or a pipe has no parts."""
+        assert self.path is not None
+        self._size = 0
+        if not self.path.is_file():
+            return
+        self._close_file(PATIENCE)
+        try:
+            self.path.replace(older_part(self.path))
+            self._part += 1
+            self._open(self.path)
+        except OSError as error:
+            if self._warn is not None:
+                self._warn(f"cannot continue the recording {self.path}: {error.strerror}")
+        else:
+            self._write(self._header())
+
+    def _open(self, path: Path) -> None:
+        self._file = path.open("w", encoding="utf-8")
+        self._output = Output(self._file, str(path), self._warn, delay=FLUSH)
+
+    def _close_file(self, patience: float) -> None:
+        if self._output is not None and self._file is not None:
+            self._output.close(patience)
+            self._file.close()
+            self._output = self._file = None
 
 
 def _short(value: float) -> float:

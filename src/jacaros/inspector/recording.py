@@ -77,32 +77,37 @@ class Recording:
 
     @classmethod
     def read(cls, path: str | Path) -> "Recording":
-        """Read a recorder's file; a last line that was cut off by a crash is left out.
+        """Read a recorder's file, and the older part of a long one; lines cut off by a crash or a full disk are left out.
 
         Raises:
             OSError: the file cannot be read.
             JacarosError: it is no recording.
         """
-        recording, described = cls(), False
-        try:
-            lines = file_text(path, LARGEST_RECORDING).split("\n")
-        except UnicodeError as error:
-            raise JacarosError(f"{path} is not a recording: {error}") from None
-        if lines[-1] == "":
-            lines.pop()
+        recording, path = cls(), Path(path)
+        lines = _lines(path)
+        part = _part_of(lines[0]) if lines else 1
+        if part > 1 and older_part(path).is_file():
+            before = _lines(older_part(path))
+            if before and _part_of(before[0]) == part - 1:
+                recording._take_all(before, older_part(path))
+        recording._take_all(lines, path)
+        return recording
+
+    def _take_all(self, lines: list[str], path: Path) -> None:
+        described = False
         for number, line in enumerate(lines, 1):
             try:
                 record = json.loads(line)
-                recording._take(record)
+                self._take(record)
                 described = described or record["kind"] == "world"
             except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
-                if number == len(lines) and isinstance(error, json.JSONDecodeError):
-                    break
+                cut_off = number == len(lines) or line.startswith(_BEGINNING)
+                if cut_off and isinstance(error, json.JSONDecodeError):
+                    continue
                 told = printable(f"{path}:{number}: this is no line of a recording ({error})")
                 raise JacarosError(told) from None
         if not described:
             raise JacarosError(f"{path} is no recording: no line of it describes a world")
-        return recording
 
     def _take(self, record: dict[str, Any]) -> None:
         kind = record["kind"]
@@ -168,6 +173,30 @@ def _world(drawing: Any) -> dict[str, Any]:
     for number in world.get("bounds", []):
         _number(number)
     return world
+
+
+_BEGINNING = '{"kind": '
+"""Of a line of a recording."""
+
+
+def older_part(path: Path) -> Path:
+    """The file that a recorder makes of *path* before it begins a new one."""
+    return path.with_name(f"{path.name}.1")
+
+
+def _lines(path: Path) -> list[str]:
+    try:
+        lines = file_text(path, LARGEST_RECORDING).split("\n")
+    except UnicodeError as error:
+        raise JacarosError(f"{path} is not a recording: {error}") from None
+    return lines if lines[-1] else lines[:-1]
+
+
+def _part_of(line: str) -> int:
+    try:
+        return int(json.loads(line).get("part", 1))
+    except (ValueError, TypeError, AttributeError, RecursionError, OverflowError):
+        return 1
 
 
 def _row_of(sample: Sample) -> tuple[Any, ...]:

@@ -23,6 +23,7 @@ class RunOptions:
         seed: of all random numbers, the world's too; None for other numbers in each run.
         ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
         world: world file, or name of a world of JaCaROS, in place of the project's own.
+        keep_ground_truth: keep in memory all that happens in the embedded world, not only the last minutes.
         show_world: make the world at the start, even when nobody asks for a robot yet.
         namespace: put before relative ROS names.
         until_idle: end when no agent has anything to do and no operation is under way.
@@ -39,6 +40,7 @@ class RunOptions:
     ros: str = "memory"
     world: str | Path | None = None
     show_world: bool = False
+    keep_ground_truth: bool = False
     namespace: str = ""
     until_idle: bool = False
     seconds: float | None = None

@@ -30,8 +30,8 @@ DEFAULT_WORLD = "empty"
 NO_WORLD = "none"
 """In place of the name of a world: nobody else is in the graph inside the process."""
 
-_GROUND_TRUTH = 100_000
-"""Points of a robot's path that are kept in memory: some hours of motion."""
+_GROUND_TRUTH = 1000
+"""Points of a robot's path, and events, that are kept in memory unless all are asked for: some minutes of motion."""
 
 
 class RosGraph:
@@ -185,7 +185,7 @@ class RosGraph:
 
         source = self._source if self._source is not None else DEFAULT_WORLD
         self.world = World.load(source, self._options.seed)
-        self.world.ground_truth.keep = _GROUND_TRUTH
+        self.world.ground_truth.keep = None if self._options.keep_ground_truth else _GROUND_TRUTH
         self._node = SimNode(self.world, backend, self._clock)
         self._node.start()
 

@@ -5,7 +5,6 @@ object is filled by a running `jacaros.sim.world.World` or read back from the fi
 `jacaros.sim.process.serve` writes, so one checker judges runs of both kinds.
 """
 
-import contextlib
 import hashlib
 import json
 from collections.abc import Callable, Iterable
@@ -153,7 +152,7 @@ class GroundTruth:
 
     @classmethod
     def read(cls, path: str | Path) -> "GroundTruth":
-        """Read a ground truth file; a last line that was cut off by a crash is left out.
+        """Read a ground truth file; lines that a crash or a full disk has cut off are left out.
 
         Raises:
             JacarosError: when the file does not begin with a ``world`` record.
@@ -183,9 +182,14 @@ class GroundTruth:
 
 def _records(path: str | Path) -> list[Record]:
     lines = file_text(path, 2**32).splitlines()
-    records = [json.loads(line) for line in lines[:-1]]
-    with contextlib.suppress(json.JSONDecodeError):
-        records.extend(json.loads(line) for line in lines[-1:])
+    records = []
+    for number, line in enumerate(lines, 1):
+        try:
+            records.append(json.loads(line))
+        except json.JSONDecodeError:
+            # A crash cuts the last line off, and a full disk any line.
+            if number < len(lines) and not line.startswith("{"):
+                raise
     return records
 
 

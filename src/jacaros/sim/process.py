@@ -3,29 +3,45 @@
 import asyncio
 import json
 import signal
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 
 from jacaros.clock import Clock
+from jacaros.output import Output
 from jacaros.ros.backend import Backend
 from jacaros.sim.clock_publisher import ClockPublisher
 from jacaros.sim.ground_truth import Record, header
 from jacaros.sim.node import SimNode
 from jacaros.sim.world import World
 
+_FLUSH = 0.2
+"""Seconds until a record is in the file."""
 _SIGNALS = (signal.SIGTERM, signal.SIGINT)
 
 
 class GroundTruthFile:
-    """Writes the ground truth of a world as JSON lines while it runs; every line is flushed at once.
+    """Writes the ground truth of a world as JSON lines while it runs; a line is in the file 0.2 s later.
 
     A context manager; the file ends with an ``end`` record when the world was stopped in good order.
+
+    Args:
+        path: of the file.
+        world: the world.
+        epoch: the clock's time (seconds) at which the world's time was 0.
+        warn: takes a line about a file that cannot be written; by default the standard error output.
+
+    Raises:
+        OSError: the file cannot be opened.
     """
 
-    def __init__(self, path: str | Path, world: World, epoch: float) -> None:
+    def __init__(
+        self, path: str | Path, world: World, epoch: float, warn: Callable[[str], None] | None = None
+    ) -> None:
         self._world = world
         self._file = Path(path).open("w", encoding="utf-8")  # noqa: SIM115 - closed in __exit__
+        self._output = Output(self._file, str(path), warn or _to_stderr, delay=_FLUSH)
         truth = world.ground_truth
         self._write(header(truth.world, world.description.seed, epoch))
         for robot in truth.robots:
@@ -33,8 +49,7 @@ class GroundTruthFile:
         self._stop_listening = truth.listen(self._write)
 
     def _write(self, record: Record) -> None:
-        self._file.write(json.dumps(record) + "\n")
-        self._file.flush()
+        self._output.write(json.dumps(record) + "\n")
 
     def __enter__(self) -> "GroundTruthFile":
         return self
@@ -48,7 +63,12 @@ class GroundTruthFile:
             self._write({"kind": "sample", "robot": robot, **truth.latest(robot)._asdict()})
         if kind is None:
             self._write({"kind": "end", "time": self._world.time})
+        self._output.close()
         self._file.close()
+
+
+def _to_stderr(text: str) -> None:
+    print(f"warning: {text}", file=sys.stderr)
 
 
 async def serve(

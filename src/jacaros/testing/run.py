@@ -91,6 +91,7 @@ def run_project(
         seed=seed,
         ros=ros,
         world=world,
+        keep_ground_truth=True,
         until_idle=until_idle,
         seconds=seconds,
         mappings=tuple(map(str, mappings)),

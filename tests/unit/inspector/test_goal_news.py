@@ -68,3 +68,9 @@ def test_why_a_goal_failed_is_told():
     news("bob", "failed", "!patrol", 1, "no way")
     assert ["why" in each for each in told] == [False, True]
     assert told[1]["why"] == "no way"
+
+
+def test_a_goal_does_not_take_the_number_of_one_that_is_gone_from_memory(told):
+    for _ in range(20):
+        told("executing", number=object())
+    assert len({line.split()[0] for line in told()}) == 20

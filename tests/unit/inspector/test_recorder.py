@@ -1,5 +1,6 @@
 """Recording a run and reading it back."""
 
+import threading
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,58 @@ def test_a_line_cut_off_by_a_crash_is_left_out(tmp_path: Path) -> None:
     record(path)
     path.write_text(path.read_text(encoding="utf-8") + '{"kind": "fra', encoding="utf-8")
     assert len(Recording.read(path).frames) == 5
+
+
+def test_a_line_cut_off_by_a_full_disk_is_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    record(path)
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    path.write_text(lines[0] + lines[1][:20] + "\n" + "".join(lines[2:]), encoding="utf-8")
+    assert len(Recording.read(path).frames) == 4
+
+
+def test_records_are_in_the_file_while_the_run_goes_on(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path / "run.jsonl")
+    recorder.world({"name": "nowhere"})
+    recorder.text(0.1, "ann", "hello")
+    while not (tmp_path / "run.jsonl").read_text(encoding="utf-8").endswith("\n"):
+        threading.Event().wait(0.01)
+    assert Recording.read(tmp_path / "run.jsonl").texts == [(0.1, "ann", "hello")]
+    recorder.close()
+
+
+def test_a_long_recording_keeps_its_newest_half(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    recorder = Recorder(path, limit=20_000)
+    recorder.world({"name": "nowhere"})
+    for number in range(1000):
+        recorder.text(number / 10, "ann", f"line {number}")
+    recorder.close()
+    assert path.stat().st_size + path.with_name("run.jsonl.1").stat().st_size <= 20_000
+    recording = Recording.read(path)
+    texts = [text for _, _, text in recording.texts]
+    assert recording.world == {"name": "nowhere"}
+    assert len(texts) > 100
+    assert texts == [f"line {number}" for number in range(1000 - len(texts), 1000)]
+
+
+def test_an_older_part_of_another_run_is_not_read(tmp_path: Path) -> None:
+    record(tmp_path / "run.jsonl.1")
+    record(tmp_path / "run.jsonl")
+    assert len(Recording.read(tmp_path / "run.jsonl").texts) == 1
+
+
+def test_a_recording_on_a_full_disk_is_warned_about_and_hurts_nobody() -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("this system has no /dev/full")
+    warnings: list[str] = []
+    recorder = Recorder("/dev/full", warn=warnings.append)
+    recorder.world({"name": "nowhere"})
+    recorder.close()
+    assert warnings == [
+        "cannot write to /dev/full: No space left on device; dropping lines until it works again",
+        "1 line could not be written to /dev/full",
+    ]
 
 
 MALFORMED = [

@@ -11,7 +11,7 @@ from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.errors import BackendUnavailable
-from jacaros.sim import WorldError
+from jacaros.sim import Event, WorldError
 
 
 def graph(clock: VirtualClock, own: str | Path | None = None, **options: Any) -> RosGraph:
@@ -162,5 +162,23 @@ def test_on_a_real_graph_the_projects_own_world_is_left_out(monkeypatch: pytest.
         assert ros.backend() is backend
         await ros.close()
         assert backend.closed
+
+    run(main, clock)
+
+
+@pytest.mark.parametrize(("asked", "kept"), [(False, 2000), (True, 3000)])
+def test_what_happens_in_the_world_is_kept_on_request_only(asked: bool, kept: int) -> None:
+    clock = VirtualClock()
+
+    async def main() -> None:
+        ros = graph(clock, keep_ground_truth=asked)
+        ros.backend()
+        assert ros.world is not None
+        truth = ros.world.ground_truth
+        for number in range(3000):
+            truth.record_event(Event(number, "", "door_opened", 0.0, 0.0, 0.0, {}))
+        assert (len(truth.events) >= 3000) == asked
+        assert len(truth.events) <= kept
+        await ros.close()
 
     run(main, clock)

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import signal
+import threading
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -281,7 +282,8 @@ def test_the_ground_truth_is_on_disk_while_the_world_runs_and_a_cut_off_line_is_
     with GroundTruthFile(path, world, 0.0):
         world.command("turtlebot", 0.3, 0.0)
         world.run(1.0)
-        running = path.read_text()
+        while "command_timeout" not in (running := path.read_text()):
+            threading.Event().wait(0.01)
     path.write_text(running + '{"kind": "samp')
     read = GroundTruth.read(path)
     assert [event.kind for event in read.events] == ["command_timeout"]
