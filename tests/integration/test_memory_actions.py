@@ -127,11 +127,11 @@ def test_a_goal_that_somebody_else_cancels_fails_as_canceled(
     assert result.of("counter") == ["action_failed canceled"]
 
 
-def test_nobody_who_offers_the_action_is_server_lost(tmp_path: Path) -> None:
+def test_an_action_that_no_server_offers_is_unavailable_and_not_lost(tmp_path: Path) -> None:
     server = Server()
     server.come = lambda: None  # type: ignore[method-assign]
     result = run(tmp_path, "+!go <- count(5, 1, L); .print(never).", server)
-    assert result.of("counter") == ["action_failed server_lost"]
+    assert result.of("counter") == ["action_failed server_unavailable"]
     assert 5 <= result.seconds < 6
 
 

@@ -106,7 +106,7 @@ def test_a_goal_that_somebody_else_cancels(tmp_path: Path, monkeypatch: pytest.M
 
 def test_servers_that_are_not_there(tmp_path: Path) -> None:
     assert told(tmp_path, "count(5)", server=False) == expected(
-        f"nobody offered action /count ({COUNT}) within 5 s", "count(5)", "server_lost"
+        f"nobody offered action /count ({COUNT}) within 5 s", "count(5)", "server_unavailable"
     )
     assert told(tmp_path, "hold", server=False) == expected(
         "nobody offered service /hold (std_srvs/srv/SetBool) within 2 s", "hold", "service_unavailable(hold)"

@@ -97,16 +97,16 @@ def test_time_that_is_up_cancels_the_goal_and_waits_for_nobody() -> None:
     in_lab(body, None)
 
 
-def test_a_server_that_is_not_there_and_one_that_leaves_are_lost() -> None:
+def test_a_server_that_is_not_there_is_unavailable_and_one_that_leaves_is_lost() -> None:
     async def body(lab: Lab) -> None:
         server = FakeServer(lab)
         server.offered = False
         artifact = await lab.make(Navigator)
-        await failed(lab.begin(artifact, "go", 3, Out()), "server_lost")
+        await failed(lab.begin(artifact, "go", 3, Out()), "server_unavailable")
         assert lab.clock.elapsed == pytest.approx(ACCEPTANCE, abs=0.11)
         hasty = await lab.make(Navigator, Structure("timeout", (1,)))
         began = lab.clock.elapsed
-        await failed(lab.begin(hasty, "go", 3, Out()), "server_lost")
+        await failed(lab.begin(hasty, "go", 3, Out()), "server_unavailable")
         assert lab.clock.elapsed - began == pytest.approx(1, abs=0.11)
         server.offered = True
         going = lab.begin(artifact, "go", 3, Out())

@@ -1,6 +1,6 @@
 """One goal of an action as one step of a plan: sent, followed, suspended, given up.
 
-What ends it early is one of five reasons; a plan gets them as ``env_failure_reason(R)``:
+What ends it early is one of six reasons; a plan gets them as ``env_failure_reason(R)``:
 
 ====================  ==============================================================================================
 R                     what happened
@@ -10,7 +10,8 @@ aborted(Code,Text)    the server gave up: the result's ``error_code`` (0 without
                       `Conduct.aborted` may give another code, and more arguments
 canceled              somebody else cancelled the goal
 timeout(S)            S seconds were too few; the goal is cancelled
-server_lost           nobody offers the action, or nobody does any more: whether the robot goes on is not known
+server_unavailable    no server offered the action within 5 s; the robot has done nothing
+server_lost           the server went away during the goal: whether the robot goes on is not known
 ====================  ==============================================================================================
 """
 
@@ -23,7 +24,7 @@ from typing import Any, Literal, TypeVar
 from jacaros.clock import Clock
 from jacaros.env.execution import OperationExecution
 from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
-from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServiceError
+from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServerUnavailable, ServiceError
 from jacaros.ros.pending_goal import ENDING
 
 T = TypeVar("T")
@@ -131,6 +132,8 @@ class Pursuit:
             raise GoalFailed(str(error), "rejected") from None
         except CallTimedOut as error:
             raise GoalFailed(str(error), "timeout", _figure(self._limit)) from None
+        except ServerUnavailable as error:
+            raise GoalFailed(str(error), "server_unavailable") from None
         except ServiceError as error:
             raise GoalFailed(str(error), "server_lost") from None
         finally:

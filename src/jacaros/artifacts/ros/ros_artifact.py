@@ -99,8 +99,9 @@ class RosArtifact(SensingArtifact):
                 None: the field ``error_code`` (0 without one), and nothing.
 
         Raises:
-            OperationFailed: ``rejected``, ``aborted(Code,Text)``, ``canceled``, ``timeout(Seconds)`` or
-                ``server_lost``; ``wrong_value(Field)`` when the fields do not fit or one is not a number (NaN).
+            OperationFailed: ``rejected``, ``aborted(Code,Text)``, ``canceled``, ``timeout(Seconds)``,
+                ``server_unavailable`` or ``server_lost``; ``wrong_value(Field)`` when the fields do not fit or one is not
+                a number (NaN).
             InvalidArtifact: the operation is not pausable, or *pause* and *resume* are missing.
         """
         if suspend is None:

@@ -74,6 +74,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
 // The server is starting, or is gone and may come back.
 +!recover(rejected) <- .wait(3000).
++!recover(server_unavailable) <- .wait(3000).
 +!recover(server_lost) <- .wait(3000).
 
 // No way was found, or it took too long: forget obstacles that may have gone, and give them time to go.
