@@ -380,7 +380,7 @@ _TRANSLATOR = Translator(RosbagsSchema())
 def _read_frame(_: Path, data: bytes) -> str:
     told: list[str] = []
     taken: list[dict[str, Any]] = []
-    link = Link("ws://robot", lambda: None, lambda: None, taken.append, told.append)
+    link = Link("ws://robot.example", lambda: None, lambda: None, taken.append, told.append)
     link.received(data, data[:1] not in (b"{", b"["))
     for message in taken:
         try:

@@ -75,7 +75,10 @@ def test_a_robot_that_is_started_anew_is_driven_again() -> None:
         "at 0 0",
     ]
     assert lab.stands(3.5, 10.0)
-    assert len(lab.errors) == 1
+    missing, unheard = lab.errors
+    assert "the topic /odom (nav_msgs/msg/Odometry) is missing" in missing
+    assert "/cmd_vel" in unheard
+    assert "publishing anyway" in unheard, "the robot is away when the next command is due"
     assert_arrived(lab)
 
 
