@@ -61,6 +61,11 @@ def graph_options(command: F) -> F:
     return _with(command, (*_ADDRESS, _NAMESPACE, *_NAMES))
 
 
+def address_options(command: F) -> F:
+    """Give a command the options that name a graph and the namespace of a node in it."""
+    return _with(command, (*_ADDRESS, _NAMESPACE))
+
+
 def world_options(command: F) -> F:
     """The same without a namespace: a world file says those of its robots."""
     return _with(command, (*_ADDRESS, *_NAMES))

@@ -37,7 +37,7 @@ _ROS1_WITHOUT_EFFECT = ("__log",)
 
 def has_ros_arguments(arguments: Sequence[str]) -> bool:
     """Whether ROS's tools have added something to a command that joins a graph."""
-    if not arguments or (arguments[0] not in ("run", "sim") and "." not in arguments[0]):
+    if not arguments or (arguments[0] not in ("run", "sim", "guard") and "." not in arguments[0]):
         return False
     return any(each == "--ros-args" for each in arguments) or any(_ros1_arguments(arguments))
 

@@ -63,6 +63,12 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 )
 @click.option("--until-idle", is_flag=True, help="End when no agent has anything to do or to wait for.")
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds of the run's clock.")
+@click.option(
+    "--guard",
+    is_flag=True,
+    help="Have a process of its own stop the robot if this one dies, freezes or is stuck (real graphs only). Uses the "
+    "`jacaros guard` of this node, or starts one.",
+)
 @graph_options
 @parameter_options
 @click.option(
@@ -109,6 +115,7 @@ def command(
     mappings: tuple[str, ...],
     until_idle: bool,
     seconds: float | None,
+    guard: bool,
     domain_id: int | None,
     master: str | None,
     bridge: str | None,
@@ -163,6 +170,7 @@ def command(
         rosout=rosout,
         diagnostics=diagnostics,
         mappings=mappings,
+        guard=guard,
     )
     console = StandardConsole(
         "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE

@@ -32,6 +32,7 @@ class RunOptions:
         domain_id, master, bridge, node_name, remap, parameters: see `jacaros.ros.address.GraphAddress`.
         rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
         mappings: mapping files whose artifacts are made at the start.
+        guard: have a process of its own stop the robot when this one no longer can.
         diagnostics: publish the state of agents and connection on ``/diagnostics``; None: on real graphs.
     """
 
@@ -54,6 +55,7 @@ class RunOptions:
     rosout: bool | None = None
     diagnostics: bool | None = None
     mappings: tuple[str, ...] = ()
+    guard: bool = False
 
     @property
     def real_graph(self) -> bool:
@@ -103,6 +105,11 @@ class RunOptions:
             raise UsageError(
                 "--clock ros follows the /clock of a real ROS graph (--ros ros1 or ros2); in the graph inside the "
                 "process time is virtual with --clock fast"
+            )
+        if self.guard and not self.real_graph:
+            raise UsageError(
+                "--guard needs a real ROS graph (--ros ros1, ros2 or rosbridge): in the graph inside the process, agents "
+                "and robot end together"
             )
         if self.real_graph or self._names_the_graph():
             self.address.check()

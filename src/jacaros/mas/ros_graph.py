@@ -16,6 +16,7 @@ from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
     from jacaros.mas.empty_graph import EmptyGraph
+    from jacaros.mas.guarding import RunGuard
     from jacaros.mas.undeclared import UndeclaredParameters
     from jacaros.ros.backend import Backend
     from jacaros.ros.given_parameters import GivenParameters
@@ -72,6 +73,7 @@ class RosGraph:
         self._time: GraphTime | None = None
         self._empty: EmptyGraph | None = None
         self._undeclared: UndeclaredParameters | None = None
+        self._guard: RunGuard | None = None
         self.world: World | None = None
 
     async def start(self) -> None:
@@ -100,6 +102,19 @@ class RosGraph:
                 self._look_for_others(backend)
         elif self._source is not None or self._options.show_world:
             self.backend()
+
+    async def guard(self) -> None:
+        """Start the guard, if the options ask for one, and the heartbeat.
+
+        Raises:
+            UsageError: it did not start.
+        """
+        if self._options.guard:
+            from jacaros.mas.guarding import RunGuard  # here: only for runs with a guard
+
+            options = self._options
+            self._guard = RunGuard(options.address, self.backend(), options.ros_clock, self._log_ros)
+            await self._guard.start()
 
     def backend(self) -> "Backend":
         """The node of the agent system in the ROS graph."""
@@ -144,6 +159,8 @@ class RosGraph:
     async def close(self) -> None:
         """Stop the robots, then the world, and leave the graph."""
         async with AsyncExitStack() as steps:  # the last one that is written goes first
+            if self._guard is not None:
+                steps.push_async_callback(self._guard.close)
             for companion in self._companions:
                 steps.push_async_callback(companion.close)
             if self._node is not None:

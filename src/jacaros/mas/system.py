@@ -170,6 +170,7 @@ class System:
             self._publish_diagnostics()
         if self._has_environment and self._is_furnished():
             await self.surroundings().furnish(self.deployment)
+        await self.ros.guard()
         agents = list(zip(self.deployment.agents, programs, strict=True))
         hosts = [population.add(spec, program) for spec, program in agents]
         for host, (spec, program) in zip(hosts, agents, strict=True):

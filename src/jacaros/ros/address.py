@@ -16,6 +16,14 @@ from jacaros.ros.parameter_store import checked_value
 if TYPE_CHECKING:
     from jacaros.ros.backend import Backend
 
+_VARIABLES = {
+    "memory": ("", ""),
+    "ros1": ("ROS_MASTER_URI", "http://localhost:11311"),
+    "ros2": ("ROS_DOMAIN_ID", "0"),
+    "rosbridge": ("ROSBRIDGE_URI", ""),
+}
+"""By kind: the variable that names the graph where no option does, and what it is without both."""
+
 LAST_DOMAIN = 232
 """The highest domain id whose ports all exist (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
 
@@ -43,6 +51,25 @@ class GraphAddress:
     node_name: str | None = None
     remap: Mapping[str, str] = field(default_factory=dict)
     parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
+
+    @property
+    def identity(self) -> str:
+        """The domain or address of the graph, wherever it is given."""
+        variable, default = _VARIABLES[self.kind]
+        given = self.domain_id if self.domain_id is not None else self.master or self.bridge
+        return str(given if given is not None else os.environ.get(variable) or default)
+
+    @property
+    def arguments(self) -> list[str]:
+        """The graph and the namespace, as options of a command line."""
+        options = {
+            "--ros": self.kind,
+            "--domain-id": self.domain_id,
+            "--master": self.master,
+            "--bridge": self.bridge,
+            "--namespace": self.namespace or None,
+        }
+        return [part for name, value in options.items() if value is not None for part in (name, str(value))]
 
     def check(self) -> None:
         """Refuse what cannot be, or cannot go together.

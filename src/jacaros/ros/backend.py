@@ -9,6 +9,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Protocol
 
+from jacaros.clock import Clock
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.fields import FieldType
 from jacaros.ros.given_parameters import GivenParameters
@@ -187,6 +188,10 @@ class Backend(Protocol):
     @property
     def node_name(self) -> str:
         """Absolute name of the node."""
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that it was given."""
 
     @property
     def connected(self) -> bool:

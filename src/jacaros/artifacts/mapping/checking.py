@@ -24,9 +24,6 @@ from jacaros.ros.fields import FieldType
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 from jacaros.yaml_nodes import Problem
 
-TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-"""Types of commands that make a robot move."""
-
 UNCERTAIN = "is not known here"
 """Part of the message for types that only the robot's middleware may know."""
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import suppress
 
-from jacaros.artifacts.mapping.checking import TWISTS, message_types
+from jacaros.artifacts.mapping.checking import message_types
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
     FieldPart,
@@ -24,6 +24,7 @@ from jacaros.artifacts.mapping.value_words import with_unit, word_for_field, wor
 from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
+from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.parameter_store import kind_of
 from jacaros.yaml_nodes import Problem
 
@@ -184,7 +185,7 @@ def parameter_words(artifact: ArtifactPart, part: OperationPart) -> dict[str, st
 def _likely_type(part: OperationPart, interfaces: Interfaces) -> str:
     """The type of a velocity whose type the mapping leaves to the robot; empty for others."""
     if part.kind is OperationKind.PUBLISH and part.values:
-        for type_name in TWISTS:
+        for type_name in VELOCITIES:
             problems: list[Problem] = []
             filler(part.values, type_name, interfaces, problems)
             if not problems:

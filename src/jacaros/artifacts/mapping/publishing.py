@@ -4,17 +4,17 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from jacaros.artifacts.mapping.checking import TWISTS
 from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.ros.acting import missing_number
-from jacaros.artifacts.ros.lane import Lane, Ticket, lane_of
+from jacaros.artifacts.ros.lane import GUARD_TRIPPED, Lane, Ticket, lane_of
 from jacaros.artifacts.ros.matching import Matching
 from jacaros.env.artifact import Out
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.qos import DEFAULT_QOS
 from jacaros.yaml_nodes import Problem
 
@@ -53,7 +53,7 @@ class Publishing:
         self._matching = host.matching_of(
             self._publisher, part.match_timeout, part.unmatched, self._warn_unmatched
         )
-        self._drives = type_name in TWISTS
+        self._drives = type_name in VELOCITIES
         if self._drives:
             self._lane = lane_of(host.ros, host.robot_prefix)
             host.at_dispose(host.ros.add_exit_hook(self._stand))
@@ -63,7 +63,7 @@ class Publishing:
         """What the last message says: unless it is written, velocities end with zero."""
         if self._part.at_end is not None:
             return self._part.at_end
-        if type_name not in TWISTS:
+        if type_name not in VELOCITIES:
             return None
         return tuple(each for each in values if ".header" in each.target.steps)
 
@@ -127,6 +127,7 @@ class Publishing:
 
         ticket = Ticket(halt)
         host.current.on_pause(stop)
+        ignore = guarded_by(host.ros).on_interruption(lambda: ticket.interrupt(GUARD_TRIPPED))
         left = seconds
         pauses = self._pauses(inputs) if seconds > 0.0 else iter(())
         try:
@@ -137,13 +138,17 @@ class Publishing:
                 elif not ticket.aborted and (pause := next(pauses, None)) is not None:
                     await host.step(ticket.wait(host.clock, pause))
                 elif not ticket.aborted:
-                    began = host.clock.elapsed
+                    began, ticket.gap = host.clock.elapsed, None
                     self._send(inputs)
                     await host.step(ticket.wait(host.clock, min(period, left)))
                     left -= host.clock.elapsed - began
+                    if ticket.gap is not None and self._drives:
+                        text = f"{self._part.name} was interrupted ({ticket.gap}), and goes by time alone"
+                        host.fail(text, "interrupted", round(seconds - left, 3))
                 if ticket.aborted:
                     host.fail(f"{self._part.name} was aborted", "aborted", round(seconds - left, 3))
         finally:
+            ignore()
             halt()
             lane.leave(ticket)
 

@@ -28,6 +28,8 @@ from jacaros.ros.backend import (
     TopicEvent,
 )
 from jacaros.ros.errors import RosError
+from jacaros.ros.guarded import VELOCITIES, guarded_by
+from jacaros.ros.names import message_type
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 
@@ -116,7 +118,11 @@ class ConnectedArtifact(Artifact):
 
     def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
         """Publish on the robot's *topic* until the artifact is disposed."""
-        return self.kept(self.ros.publisher(self.robot_topic(topic), type_name, qos))
+        made = self.kept(self.ros.publisher(self.robot_topic(topic), type_name, qos))
+        full = message_type(type_name)
+        if full in VELOCITIES:
+            self.at_dispose(guarded_by(self.ros).add_topic(made.topic, full))
+        return made
 
     def matching_of(
         self,
@@ -259,7 +265,9 @@ class ConnectedArtifact(Artifact):
             name: below the robot's name, such as ``navigate_to_pose``.
             type_name: such as ``nav2_msgs/action/NavigateToPose``.
         """
-        return self.kept(self.ros.action_client(self.robot_topic(name), type_name))
+        client = self.kept(self.ros.action_client(self.robot_topic(name), type_name))
+        self.at_dispose(guarded_by(self.ros).add_action(client.name, type_name))
+        return client
 
     def service(self, name: str, type_name: str, handler: Callable[..., Any]) -> Service:
         """Offer the robot's service *name* until the artifact is disposed.

@@ -10,7 +10,15 @@ from collections.abc import Callable
 from weakref import WeakKeyDictionary
 
 from jacaros.clock import Clock
+from jacaros.env.values import Atom, Structure
 from jacaros.ros.backend import Backend
+
+GAP = 0.5
+"""Seconds by which a motion's next moment may be late, or the time of day be set; more is a gap: for longer than a base
+waits for commands nobody watched the robot."""
+
+GUARD_TRIPPED = Atom("guard_tripped")
+"""The gap of a robot that a guard has stopped."""
 
 
 class Ticket:
@@ -21,17 +29,25 @@ class Ticket:
 
     Attributes:
         aborted: somebody wants this motion to end.
+        gap: why nobody has watched the robot for a while, for the motion to take; None otherwise.
     """
 
     def __init__(self, stop: Callable[[], None]) -> None:
         self.stop = stop
         self.aborted = False
+        self.gap: Structure | Atom | None = None
         self._waiting: asyncio.Future[None] | None = None
         self._woken = False
 
     def abort(self) -> None:
         """End the motion: the robot is stopped here and now, the operation fails as soon as it runs."""
         self.aborted = True
+        self.stop()
+        self.wake()
+
+    def interrupt(self, why: Structure | Atom) -> None:
+        """Stop the robot here and now; the motion decides whether it continues."""
+        self.gap = why
         self.stop()
         self.wake()
 
@@ -48,6 +64,7 @@ class Ticket:
             self._woken = False
             return
         waiting = self._waiting = asyncio.get_running_loop().create_future()
+        began, set_to = clock.elapsed, clock.now() - clock.elapsed
         timer = None if seconds is None else clock.call_later(seconds, self.wake)
         try:
             await waiting
@@ -55,6 +72,18 @@ class Ticket:
             self._waiting = None
             if timer is not None:
                 timer.cancel()
+        if seconds is not None:
+            self._look_for_gap(clock.elapsed - began - seconds, clock.now() - clock.elapsed - set_to)
+
+    def _look_for_gap(self, late: float, moved: float) -> None:
+        """Notice that the process was frozen or stuck, or that the clock was set."""
+        if late > GAP:
+            self.gap = Structure("delayed", (round(late, 3),))
+        elif abs(moved) > GAP:
+            self.gap = Structure("clock_jumped", (round(moved, 3),))
+        else:
+            return
+        self.stop()
 
 
 class Lane:

@@ -4,14 +4,16 @@ Every end publishes zero velocity: done, failed, dropped, suspended, odometry lo
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from jacaros.artifacts.ros.control import STANDSTILL, Limits, Pose, Velocity
-from jacaros.artifacts.ros.lane import Lane, Ticket
+from jacaros.artifacts.ros.control import STANDSTILL, Limits, Pose, Velocity, distance
+from jacaros.artifacts.ros.lane import GUARD_TRIPPED, Lane, Ticket
 from jacaros.artifacts.ros.maneuver import Maneuver
 from jacaros.artifacts.ros.matching import Matching
 from jacaros.artifacts.ros.odometer import Odometer
+from jacaros.env.values import Atom, Structure
 
 STALE = 0.5
 """Seconds after which the newest odometry is too old to drive by; the robot stands until more comes."""
@@ -24,6 +26,12 @@ STUCK = 2.0
 
 LEAST_PROGRESS = 0.01
 """Metres or radians that count as getting on."""
+
+FRESH = 2
+"""Odometry messages after a gap until a motion continues: the first one may be from before."""
+
+LEAP = 1.0
+"""Metres that odometry may move during a gap; more means that it was reset, and places in it have another meaning."""
 
 LONGEST_BRAKING = 3.0
 """Seconds after which a robot that should stand is taken for standing: its twist may only be noise."""
@@ -74,6 +82,12 @@ class Wheels(Protocol):
     def command(self, velocity: Velocity) -> None:
         """Publish a velocity command."""
 
+    def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call *callback* when a guard has stopped the robot; the result ends that."""
+
+    def interrupted(self, why: Structure | Atom) -> None:
+        """Signal that the robot was not watched for a while."""
+
     def show(self, motion: "Motion", state: str | None) -> None:
         """Tell observers what the motion does; None: it is over."""
 
@@ -99,6 +113,9 @@ class Motion:
         self._active = 0.0
         self._blind_since: float | None = None
         self._frame = ""
+        self._fresh = 0
+        self._left_at: Pose | None = None
+        self._watched = False
         self._progress = Progress()
 
     def halt(self) -> None:
@@ -117,14 +134,16 @@ class Motion:
         """Drive the maneuver to its end.
 
         Raises:
-            MotionFailed: ``aborted``, ``no_odometry``, ``blocked`` or ``timeout``.
+            MotionFailed: ``aborted``, ``no_odometry``, ``blocked``, ``interrupted`` or ``timeout``.
         """
         forget = self._execution.on_pause(self._on_pause)
+        ignore = self._wheels.on_interruption(lambda: self._ticket.interrupt(GUARD_TRIPPED))
         try:
             await self._enter_lane()
             await self._drive()
         finally:
             forget()
+            ignore()
             self.end()
 
     def _on_pause(self) -> None:
@@ -168,6 +187,7 @@ class Motion:
         blind = not self._maneuver.needs_odometry
         pauses = self._wheels.matching.pauses(always=blind)
         while not self._execution.paused:
+            self._heed_gap()
             seen = blind or self._has_odometry()
             pause = next(pauses, None)
             if pause is None and seen and (self._stands() or braking >= LONGEST_BRAKING):
@@ -187,6 +207,7 @@ class Motion:
                     maneuver.rest(self._pose())
                     return False
                 continue
+            self._heed_gap()
             seen = odometer.count
             if not blind and not self._has_odometry():
                 await self._command(STANDSTILL)
@@ -245,22 +266,64 @@ class Motion:
         newest = self._wheels.odometer.newest
         return newest is None or newest.standing
 
+    def _heed_gap(self) -> None:
+        """After a gap: tell the agent, and continue by fresh odometry only; a motion by time alone fails.
+
+        Raises:
+            MotionFailed: ``interrupted``.
+        """
+        if self._sees():
+            self._watched = True
+        elif self._watched and not self._maneuver.needs_odometry:
+            self._ticket.interrupt(self._silence())
+        why, self._ticket.gap = self._ticket.gap, None
+        if why is None:
+            return
+        self._before = STANDSTILL
+        self._progress.reset()
+        self._wheels.interrupted(why)
+        self._left_at = self._pose() if self._begun else None
+        self._fresh = self._wheels.odometer.count + FRESH
+        if self._begun and not self._maneuver.needs_odometry:
+            raise MotionFailed(
+                f"the motion was interrupted ({why}), and goes by time alone",
+                "interrupted",
+                self._maneuver.covered,
+            )
+
+    def _silence(self) -> Structure:
+        age = self._wheels.odometer.age(self._wheels.clock.now())
+        return Structure("no_odometry", (round(age or 0.0, 3),))
+
+    def _sees(self) -> bool:
+        """Whether the newest odometry is of now."""
+        age = self._wheels.odometer.age(self._wheels.clock.now())
+        # By a clock that was set back the newest odometry is from the future: then too it tells nothing of now.
+        return age is not None and abs(age) <= STALE
+
     def _has_odometry(self) -> bool:
         """Whether there is odometry to drive by; fails when there was none for too long."""
         odometer = self._wheels.odometer
-        age = odometer.age(self._wheels.clock.now())
-        # By a clock that was set back the newest odometry is from the future: then too it tells nothing of now.
-        if odometer.trusted and age is not None and abs(age) <= STALE:
+        if odometer.trusted and odometer.count >= self._fresh and self._sees():
             self._stay_in(odometer.frame)
+            self._check_leap()
             self._blind_since = None
             return True
         if self._blind_since is None:
             self._blind_since = self._active
+            if self._begun and odometer.trusted and odometer.count >= self._fresh:
+                self._ticket.gap = self._silence()
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
             bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""
             raise MotionFailed(f"no odometry came for {limit:g} s{bad}", "no_odometry", limit)
         return False
+
+    def _check_leap(self) -> None:
+        """Fail when odometry was reset during a gap: the robot was started anew, and nobody knows where the goal is."""
+        left_at, self._left_at = self._left_at, None
+        if left_at is not None and distance(left_at, self._pose()) > LEAP:
+            raise MotionFailed("odometry was reset", "interrupted", self._maneuver.covered)
 
     def _stay_in(self, frame: str) -> None:
         """Fail when poses are given in another frame than at the beginning: the goal is a place in the first one."""

@@ -23,8 +23,8 @@ class ArtCmdVel(WheeledArtifact):
     Lengths are metres, angles degrees (counter-clockwise positive), poses those of odometry.  Every motion
     waits until no other motion drives the robot, stops with zero velocity whatever its end, stops while its
     intention is suspended and then goes on with what remained, and fails with one of the reasons
-    ``aborted(Covered)``, ``blocked(Covered)``, ``no_odometry(Seconds)`` and ``timeout(Seconds)``; Covered is
-    what was driven (metres) or turned (degrees).
+    ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``, ``no_odometry(Seconds)`` and
+    ``timeout(Seconds)``; Covered is what was driven (metres) or turned (degrees).
 
     Options and the property ``moving``: those of `WheeledArtifact`.
     """

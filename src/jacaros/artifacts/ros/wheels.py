@@ -1,6 +1,7 @@
 """Artifacts that drive wheels: options, topics and the state that all motion operations share."""
 
 import math
+from collections.abc import Callable
 from typing import ClassVar
 
 from jacaros.artifacts.ros.control import STANDSTILL, Limits, Velocity
@@ -13,7 +14,8 @@ from jacaros.artifacts.ros.odometry import pose_values
 from jacaros.artifacts.ros.options import positive, text
 from jacaros.artifacts.ros.reading import Reading, ReadingPolicy
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
-from jacaros.env.values import Atom
+from jacaros.env.values import Atom, Structure
+from jacaros.ros.guarded import guarded_by
 from jacaros.ros.qos import SENSOR_DATA
 
 TWIST = "geometry_msgs/msg/Twist"
@@ -44,6 +46,10 @@ class WheeledArtifact(RosArtifact):
 
     Properties:
         moving(State): ``stopped``, ``driving``, ``turning``, ``waiting`` or ``paused``.
+
+    Signals:
+        motion_interrupted(Why): the robot was not watched for a while and has been stopped.  Why is ``delayed(Seconds)``
+            (the process was frozen or stuck), ``no_odometry(Seconds)``, ``clock_jumped(Seconds)`` or ``guard_tripped``.
 
     Attributes:
         lane: who drives the robot; shared with all artifacts of the same robot.
@@ -125,6 +131,14 @@ class WheeledArtifact(RosArtifact):
 
     # What a motion needs of its artifact.
 
+    def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call *callback* when a guard has stopped the robot; the result ends that."""
+        return guarded_by(self.ros).on_interruption(callback)
+
+    def interrupted(self, why: Structure | Atom) -> None:
+        """Signal `motion_interrupted`."""
+        self.signal("motion_interrupted", why)
+
     def command(self, velocity: Velocity) -> None:
         """Publish one velocity command."""
         if velocity != STANDSTILL:
@@ -162,8 +176,8 @@ class WheeledArtifact(RosArtifact):
         """Drive *maneuver* to its end; for operations marked as pausable.
 
         Raises:
-            OperationFailed: ``aborted(Covered)``, ``blocked(Covered)``, ``no_odometry(Seconds)`` or
-                ``timeout(Seconds)``.
+            OperationFailed: ``aborted(Covered)``, ``blocked(Covered)``, ``interrupted(Covered)``,
+                ``no_odometry(Seconds)`` or ``timeout(Seconds)``.
         """
         motion = Motion(self, maneuver)
         try:

@@ -1,0 +1,77 @@
+"""``jacaros guard NAME``."""
+
+import os
+import sys
+from contextlib import suppress
+
+import click
+
+from jacaros.cli.graph_options import address_options
+from jacaros.clock import WallClock, run
+
+LEAST_TIMEOUT = 0.15
+"""Seconds: three heartbeats."""
+
+
+@click.command("guard", short_help="Stop the robot when its agents no longer can.")
+@click.argument("name")
+@click.option(
+    "--ros",
+    type=click.Choice(("ros1", "ros2", "rosbridge")),
+    required=True,
+    envvar="JACAROS_ROS",
+    show_envvar=True,
+    help="ROS graph to join.",
+)
+@address_options
+@click.option("--node-name", metavar="NODE", help="Name of the guard's node (default: NAME_guard).")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(min=LEAST_TIMEOUT),
+    default=0.3,
+    metavar="S",
+    show_default=True,
+    envvar="JACAROS_GUARD_TIMEOUT",
+    show_envvar=True,
+    help="Seconds without a heartbeat after which the robot is stopped. Less stops sooner; more has fewer false alarms on "
+    "a busy machine.",
+)
+@click.option(
+    "--once", is_flag=True, help="Exit when the agents have ended in good order, or when none connect."
+)
+def command(
+    name: str,
+    ros: str,
+    domain_id: int | None,
+    master: str | None,
+    bridge: str | None,
+    namespace: str,
+    node_name: str | None,
+    timeout: float,
+    once: bool,
+) -> None:
+    """Guard the robot of the agents whose node is called NAME, until Ctrl+C.
+
+    `jacaros run --guard` on the same machine and graph finds this guard and sends its heartbeat. When the heartbeat stops,
+    the guard cancels all goals of the actions that the agents use, and sends zero velocity to their topics until the
+    agents return.
+    """  # fmt: skip
+    from jacaros.ros.address import GraphAddress
+    from jacaros.ros.guard import Guard
+    from jacaros.ros.heartbeat import socket_path
+
+    address = GraphAddress(ros, domain_id, master, bridge, namespace, node_name)
+    address.check()
+
+    async def main() -> None:
+        backend = address.open(WallClock(), f"{name}_guard", _log)
+        agents = f"{backend.node_name.rpartition('/')[0]}/{name}"
+        await Guard(backend, socket_path(ros, address.identity, agents), timeout, once, _log).run()
+
+    run(main, WallClock())
+
+
+def _log(text: str) -> None:
+    """Write a line; who reads it may have died with the agents."""
+    with suppress(OSError):
+        os.write(sys.stderr.fileno(), f"[guard {os.getpid()}] {text}\n".encode())

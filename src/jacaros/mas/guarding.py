@@ -1,0 +1,93 @@
+"""The guard of a run: found or started, and told that the run is alive."""
+
+import asyncio
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+
+from jacaros.errors import UsageError
+from jacaros.ros.address import GraphAddress
+from jacaros.ros.backend import Backend
+from jacaros.ros.guarded import guarded_by
+from jacaros.ros.heartbeat import Heartbeat, socket_path
+
+STARTING = 15.0
+"""Seconds that a guard has to start and to join the graph."""
+RETRY = 0.05
+"""Seconds between two attempts to connect."""
+
+
+class RunGuard:
+    """Keeps a guard beside a run, from its start to its end.
+
+    A guard that is running for this node is used; it may have been started separately, or have stopped the robot after a
+    former run died.  Otherwise one is started.  It outlives the agents unless they end in good order.
+
+    Args:
+        address: of the graph.
+        backend: the node of the run.
+        simulated_time: whether the run follows ``/clock``.
+        log: takes a line for people.
+    """
+
+    def __init__(
+        self, address: GraphAddress, backend: Backend, simulated_time: bool, log: Callable[[str], None]
+    ) -> None:
+        self._address, self._backend, self._simulated_time, self._log = address, backend, simulated_time, log
+        self._path = socket_path(address.kind, address.identity, backend.node_name)
+        self._heartbeat: Heartbeat | None = None
+        self._returning: asyncio.Task[None] | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+
+    async def start(self) -> None:
+        """Find or start the guard, and wait until it can stop the robot.
+
+        Raises:
+            UsageError: no guard was ready in time.
+        """
+        try:
+            async with asyncio.timeout(STARTING):
+                await self._connect()
+        except TimeoutError:
+            raise UsageError(
+                f"the guard did not start within {STARTING:g} s; `jacaros guard` starts it by hand and prints why"
+            ) from None
+
+    async def close(self) -> None:
+        """Tell the guard that the robot has been stopped and the run has ended."""
+        if self._returning is not None:
+            self._returning.cancel()
+        if self._heartbeat is not None:
+            await self._heartbeat.close()
+
+    async def _connect(self) -> None:
+        while True:
+            heartbeat = Heartbeat(
+                guarded_by(self._backend), self._backend.node_name, self._simulated_time, self._lost
+            )
+            with suppress(OSError):
+                await heartbeat.connect(self._path)
+                self._heartbeat = heartbeat
+                self._backend.add_exit_hook(heartbeat.leaving)
+                await heartbeat.ready.wait()
+                return
+            if self._process is None or self._process.poll() is not None:
+                self._launch()
+            await asyncio.sleep(RETRY)
+
+    def _launch(self) -> None:
+        name = self._backend.node_name.rpartition("/")[2]
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "jacaros", "guard", name, "--once", *self._address.arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            start_new_session=True,  # Ctrl+C at the terminal is for the agents, which then say goodbye
+        )
+
+    def _lost(self) -> None:
+        self._heartbeat = None
+        self._log(
+            "warning: the guard is gone; starting another, and until it is ready nothing guards the robot"
+        )
+        self._returning = asyncio.ensure_future(self._connect())

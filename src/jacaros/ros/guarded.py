@@ -1,0 +1,75 @@
+"""What a node drives, and what interrupts its motions: shared by its artifacts, its heartbeat and its motions."""
+
+from collections import Counter
+from collections.abc import Callable
+from weakref import WeakKeyDictionary
+
+from jacaros.ros.backend import Backend
+
+VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+"""Types of the messages that command a velocity."""
+
+Named = tuple[str, str]
+"""Absolute name and type of a topic or an action."""
+
+
+class Guarded:
+    """The velocity topics and actions of one node, which a guard stops when the node can no longer do so.
+
+    Attributes:
+        on_change: called after something was added or removed.
+    """
+
+    def __init__(self) -> None:
+        self.on_change: Callable[[], None] = lambda: None
+        self._topics: Counter[Named] = Counter()
+        self._actions: Counter[Named] = Counter()
+        self._motions: list[Callable[[], None]] = []
+
+    @property
+    def topics(self) -> list[Named]:
+        """The velocity topics that are open now, sorted."""
+        return sorted(self._topics)
+
+    @property
+    def actions(self) -> list[Named]:
+        """The actions that have a client now, sorted."""
+        return sorted(self._actions)
+
+    def add_topic(self, name: str, type_name: str) -> Callable[[], None]:
+        """Add a velocity topic; the result removes it."""
+        return self._add(self._topics, (name, type_name))
+
+    def add_action(self, name: str, type_name: str) -> Callable[[], None]:
+        """Add an action; the result removes it."""
+        return self._add(self._actions, (name, type_name))
+
+    def _add(self, group: Counter[Named], item: Named) -> Callable[[], None]:
+        def remove() -> None:
+            group[item] -= 1
+            if group[item] <= 0:
+                del group[item]
+                self.on_change()
+
+        group[item] += 1
+        if group[item] == 1:
+            self.on_change()
+        return remove
+
+    def on_interruption(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call *callback*, on the loop, when a guard has stopped the robot; the result ends that."""
+        self._motions.append(callback)
+        return lambda: self._motions.remove(callback)
+
+    def interrupt(self) -> None:
+        """Interrupt all motions: a guard has stopped the robot meanwhile."""
+        for callback in list(self._motions):
+            callback()
+
+
+_guarded: WeakKeyDictionary[Backend, Guarded] = WeakKeyDictionary()
+
+
+def guarded_by(backend: Backend) -> Guarded:
+    """Return what the node of *backend* drives: always the same object for the same backend."""
+    return _guarded.setdefault(backend, Guarded())

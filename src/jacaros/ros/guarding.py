@@ -1,0 +1,81 @@
+"""When a guard stops the robot: a state machine without input, output or clock.
+
+idle      no agents, nothing to stop
+watching  heartbeats arrive
+tripped   they ceased: the robot is stopped until agents return and give permission
+"""
+
+from collections.abc import Callable
+
+LEAVING = 5.0
+"""Seconds without a heartbeat that agents may take to end."""
+
+
+class Watch:
+    """Decides from heartbeats whether the robot must be stopped.  Times are seconds of one clock that never goes back.
+
+    Args:
+        timeout: seconds without a heartbeat after which the guard trips.
+        on_trip: called with the reason when the guard trips.
+        on_release: called when the agents may drive again.
+
+    Attributes:
+        agents: whether agents are connected.
+        armed: whether they drive anything; otherwise there is nothing to stop.
+        tripped: why the robot is being stopped; empty while it is not.
+    """
+
+    def __init__(
+        self, timeout: float, on_trip: Callable[[str], None], on_release: Callable[[], None]
+    ) -> None:
+        self.agents = self.armed = False
+        self.tripped = ""
+        self._timeout = timeout
+        self._on_trip, self._on_release = on_trip, on_release
+        self._patience = timeout
+        self._heard = 0.0
+
+    def connect(self, now: float) -> None:
+        """Agents have connected.  A tripped guard stays so until they give permission."""
+        self.agents = True
+        self._patience = self._timeout
+        self._heard = now
+
+    def beat(self, now: float) -> None:
+        """Take a heartbeat, or any other message of the agents."""
+        self._heard = now
+
+    def permit(self) -> None:
+        """Release the robot: the agents are back and have interrupted their motions."""
+        if self.tripped:
+            self.tripped = ""
+            self._on_release()
+
+    def expect_end(self) -> None:
+        """The agents have begun to end, and stop their robot themselves: they need not be in time with heartbeats."""
+        self._patience = LEAVING
+
+    def leave(self) -> None:
+        """The agents have ended in good order and stopped their robot themselves."""
+        self.agents = False
+        self.permit()
+
+    def lose(self) -> None:
+        """The connection broke without a goodbye: the agents' process has died."""
+        self.agents = False
+        self._trip("the agents' process died")
+
+    def look(self, now: float) -> float:
+        """Trip if heartbeats ceased; the seconds until it must be looked again, at most the timeout."""
+        if not (self.agents and self.armed) or self.tripped:
+            return self._timeout
+        silence = now - self._heard
+        if silence < self._patience:
+            return self._patience - silence
+        self._trip(f"no heartbeat of the agents for {silence:.2f} s")
+        return self._timeout
+
+    def _trip(self, why: str) -> None:
+        if self.armed and not self.tripped:
+            self.tripped = why
+            self._on_trip(why)

@@ -1,0 +1,163 @@
+"""The heartbeat of the agents' process: where it goes, what it says, and who sends it.
+
+A Unix socket joins one process of agents to its guard.  Each line is a JSON object.  The agents send
+
+    {"node": N, "simulated_time": B, "topics": [[NAME, TYPE], ...], "actions": [[NAME, TYPE], ...]}
+                      first, and whenever what they drive has changed
+    {}                every `PERIOD` seconds, from their event loop: a loop that is stuck sends nothing
+    {"permit": true}  after `tripped`: their motions are interrupted, and the robot may be released
+    {"leaving": true} when their process begins to end: it stops the robot itself, and may be late with a heartbeat
+    {"goodbye": true} before they close in good order
+
+and the guard answers ``{"ready": true}`` when it can stop all that was named, and ``{"tripped": WHY}`` when it has
+stopped the robot.
+"""
+
+import asyncio
+import hashlib
+import json
+import os
+import stat
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from jacaros.errors import UsageError
+from jacaros.ros.guarded import Guarded
+
+PERIOD = 0.05
+"""Seconds between two heartbeats."""
+UNREAD = 65536
+"""Bytes that a guard may leave unread before it counts as gone."""
+
+
+def socket_path(kind: str, graph: str, node: str) -> Path:
+    """Return where the guard of *node* listens, in a folder that is the user's alone.
+
+    Args:
+        kind, graph: the ROS graph: its kind, and domain or address.
+        node: absolute name of the agents' node.
+
+    Raises:
+        UsageError: the folder belongs to another user, or others may write to it.
+    """
+    folder = Path(tempfile.gettempdir()) / f"jacaros-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    found = folder.lstat()
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & 0o077:
+        raise UsageError(f"{folder} must be a folder of yours with mode 700; heartbeats go through it")
+    mark = hashlib.sha256(f"{kind} {graph} {node}".encode()).hexdigest()[:12]
+    return folder / f"guard-{mark}.sock"
+
+
+def line(**fields: Any) -> bytes:
+    """Return one message as it is sent."""
+    return json.dumps(fields).encode() + b"\n"
+
+
+class Heartbeat:
+    """Sends the heartbeat of this process to its guard, until it is closed or the guard is gone.
+
+    Real time counts, not the run's clock: a simulator that stands still is no reason to stop the robot.
+
+    Args:
+        guarded: what the process drives.
+        node: absolute name of its node.
+        simulated_time: whether messages carry the time of a simulator.
+        on_lost: called once when the guard is gone.
+    """
+
+    def __init__(
+        self, guarded: Guarded, node: str, simulated_time: bool, on_lost: Callable[[], None]
+    ) -> None:
+        self.ready = asyncio.Event()
+        self._guarded, self._node, self._simulated_time = guarded, node, simulated_time
+        self._on_lost = on_lost
+        self._changed = False
+        self._writer: asyncio.StreamWriter | None = None
+        self._reading: asyncio.Task[None] | None = None
+        self._timer: asyncio.TimerHandle | None = None
+
+    async def connect(self, path: Path) -> None:
+        """Connect to the guard and begin to beat.
+
+        Raises:
+            OSError: no guard listens there.
+        """
+        reader, self._writer = await asyncio.open_unix_connection(path)
+        self._guarded.on_change = self._note_change
+        self._describe()
+        self._beat()
+        self._reading = asyncio.ensure_future(self._read(reader))
+
+    async def close(self) -> None:
+        """Say goodbye: the robot has been stopped, and the guard need not do it."""
+        writer = self._writer
+        self._end()
+        if writer is not None:
+            with suppress(OSError):
+                writer.write(line(goodbye=True))
+                writer.close()
+                await writer.wait_closed()
+
+    def leaving(self) -> None:
+        """Say that the process ends and stops its robot itself, which takes longer than a heartbeat; on any thread."""
+        writer = self._writer
+        if writer is not None:
+            with suppress(OSError):
+                os.write(writer.get_extra_info("socket").fileno(), line(leaving=True))
+
+    def _note_change(self) -> None:
+        # Told with the next heartbeat: making an artifact may take long, and moves nothing yet.
+        self._changed = True
+
+    def _describe(self) -> None:
+        self._changed = False
+        self._send(
+            line(
+                node=self._node,
+                simulated_time=self._simulated_time,
+                topics=self._guarded.topics,
+                actions=self._guarded.actions,
+            )
+        )
+
+    def _beat(self) -> None:
+        self._timer = asyncio.get_running_loop().call_later(PERIOD, self._beat)
+        if self._changed:
+            self._describe()
+        self._send(b"{}\n")
+
+    def _send(self, data: bytes) -> None:
+        if self._writer is None:
+            return
+        self._writer.write(data)
+        if self._writer.transport.get_write_buffer_size() > UNREAD:
+            self._lose()
+
+    async def _read(self, reader: asyncio.StreamReader) -> None:
+        with suppress(OSError):
+            while text := await reader.readline():
+                message = json.loads(text)
+                if message.get("ready"):
+                    self.ready.set()
+                if message.get("tripped"):
+                    self._guarded.interrupt()
+                    self._send(line(permit=True))
+        self._lose()
+
+    def _lose(self) -> None:
+        if self._writer is not None:
+            self._writer.transport.abort()
+            self._end()
+            self._on_lost()
+
+    def _end(self) -> None:
+        self._writer = None
+        self._guarded.on_change = lambda: None
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._reading is not None and self._reading is not asyncio.current_task():
+            self._reading.cancel()

@@ -1,0 +1,8 @@
+// Lets the robot's navigation drive it, for longer than any test takes.
+!drive.
+
++!drive
+  <- .wait(pose(_, _, _));
+     navigate_to(38, 0, 0).
+
+-!drive[env_failure_reason(Why)] <- .print("failed ", Why).

@@ -1,0 +1,8 @@
+// Drives, and after a while its process hangs in a step that never ends.
+{ include("velocity.asl") }
+!hang.
+
++!hang
+  <- .wait(8000);
+     makeArtifact("trap", "Trap", []);
+     hang.

@@ -1,0 +1,9 @@
+// Drives by velocity commands, for longer than any test takes, and tells what has interrupted it.
+!drive.
+
++!drive
+  <- makeArtifact("wheels", "ArtCmdVel", [], Id);
+     focus(Id);
+     moveForward(38).
+
++motion_interrupted(Why) <- .print("interrupted ", Why).

@@ -1,0 +1,159 @@
+"""A robot that nobody watched for a while: it stands until fresh odometry comes, and its agent is told."""
+
+from typing import Any
+
+from robot_lab import STANDSTILL, Lab, assert_at, in_lab
+
+from jacaros.artifacts.ros.lane import GUARD_TRIPPED
+from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.env.values import Structure
+from jacaros.ros.backends.memory_faults import delayed, dropped
+from jacaros.ros.guarded import guarded_by
+
+A_SECOND = 1000 * 10_000
+"""Cycles of agents that move the virtual clock by a second, while nothing else has a turn."""
+
+
+def freeze(lab: Lab, seconds: int) -> None:
+    """The process gets no turn for so long."""
+    lab.clock.busy(seconds * A_SECOND)
+
+
+def disturb(lab: Lab, fate: Any) -> Any:
+    backend: Any = lab.backend
+    return backend.graph.disturb("/odom", fate)
+
+
+def test_a_motion_by_odometry_continues_after_a_freeze_and_arrives() -> None:
+    async def body(lab: Lab) -> None:
+        lab.record()
+        artifact = await lab.make(ArtCmdVel)
+        watcher = lab.watch(artifact)
+        moving = lab.begin(artifact, "moveForward", 3)
+        await lab.sleep(2)
+        freeze(lab, 6)
+        await moving.done
+        assert moving.outcome is not None
+        assert moving.outcome.ok
+        [(name, (why,))] = watcher.signals
+        assert name == "motion_interrupted"
+        assert isinstance(why, Structure)
+        assert why.functor == "delayed"
+        first = next(command for time, *command in lab.commands if time > 7.9)
+        assert tuple(first) == STANDSTILL
+        assert_at(lab, 3, 0, 0)
+
+    in_lab(body)
+
+
+def test_old_odometry_that_arrives_after_a_freeze_moves_nothing() -> None:
+    async def body(lab: Lab) -> None:
+        lab.record()
+        artifact = await lab.make(ArtCmdVel)
+        moving = lab.begin(artifact, "moveForward", 3)
+        await lab.sleep(2)
+        stop = disturb(lab, delayed(3.0))
+        freeze(lab, 1)
+        await lab.sleep(2)
+        assert {tuple(command) for time, *command in lab.commands if time > 2.9} == {STANDSTILL}
+        stop()
+        moving.execution.cancel()
+
+    in_lab(body)
+
+
+def test_a_motion_by_time_alone_fails_after_a_freeze() -> None:
+    async def body(lab: Lab) -> None:
+        lab.record()
+        artifact = await lab.make(ArtCmdVel)
+        moving = lab.begin(artifact, "move", 100)
+        await lab.sleep(2)
+        freeze(lab, 2)
+        await moving.done
+        assert moving.reason.startswith("interrupted(")
+        assert lab.last_command == STANDSTILL
+
+    in_lab(body)
+
+
+def test_a_motion_by_time_alone_fails_when_the_robot_falls_silent() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtCmdVel)
+        moving = lab.begin(artifact, "move", 100)
+        await lab.sleep(2)
+        disturb(lab, dropped())
+        await moving.done
+        assert moving.reason.startswith("interrupted(")
+        assert lab.clock.elapsed < 2.8
+
+    in_lab(body)
+
+
+def test_an_agent_is_told_that_odometry_was_away() -> None:
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtCmdVel)
+        watcher = lab.watch(artifact)
+        moving = lab.begin(artifact, "moveForward", 3)
+        await lab.sleep(2)
+        back = disturb(lab, dropped())
+        await lab.sleep(2)
+        back()
+        await moving.done
+        assert moving.outcome is not None
+        assert moving.outcome.ok
+        [(name, (why,))] = watcher.signals
+        assert (name, getattr(why, "functor", "")) == ("motion_interrupted", "no_odometry")
+        assert_at(lab, 3, 0, 0)
+
+    in_lab(body)
+
+
+def test_a_motion_does_not_continue_where_odometry_was_reset() -> None:
+    """The robot was started anew: its places have another meaning."""
+
+    async def body(lab: Lab) -> None:
+        artifact = await lab.make(ArtCmdVel)
+        moving = lab.begin(artifact, "driveTo", 5, 0)
+        await lab.sleep(4)
+        assert lab.sim is not None
+        back = disturb(lab, dropped())
+        await lab.sleep(2)
+        assert lab.world is not None
+        lab.world.robot().odometry.x = 0.0
+        back()
+        await moving.done
+        assert moving.reason.startswith("interrupted(")
+        assert lab.speed() == STANDSTILL
+
+    in_lab(body)
+
+
+def test_a_guard_that_has_stopped_the_robot_interrupts_its_motions() -> None:
+    async def body(lab: Lab) -> None:
+        lab.record()
+        artifact = await lab.make(ArtCmdVel)
+        watcher = lab.watch(artifact)
+        moving = lab.begin(artifact, "moveForward", 2)
+        await lab.sleep(1)
+        guarded_by(lab.backend).interrupt()
+        await lab.sleep(0)
+        assert lab.last_command == STANDSTILL
+        await moving.done
+        assert moving.outcome is not None
+        assert moving.outcome.ok
+        assert watcher.signals == [("motion_interrupted", (GUARD_TRIPPED,))]
+        assert_at(lab, 2, 0, 0)
+
+    in_lab(body)
+
+
+def test_an_artifact_names_what_it_drives_until_it_is_disposed() -> None:
+    async def body(lab: Lab) -> None:
+        guarded = guarded_by(lab.backend)
+        artifact = await lab.make(ArtCmdVel, "robot_1")
+        assert guarded.topics == [("/robot_1/cmd_vel", "geometry_msgs/msg/Twist")]
+        lab.workspace.dispose_artifact(artifact)
+        await lab.sleep(0)
+        assert guarded.topics == []
+
+    in_lab(body)
