@@ -38,6 +38,7 @@ SMOKE = ("tests/unit/compiler", "tests/unit/env", "tests/unit/extension")
 
 REAL_GRAPHS = {
     "integration": ("tests/integration",),
+    "scenarios": ("tests/scenarios",),
     "contracts": (
         "tests/contracts",
         "tests/packaging/test_ament.py",

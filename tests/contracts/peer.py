@@ -19,6 +19,7 @@ from typing import Any
 from peer_actions import ActionCommands
 from peer_graph import GraphCommands
 
+from jacaros.artifacts.ros.matching import Matching
 from jacaros.clock import Clock, WallClock, run
 from jacaros.ros.backend import Sample, TopicEvent
 from jacaros.ros.handoff import post
@@ -98,6 +99,13 @@ class Peer(ActionCommands, GraphCommands):
         publisher = self._publishers[topic]
         for _ in range(times):
             publisher.publish(publisher.message(**fields))
+
+    async def publish_first(self, topic: str, type_name: str, fields: dict[str, Any]) -> None:
+        """Publish on a new publisher when operations of artifacts do."""
+        publisher = self._publishers[topic] = self._backend.publisher(topic, type_name)
+        for seconds in Matching(publisher, 60.0, lambda *_: None).pauses():
+            await self._clock.sleep(seconds)
+        publisher.publish(publisher.message(**fields))
 
     def publish_fields(self, topic: str, fields: dict[str, Any]) -> None:
         self._publishers[topic].publish(fields)

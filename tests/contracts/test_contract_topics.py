@@ -27,6 +27,18 @@ def test_a_message_reaches_the_other_node(graph: Any, pair: Pair, topic: str) ->
     assert right.received(topic) == [{"data": "schön"}]
 
 
+def test_the_first_message_of_a_publisher_that_waited_for_its_match_arrives(
+    graph: Any, pair: Pair, topic: str
+) -> None:
+    left, right = pair
+    for number in range(5):
+        right.subscribe(f"{topic}/n{number}", "std_msgs/msg/Int32")
+        left.publish_first(f"{topic}/n{number}", "std_msgs/msg/Int32", {"data": number})
+    for number in range(5):
+        graph.wait_until(lambda n=number: right.received(f"{topic}/n{n}"), f"message {number} arrives", 10)
+        assert right.received(f"{topic}/n{number}") == [{"data": number}]
+
+
 def test_messages_go_both_ways(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     connected(graph, (left, right), topic + "/to", "std_msgs/msg/Int32")

@@ -72,6 +72,7 @@ class Program:
             "still listening",
             "later after its stamp",
             "nobody else is in the ROS",
+            "[ros] /clock is there",
             # DDS meets shared memory of a process that another test has killed, and takes the network instead.
             "RTPS_TRANSPORT_SHM",
         )
@@ -160,9 +161,11 @@ class Agents(Program):
 class WorldProcess(Program):
     """``jacaros sim`` on a real graph, and what truly happens in it."""
 
-    def __init__(self, world: str | Path, kind: str, environment: dict[str, str], folder: Path) -> None:
+    def __init__(
+        self, world: str | Path, kind: str, environment: dict[str, str], folder: Path, *options: str
+    ) -> None:
         self._file = folder / "ground_truth.jsonl"
-        command = [JACAROS, "sim", str(world), "--ros", kind, "--ground-truth", str(self._file)]
+        command = [JACAROS, "sim", str(world), "--ros", kind, "--ground-truth", str(self._file), *options]
         super().__init__(command, environment)
 
     def until_open(self) -> None:

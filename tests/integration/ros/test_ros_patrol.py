@@ -1,12 +1,9 @@
-"""Patrols over a real graph: the example, judged by its own checker, and one through a restart of the master."""
+"""A patrol over a real graph goes on while its master is restarted."""
 
 from collections.abc import Callable
-from importlib.metadata import PackageNotFoundError, version
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
-from examples_lab import EXAMPLES, checker
 from graphs import ProcessPeer
 from judging import visits
 from masters import Master
@@ -16,25 +13,8 @@ from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict
 from jacaros.testing.docking import judge_recharging, stays
 
-RUN_DOWN_SOON = {
-    "level: 100": "level: 27",
-    "drain_per_second: 0.75": "drain_per_second: 0",
-    "drain_per_metre: 3": "drain_per_metre: 6.5",
-    "charge_per_second: 10": "charge_per_second: 40",
-}
-"""What makes the example's battery one for tests in real time; only motion drains it, so that a slow machine
-makes the robot no hungrier."""
-
 CORNERS = {"0": (0.0, 0.0), "1": (1.0, 0.0), "2": (1.0, 1.0), "3": (0.0, 1.0)}
 """Corners of the patrol in the yard."""
-
-
-def is_kilted() -> bool:
-    """Whether ROS 2 here is the wheels of Kilted."""
-    try:
-        return version("ros-rclpy").startswith("9.")
-    except PackageNotFoundError:
-        return False
 
 
 def charges(truth: GroundTruth) -> int:
@@ -49,32 +29,6 @@ def since_the_last_charge(truth: GroundTruth) -> GroundTruth:
         if sample.time > truth.events_of("charged")[-1].time:
             later.record_sample(truth.robots[0], sample)
     return later
-
-
-@pytest.mark.skipif(is_kilted(), reason="the long run is made on ROS 1 and on Jazzy")
-def test_the_patrol_goes_on_after_two_charges(
-    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents], tmp_path: Path
-) -> None:
-    text = (EXAMPLES / "04_patrol/patrol.yaml").read_text(encoding="utf-8")
-    for old, new in RUN_DOWN_SOON.items():
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    (tmp_path / "patrol.yaml").write_text(text, encoding="utf-8")
-    example = checker("04_patrol")
-
-    world = run_world(tmp_path / "patrol.yaml")
-    agents = run_agents(EXAMPLES / "04_patrol/patrol.jcm")
-    world.until_truth(lambda truth: charges(truth) == 2, "two charges")
-    world.until_truth(
-        lambda truth: example.visits(since_the_last_charge(truth).path()), "a corner after them"
-    )
-    agents.stop()
-    verdict = example.check(world.close(), cycles=2)
-    print(*verdict.lines(), sep="\n")
-    assert verdict.complaints == []
-    assert agents.complaints == []
-    assert len(world.errors) == 2, "the battery became low twice"
-    assert all(line.startswith("the battery of turtlebot is at ") for line in world.errors)
 
 
 @pytest.mark.only("ros1")
