@@ -1,12 +1,19 @@
 """Options of commands that join a ROS graph: which one, and under which names."""
 
+import asyncio
+import sys
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from jacaros.errors import UsageError
+
+if TYPE_CHECKING:
+    from jacaros.ros.orphans import OrphanPolicy
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -74,6 +81,45 @@ def world_options(command: F) -> F:
 def parameter_options(command: F) -> F:
     """Give a command the options that give parameters to our node."""
     return _with(command, _PARAMETERS)
+
+
+def orphans_option(command: F) -> F:
+    """Give a command the option that says what becomes of goals of an earlier run."""
+    option = click.option(
+        "--orphans",
+        type=click.Choice(["cancel", "keep", "ask"]),
+        default="cancel",
+        help="Action goals that an earlier run of this node left behind, for example because it was killed: cancel them "
+        "(default), keep them, or ask on the terminal.",
+    )
+    return _with(command, (option,))
+
+
+def orphan_policy(written: str) -> "OrphanPolicy":
+    """Return what `--orphans` means; without a terminal, `ask` keeps goals and says so."""
+    if written == "cancel":
+        return "cancel"
+    return _ask if written == "ask" and sys.stdin.isatty() and sys.stderr.isatty() else "keep"
+
+
+async def _ask(question: str) -> bool:
+    """Ask on the terminal, in a thread that does not keep the process from ending."""
+    loop = asyncio.get_running_loop()
+    answer: asyncio.Future[str] = loop.create_future()
+
+    def settle(text: str) -> None:
+        if not answer.done():
+            answer.set_result(text)
+
+    def read() -> None:
+        print(f"{question} [Y/n] ", end="", file=sys.stderr, flush=True)
+        text = sys.stdin.readline()
+        with suppress(RuntimeError):  # the run has ended meanwhile
+            loop.call_soon_threadsafe(settle, text)
+
+    threading.Thread(target=read, name="orphans", daemon=True).start()
+    # At the end of the input there is nobody to ask: an empty answer without a line feed keeps the goal.
+    return (await answer).strip().lower() in ("y", "yes") or answer.result() == "\n"
 
 
 def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:

@@ -9,7 +9,13 @@ from typing import Any
 
 import click
 
-from jacaros.cli.graph_options import graph_options, parameter_options, read_remaps
+from jacaros.cli.graph_options import (
+    graph_options,
+    orphan_policy,
+    orphans_option,
+    parameter_options,
+    read_remaps,
+)
 from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
 from jacaros.errors import UsageError
 from jacaros.mas.console import StandardConsole
@@ -70,6 +76,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     "`jacaros guard` of this node, or starts one.",
 )
 @graph_options
+@orphans_option
 @parameter_options
 @click.option(
     "--rosout/--no-rosout",
@@ -122,6 +129,7 @@ def command(
     namespace: str,
     node_name: str | None,
     remap: tuple[str, ...],
+    orphans: str,
     param: tuple[str, ...],
     params_file: tuple[Path, ...],
     rosout: bool | None,
@@ -167,6 +175,7 @@ def command(
         node_name=node_name,
         remap=read_remaps(remap) if remap else {},
         parameters=parameters,
+        orphans=orphan_policy(orphans),
         rosout=rosout,
         diagnostics=diagnostics,
         mappings=mappings,

@@ -9,6 +9,7 @@ from jacaros.errors import UsageError
 
 if TYPE_CHECKING:
     from jacaros.ros.address import GraphAddress
+    from jacaros.ros.orphans import OrphanPolicy
     from jacaros.ros.parameter import ParameterValue
 
 ROS_KINDS = ("memory", "ros1", "ros2", "rosbridge")
@@ -29,7 +30,7 @@ class RunOptions:
         until_idle: end when no agent has anything to do and no operation is under way.
         seconds: end after so many seconds of the run's clock.
         ros_clock: time is that of the graph's ``/clock``, as a simulator publishes it.
-        domain_id, master, bridge, node_name, remap, parameters: see `jacaros.ros.address.GraphAddress`.
+        domain_id, master, bridge, node_name, remap, parameters, orphans: see `jacaros.ros.address.GraphAddress`.
         rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
         mappings: mapping files whose artifacts are made at the start.
         guard: have a process of its own stop the robot when this one no longer can.
@@ -52,6 +53,7 @@ class RunOptions:
     node_name: str | None = None
     remap: Mapping[str, str] = field(default_factory=dict)
     parameters: "Mapping[str, ParameterValue]" = field(default_factory=dict)
+    orphans: "OrphanPolicy" = "cancel"
     rosout: bool | None = None
     diagnostics: bool | None = None
     mappings: tuple[str, ...] = ()
@@ -86,6 +88,7 @@ class RunOptions:
             self.node_name,
             self.remap,
             self.parameters,
+            self.orphans,
         )
 
     def check(self) -> None:

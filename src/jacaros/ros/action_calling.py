@@ -5,7 +5,8 @@ Everything here happens on the loop.
 """
 
 import asyncio
-from collections.abc import Awaitable, Callable
+import math
+from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from contextlib import suppress
 from typing import Any, Protocol
 
@@ -22,6 +23,7 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import goal_type
+from jacaros.ros.orphans import Orphans
 from jacaros.ros.pending_goal import ENDING, LeavingGoals, PendingGoal
 from jacaros.ros.serving import checked_message
 from jacaros.ros.waiting import Absence, Waiting, within
@@ -51,6 +53,9 @@ class GoalWire(Protocol):
     def cancel_goal(self, goal_id: str) -> None:
         """Ask the server to cancel a goal, accepted or not yet."""
 
+    def adopt_goal(self, goal_id: str) -> None:
+        """Follow a goal that was accepted from an earlier run of this node, as if it had been sent here."""
+
     def forget_goal(self, goal_id: str) -> None:
         """The goal is over for this client: nothing more about it needs to be told."""
 
@@ -69,6 +74,7 @@ class GoalSender:
         type_name: action type in full form.
         leaving: by action, the goals of all clients of the node that were asked to be cancelled and have not ended;
             None: of this client alone.
+        orphans: decides about goals of earlier runs; None: they are left alone.
     """
 
     wire: GoalWire
@@ -82,6 +88,7 @@ class GoalSender:
         name: str,
         type_name: str,
         leaving: LeavingGoals | None = None,
+        orphans: Orphans | None = None,
     ) -> None:
         self.clock = clock
         self.name = name
@@ -91,6 +98,8 @@ class GoalSender:
         self._goal_type = goal_type(type_name)
         self._goals: dict[str, PendingGoal] = {}
         self._leaving: LeavingGoals = {} if leaving is None else leaving
+        self._orphans = orphans
+        self._heard_of_goals = False
         self._abandoning: set[asyncio.Task[None]] = set()
         self._arrivals: list[asyncio.Future[None]] = []
         self._losing: Timer | None = None
@@ -121,10 +130,12 @@ class GoalSender:
     ) -> PendingGoal:
         """Send a goal and wait until the server has accepted it."""
         message = checked_message(self._factory, self._goal_type, goal)
-        await self._predecessors()
         deadline = None if timeout is None else self.clock.elapsed + timeout
         while True:
             await self._server(deadline, timeout)
+            waited = await self._predecessors()
+            if deadline is not None:
+                deadline += waited
             try:
                 return await self._attempt(message, on_feedback, deadline, timeout)
             except (
@@ -177,9 +188,35 @@ class GoalSender:
         if pending.accepted:
             with suppress(ServiceError):  # the server cannot be reached, so that the goal is lost soon
                 self.wire.cancel_goal(pending.goal_id)
-        task = asyncio.get_running_loop().create_task(self._see_off(pending, afterwards))
+        self._keep(self._see_off(pending, afterwards))
+
+    def _keep(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.get_running_loop().create_task(work)
         self._abandoning.add(task)
         task.add_done_callback(self._abandoning.discard)
+
+    def goals_under_way(self, goal_ids: Iterable[str]) -> None:
+        """Look for orphans among the goals that the server pursues: only once, among those from before we joined."""
+        if self._heard_of_goals or self._orphans is None or self._closed:
+            return
+        self._heard_of_goals = True
+        for goal_id in goal_ids:
+            if goal_id not in self._goals and self._orphans.newly_found(goal_id):
+                pending = PendingGoal(self, goal_id, None)
+                pending.accepted = pending.abandoned = True
+                self._goals[goal_id] = pending
+                pending.leaves_by = math.inf  # newer goals wait for the decision
+                self._leaving.setdefault(self.name, {})[pending] = None
+                self.wire.adopt_goal(goal_id)
+                self._keep(self._decide(pending, self._orphans))
+
+    async def _decide(self, pending: PendingGoal, orphans: Orphans) -> None:
+        if not await orphans.may_cancel(self.name):
+            self.has_left(pending)
+            self._forget(pending.goal_id)
+        elif pending.end is None:
+            pending.leaves_by = None
+            self.abandon(pending)
 
     def has_left(self, pending: PendingGoal) -> None:
         """A goal has ended, or its server refuses to cancel it: newer goals wait for it no longer."""
@@ -316,12 +353,13 @@ class GoalSender:
             pending.leaves_by = self.clock.elapsed + ENDING
             self._leaving.setdefault(self.name, {})[pending] = None
 
-    async def _predecessors(self) -> None:
-        """Wait for the ends of cancelled goals of the action, each at most `ENDING` seconds.
+    async def _predecessors(self) -> float:
+        """Wait for the ends of cancelled goals of the action, each at most `ENDING` seconds; return the seconds waited.
 
         A server that takes a newer goal before it has dealt with the request ends the older one as it likes, and one
         that takes no second goal refuses the newer one.
         """
+        began = self.clock.elapsed
         for pending in list(self._leaving.get(self.name, ())):
             if not await pending.gone():
                 self.has_left(pending)
@@ -329,6 +367,7 @@ class GoalSender:
                     f"warning: action {self.name}: a cancelled goal has not ended within {ENDING:g} s; "
                     "sending the next one all the same"
                 )
+        return self.clock.elapsed - began
 
     async def _see_off(
         self, pending: PendingGoal, afterwards: Callable[[], Awaitable[object]] | None

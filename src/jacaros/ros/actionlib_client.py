@@ -19,6 +19,7 @@ from jacaros.ros.actionlib_states import (
     STATUS,
     STATUS_PERIOD,
     STATUS_TYPE,
+    UNDER_WAY,
     ActionTopicsNode,
     State,
     part_type,
@@ -104,8 +105,8 @@ class ActionlibWire:
         return self._present
 
     def new_id(self) -> str:
-        """Make up an id in actionlib's manner: node, number, time."""
-        return f"{self._node.node_name}-{next(_numbers)}-{self._node.clock.now():.9f}"
+        """Make up the id of a new goal."""
+        return self._node.orphans.named_id(next(_numbers), self._node.clock.now())
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
         """Send a goal message."""
@@ -121,6 +122,10 @@ class ActionlibWire:
         if goal is not None and goal.cancelling is None:
             goal.cancelling, goal.unmoved = self._node.clock.elapsed, 0
         self._cancel.publish(self._cancel.message(id=goal_id))
+
+    def adopt_goal(self, goal_id: str) -> None:
+        """Follow a goal of an earlier run."""
+        self._goals[goal_id] = _Goal(None, self._node.clock.elapsed, heard_of=True, accepted=True)
 
     def forget_goal(self, goal_id: str) -> None:
         """The goal is over for this client."""
@@ -199,6 +204,11 @@ class ActionlibWire:
 
     def _take_status(self, sample: Sample) -> None:
         self._note_server()
+        if self._present:  # else a request for cancelling would be lost
+            listed = sample.message.status_list
+            self._sender.goals_under_way(
+                each.goal_id.id for each in listed if State(each.status) in UNDER_WAY
+            )
         if not self._goals:
             return
         told = {

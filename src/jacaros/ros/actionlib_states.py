@@ -12,6 +12,7 @@ from jacaros.clock import Clock
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.backend import Publisher, Sample, Subscription
 from jacaros.ros.message import MessageFactory
+from jacaros.ros.orphans import Orphans
 from jacaros.ros.qos import QoS
 
 STATUS_PERIOD = 0.2
@@ -40,6 +41,10 @@ class ActionTopicsNode(Protocol):
     @property
     def node_name(self) -> str:
         """Absolute name of the node."""
+
+    @property
+    def orphans(self) -> Orphans:
+        """What recognises goals of earlier runs."""
 
     def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher:
         """Make a publisher."""
@@ -76,6 +81,7 @@ ENDS = {
     State.LOST: GoalStatus.ABORTED,
 }
 """What the last states of accepted goals are called in the port."""
+UNDER_WAY = frozenset({State.PENDING, State.ACTIVE, State.PREEMPTING, State.RECALLING})
 CANCELLING = frozenset({State.PREEMPTING, State.RECALLING, State.PREEMPTED, State.RECALLED})
 """States that tell that a request for cancelling was agreed to."""
 

@@ -10,6 +10,7 @@ from jacaros.clock import Clock
 from jacaros.errors import UsageError
 from jacaros.ros.errors import NameInvalid, ParameterRefused
 from jacaros.ros.names import NodeNames
+from jacaros.ros.orphans import OrphanPolicy
 from jacaros.ros.parameter import ParameterValue
 from jacaros.ros.parameter_store import checked_value
 
@@ -41,6 +42,7 @@ class GraphAddress:
         node_name: of our node, in place of the name that the program would give it.
         remap: names to use in place of others.
         parameters: values of parameters of our node, in place of those that are declared.
+        orphans: what becomes of action goals that an earlier run of the node left behind.
     """
 
     kind: str = "memory"
@@ -51,6 +53,7 @@ class GraphAddress:
     node_name: str | None = None
     remap: Mapping[str, str] = field(default_factory=dict)
     parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
+    orphans: OrphanPolicy = "keep"
 
     @property
     def identity(self) -> str:
@@ -137,6 +140,7 @@ class GraphAddress:
             log=log,
             remap=self.remap,
             parameters=self.parameters,
+            orphans=self.orphans,
             **options,
         )
 

@@ -17,6 +17,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, message_type
+from jacaros.ros.orphans import OrphanPolicy, Orphans
 from jacaros.ros.parameter import Parameters, ParameterValue
 from jacaros.ros.pending_goal import LeavingGoals
 from jacaros.ros.qos import DEFAULT_QOS, QoS
@@ -43,6 +44,7 @@ class NodeSettings:
         log: takes one line about the connection: waiting, missing, found, lost.
         interface_paths: folders with further definitions (``memory`` and, for services, ``ros1``).
         parameters: values of parameters of our node from outside; they take the place of declared defaults.
+        orphans: what becomes of action goals that an earlier run of the node left behind.
     """
 
     clock: Clock
@@ -52,6 +54,7 @@ class NodeSettings:
     log: Callable[[str], None] = to_stderr
     interface_paths: Sequence[Path] = ()
     parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
+    orphans: OrphanPolicy = "keep"
 
 
 class Node:
@@ -76,6 +79,7 @@ class Node:
         self.connected = False
         self.delivered: Callable[[], None] = lambda: None
         """Called on the loop when a message that came from outside has been delivered."""
+        self.orphans = Orphans(self.names.full_name, settings.orphans, settings.log)
         self.leaving_goals: LeavingGoals = {}
         """Goals of all action clients that were asked to be cancelled and have not ended."""
         self.given_parameters = GivenParameters(settings.parameters)

@@ -41,8 +41,8 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
         clock: the run's clock; the virtual one goes with ``memory`` alone.
         node_name: plain name of the node.
         namespace: put before relative names.
-        options: ``remap``, ``log``, ``parameters``, ``interface_paths`` (see `NodeSettings`); for ``memory`` also
-            ``graph``, a `jacaros.ros.backends.memory.MemoryGraph` to share; for ``ros2`` also ``domain_id``; for
+        options: ``remap``, ``log``, ``parameters``, ``orphans``, ``interface_paths`` (see `NodeSettings`); for ``memory``
+            also ``graph``, a `jacaros.ros.backends.memory.MemoryGraph` to share; for ``ros2`` also ``domain_id``; for
             ``rosbridge`` also ``url``, the server's address.
 
     Raises:
@@ -58,7 +58,9 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
             "Use the real clock (--clock real)"
         )
     options = {name: value for name, value in options.items() if value is not None}
-    common = {name: options.pop(name) for name in ("remap", "log", "parameters") if name in options}
+    common = {
+        name: options.pop(name) for name in ("remap", "log", "parameters", "orphans") if name in options
+    }
     folders = tuple(Path(folder) for folder in options.pop("interface_paths", ()))
     unknown = set(options) - _OPTIONS[kind]
     if unknown:

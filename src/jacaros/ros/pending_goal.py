@@ -1,6 +1,7 @@
 """One goal on the client's side: who waits for its acceptance, its end, the answer to a request for cancelling."""
 
 import asyncio
+import math
 from collections.abc import Awaitable, Callable
 from typing import Any, Protocol
 
@@ -98,7 +99,8 @@ class PendingGoal:
         follower: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._followers.append(follower)
         try:
-            await within(self._sender.clock, follower, self.leaves_by - self._sender.clock.elapsed)
+            left = self.leaves_by - self._sender.clock.elapsed
+            await within(self._sender.clock, follower, None if left == math.inf else left)
         except TimeoutError:
             return False
         finally:

@@ -1,8 +1,10 @@
 """The agents' process ends in the middle of a motion: the robot stops, and a new process goes on."""
 
 import signal
+import time
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 
 from graphs import ProcessPeer
 from judging import distance, stands, standstill
@@ -72,3 +74,26 @@ def test_sigkill_stops_the_robot_and_a_new_process_goes_on_from_there(
     path = world.close().path()
     assert distance(path[-1], (3.0, 0.0)) <= 0.05
     assert all(after.x >= before.x - 0.01 for before, after in pairwise(path))
+
+
+WORLDS = Path(__file__).parent / "worlds"
+NAVIGATION = {"ros1": "move_base.yaml", "ros2": "nav2.yaml"}
+
+
+def test_the_goal_of_a_killed_process_is_cancelled_when_the_next_one_starts(
+    kind: str, run_world: Callable[[str | Path], WorldProcess], run_agents: Callable[..., Agents]
+) -> None:
+    world = run_world(WORLDS / "slow.yaml")
+    options = ("--mapping", NAVIGATION[kind], "--node-name", "errand")
+    agents = run_agents("errand.asl", *options)
+    world.until_truth(lambda truth: truth.odometer() > 0.2, "the robot drives")
+    agents.signal(signal.SIGKILL)
+    agents.end()
+    again = run_agents("listen.asl", *options)
+    again.until(lambda: again.lines, "the next run knows where it is")
+    heard = world.time_of(time.time())
+    world.until_truth(lambda truth: stands(truth, heard), "the robot stands")
+    assert world.truth.latest().x < 3.8, "it has not driven to the goal"
+    assert any(
+        "still pursues a goal of an earlier run of this node; cancelling it" in line for line in again.errors
+    )

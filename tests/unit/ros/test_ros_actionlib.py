@@ -17,6 +17,7 @@ from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
 from jacaros.ros.backends.rosbridge_types import BridgeSchema
 from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
+from jacaros.ros.orphans import OrphanPolicy
 
 COUNT = "jacaros_interfaces/action/Count"
 
@@ -34,6 +35,7 @@ class Actionlib:
     def __init__(self) -> None:
         self.clock = VirtualClock()
         self.began: list[int] = []
+        self.logged: list[str] = []
         self.stopped: list[int] = []
         self.swallowed = 0
         self.sent = 0
@@ -41,6 +43,7 @@ class Actionlib:
 
     async def open(self) -> GoalSender:
         graph = MemoryGraph()
+        self.graph = graph
         schema = BridgeSchema((), lambda service, arguments: None, lambda: None)
         for part in ("ActionGoal", "ActionResult", "ActionFeedback"):
             schema.fields(part_type(COUNT, part))
@@ -62,8 +65,18 @@ class Actionlib:
         goals.publish = publish  # type: ignore[method-assign]
         return sender
 
-    async def _node(self, graph: MemoryGraph, name: str) -> MemoryBackend:
-        node = open_backend("memory", self.clock, name, graph=graph, log=print)
+    async def run_again(self, orphans: OrphanPolicy, name: str = "client") -> GoalSender:
+        """Kill the client, and give the one of the next run, with a node called *name*."""
+        self.graph.vanish("/client")
+        here = await self._node(self.graph, name, orphans)
+        sender = GoalSender(
+            self.clock, self.logged.append, here.factory, "/count", COUNT, here.leaving_goals, here.orphans
+        )
+        sender.wire = ActionlibWire(here, sender)
+        return sender
+
+    async def _node(self, graph: MemoryGraph, name: str, orphans: OrphanPolicy = "keep") -> MemoryBackend:
+        node = open_backend("memory", self.clock, name, graph=graph, log=self.logged.append, orphans=orphans)
         assert isinstance(node, MemoryBackend)
         await node.start()
         self._nodes.append(node)
@@ -91,6 +104,59 @@ def play(scene: Callable[[Actionlib], Coroutine[Any, Any, None]]) -> None:
         await graph.close()
 
     run(main, graph.clock)
+
+
+@pytest.mark.parametrize("policy", ["cancel", "yes"])
+def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_one(policy: str) -> None:
+    async def scene(graph: Actionlib) -> None:
+        asked: list[str] = []
+
+        async def agree(question: str) -> bool:
+            asked.append(question)
+            await graph.clock.sleep(30)
+            return True
+
+        client = await graph.open()
+        await client.send({"target": 3, "period": 900.0}, timeout=20)
+        client = await graph.run_again("cancel" if policy == "cancel" else agree)
+        goal = await client.send({"target": 4, "period": 0.5}, timeout=20)
+        assert graph.stopped == [3]
+        assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
+        assert graph.began == [3, 4]
+        found = "action /count still pursues a goal of an earlier run of this node"
+        if policy == "cancel":
+            assert f"warning: {found}; cancelling it" in graph.logged
+        else:
+            assert asked == [f"{found}. Cancel it?"]
+
+    play(scene)
+
+
+def test_the_goal_of_a_killed_run_is_kept_if_that_is_wanted() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        await client.send({"target": 3, "period": 900.0}, timeout=20)
+        client = await graph.run_again("keep")
+        await client.send({"target": 4, "period": 0.5}, timeout=20)
+        await graph.clock.sleep(5)
+        assert graph.stopped == []
+        found = "action /count still pursues a goal of an earlier run of this node; the robot may be moving"
+        assert graph.logged.count(f"warning: {found}") == 1
+
+    play(scene)
+
+
+def test_the_goal_of_another_node_is_no_orphan() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        await client.send({"target": 3, "period": 900.0}, timeout=20)
+        client = await graph.run_again("cancel", name="client2")
+        await client.send({"target": 4, "period": 0.5}, timeout=20)
+        await graph.clock.sleep(5)
+        assert graph.stopped == []
+        assert not [line for line in graph.logged if "earlier run" in line]
+
+    play(scene)
 
 
 def test_a_goal_that_was_lost_on_its_way_is_sent_again() -> None:

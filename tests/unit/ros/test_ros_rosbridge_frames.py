@@ -12,7 +12,9 @@ from jacaros.ros.backends.rosbridge_link import Link
 
 def told_of(payload: bytes) -> list[str]:
     told: list[str] = []
-    Link("ws://robot.example", lambda: None, lambda: None, lambda _: None, told.append).received(payload, binary=True)
+    Link("ws://robot.example", lambda: None, lambda: None, lambda _: None, told.append).received(
+        payload, binary=True
+    )
     return told
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
     from jacaros.mas.surroundings import Surroundings
     from jacaros.ros.backend import Backend
+    from jacaros.ros.orphans import OrphanPolicy
     from jacaros.ros.parameter import ParameterValue
     from jacaros.sim import World
 
@@ -67,6 +68,8 @@ class Mas(EmbeddedRun):
         master: address of the ROS 1 master; ``ROS_MASTER_URI`` unless given.
         bridge: address of the rosbridge server.
         ros_clock: the run's time is that of the graph's ``/clock``, as a simulator publishes it.
+        orphans: what becomes of action goals that an earlier run of this node left behind on a real graph: ``"cancel"``,
+            ``"keep"``, or a coroutine function that takes a question and returns True to cancel.
         mappings: mapping files whose artifacts are made at the start.
         on_print: called with agent and text whenever an agent prints; the standard output gets ``[agent] text`` without.
         on_log: called with a line for people and its level; the standard error output gets it without.
@@ -93,6 +96,7 @@ class Mas(EmbeddedRun):
         master: str | None = None,
         bridge: str | None = None,
         ros_clock: bool = False,
+        orphans: "OrphanPolicy" = "cancel",
         mappings: Iterable[str | Path] = (),
         on_print: OnPrint | None = None,
         on_log: OnLog | None = None,
@@ -109,6 +113,7 @@ class Mas(EmbeddedRun):
             bridge=bridge,
             node_name=node_name,
             remap=dict(remap or {}),
+            orphans=orphans,
             parameters=dict(parameters or {}),
             mappings=tuple(map(str, mappings)),
         )

@@ -114,6 +114,9 @@ class MemoryGoalWire:
         if server is not None and not self._node.vanished:
             self.graph.tell(server.cancel, goal_id, self)
 
+    def adopt_goal(self, goal_id: str) -> None:
+        """Never called: a graph inside the process has no earlier runs."""
+
     def forget_goal(self, goal_id: str) -> None:
         """The goal is over."""
         self._servers.pop(goal_id, None)

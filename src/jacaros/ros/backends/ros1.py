@@ -104,7 +104,13 @@ class Ros1Backend(Ros1Node):
         """Make a client of an action."""
         full_type = action_type(type_name)
         sender = GoalSender(
-            self.clock, self.log, self.factory, self.resolve(name), full_type, self.leaving_goals
+            self.clock,
+            self.log,
+            self.factory,
+            self.resolve(name),
+            full_type,
+            self.leaving_goals,
+            self.orphans,
         )
         sender.wire = ActionlibWire(self, sender)
         self.actions[sender] = None

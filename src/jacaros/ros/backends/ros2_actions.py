@@ -33,6 +33,7 @@ STATUSES = {
     Status.STATUS_CANCELED: GoalStatus.CANCELED,
     Status.STATUS_ABORTED: GoalStatus.ABORTED,
 }
+UNDER_WAY = (Status.STATUS_ACCEPTED, Status.STATUS_EXECUTING, Status.STATUS_CANCELING)
 _NUMBERS = {ours: number for number, ours in STATUSES.items()}
 Respond = Callable[[Any], None]
 

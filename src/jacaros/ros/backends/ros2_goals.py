@@ -19,6 +19,7 @@ from jacaros.ros.backends.ros2_actions import (
     STATUS,
     STATUS_QUALITY,
     STATUSES,
+    UNDER_WAY,
     goal_id,
     id_message,
     new_goal_id,
@@ -70,7 +71,9 @@ class Ros2GoalWire:
 
     def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
         self.name = name
-        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
+        self.sender = GoalSender(
+            node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
+        )
         self.sender.wire = self
         self._node = node
         self._type_name = type_name
@@ -123,7 +126,7 @@ class Ros2GoalWire:
 
     def new_id(self) -> str:
         """Make up the id of a new goal."""
-        return new_goal_id()
+        return self._node.orphans.hashed_id()
 
     def send_goal(self, identity: str, goal: Any) -> None:
         """Send a goal."""
@@ -144,6 +147,14 @@ class Ros2GoalWire:
             self._keep_looking()
         request = CancelGoal.Request(goal_info=GoalInfo(goal_id=id_message(identity)))
         self._call(self._cancel_client, request, lambda answer: self._cancel_answered(identity, answer))
+
+    def adopt_goal(self, identity: str) -> None:
+        """Follow a goal of an earlier run."""
+        goal = self._goals[identity] = _SentGoal(identity, None)
+        goal.sent = goal.accepted = True
+        self._signs.goal_begins()
+        self._ask_for_result(goal)
+        self._keep_looking()
 
     def forget_goal(self, identity: str) -> None:
         """The goal is over."""
@@ -240,6 +251,9 @@ class Ros2GoalWire:
             self.sender.feedback(identity, message.feedback)
 
     def _take_status(self, told: Any) -> None:
+        self.sender.goals_under_way(
+            goal_id(entry.goal_info.goal_id) for entry in told.status_list if entry.status in UNDER_WAY
+        )
         for entry in told.status_list:
             identity = goal_id(entry.goal_info.goal_id)
             goal = self._goals.get(identity)

@@ -11,6 +11,7 @@ from jacaros.ros.backend import Sample
 from jacaros.ros.backends.rosbridge_node import BridgeNode
 from jacaros.ros.backends.rosbridge_topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.handoff import Handoff
+from jacaros.ros.orphans import Orphans
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 
 WAITING = 300
@@ -35,6 +36,11 @@ class ActionTopics:
         self._queue: Handoff[tuple[_Lane, Any]] = Handoff(
             node.loop, WAITING, lambda item: item[0].deliver(item[1])
         )
+
+    @property
+    def orphans(self) -> Orphans:
+        """What recognises goals of earlier runs."""
+        return self._node.orphans
 
     @property
     def node_name(self) -> str:

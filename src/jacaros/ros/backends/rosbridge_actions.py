@@ -143,6 +143,9 @@ class Ros2Goals:
             sent.cancel_asked = True
             self._node.clock.call_later(CANCELED_AFTER, lambda: self._cancel_is_overdue(goal_id))
 
+    def adopt_goal(self, goal_id: str) -> None:
+        """Never called: the bridge makes up the ids that servers know, so that orphans are not recognised."""
+
     def forget_goal(self, goal_id: str) -> None:
         """The goal is over for this client."""
         self._goals.pop(goal_id, None)

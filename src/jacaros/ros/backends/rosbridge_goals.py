@@ -18,7 +18,9 @@ class BridgeActionClient(GoalSender):
     """Action client of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        super().__init__(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
+        super().__init__(
+            node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
+        )
         self._node = node
         self._wire = _Wire(node, self)
         self.wire = self._wire
@@ -73,6 +75,9 @@ class _Wire:
 
     def cancel_goal(self, goal_id: str) -> None:
         self._known.cancel_goal(goal_id)
+
+    def adopt_goal(self, goal_id: str) -> None:
+        self._known.adopt_goal(goal_id)
 
     def forget_goal(self, goal_id: str) -> None:
         if self._fitting is not None:

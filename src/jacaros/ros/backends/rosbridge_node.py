@@ -10,6 +10,7 @@ from jacaros.ros.backends.rosbridge_messages import Translator
 from jacaros.ros.backends.rosbridge_requests import Done, Requests, Sight
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory
+from jacaros.ros.orphans import Orphans
 from jacaros.ros.pending_goal import LeavingGoals
 
 
@@ -118,6 +119,7 @@ class BridgeNode(Protocol):
     translator: Translator
     goals: dict[str, Any]
     leaving_goals: LeavingGoals
+    orphans: Orphans
     delivered: Callable[[], None]
 
     @property

@@ -1,0 +1,60 @@
+"""Goals of an earlier run: its process was killed, and its action servers still pursue them.
+
+The ids of goals tell whose they are: they begin with the name of the node (ROS 1) or with a hash of it (ROS 2), then name
+the run.  So goals of other nodes are never taken for orphans.
+"""
+
+import hashlib
+import secrets
+from collections.abc import Awaitable, Callable
+from typing import Literal
+
+OrphanPolicy = Literal["cancel", "keep"] | Callable[[str], Awaitable[bool]]
+"""What becomes of orphans: cancelled, left alone, or cancelled if a question (text) is answered with True."""
+
+
+class Orphans:
+    """Recognises the goals of earlier runs of one node, and decides about them.
+
+    Args:
+        node_name: absolute name of the node.
+        policy: what becomes of them.
+        log: takes a warning.
+    """
+
+    def __init__(self, node_name: str, policy: OrphanPolicy, log: Callable[[str], None]) -> None:
+        self._policy, self._log = policy, log
+        run = secrets.token_hex(4)
+        self._families = (f"{node_name}-", hashlib.sha256(node_name.encode()).hexdigest()[:12])
+        self._named, self._hashed = (f"{family}{run}" for family in self._families)
+        self._known: set[str] = set()
+
+    def named_id(self, number: int, now: float) -> str:
+        """Make up an id in actionlib's manner: node (and run), number, time."""
+        return f"{self._named}-{number}-{now:.9f}"
+
+    def hashed_id(self) -> str:
+        """Make up an id of 16 bytes, as 32 hexadecimal digits."""
+        return self._hashed + secrets.token_hex(6)
+
+    def newly_found(self, goal_id: str) -> bool:
+        """Return whether a goal under way is an orphan that was not asked about before."""
+        if (
+            not goal_id.startswith(self._families)
+            or goal_id.startswith((self._named, self._hashed))
+            or goal_id in self._known
+        ):
+            return False
+        self._known.add(goal_id)
+        return True
+
+    async def may_cancel(self, action: str) -> bool:
+        """Decide about an orphan of *action*, and log it."""
+        found = f"action {action} still pursues a goal of an earlier run of this node"
+        if self._policy == "cancel":
+            self._log(f"warning: {found}; cancelling it")
+            return True
+        if self._policy == "keep":
+            self._log(f"warning: {found}; the robot may be moving")
+            return False
+        return await self._policy(f"{found}. Cancel it?")

@@ -1,0 +1,3 @@
+!start.
+
++!start <- .wait(pose(_, _, _)); navigate_to(4, 0, 0).

@@ -1,0 +1,4 @@
+// Sends no goal.
+!start.
+
++!start <- .wait(pose(_, _, _)); .print("here"); .wait(60000).
