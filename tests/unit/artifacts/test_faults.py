@@ -186,6 +186,16 @@ def test_a_stamp_far_off_our_clock_is_used_and_told() -> None:
     in_lab(body, None)
 
 
+def test_a_stamp_is_not_compared_with_a_clock_that_has_no_time_yet() -> None:
+    """A clock that follows ``/clock`` stands at 0 until its first message."""
+    told: list[str] = []
+    stamps = Stamps(Faults("/odom", lambda why, text: told.append(str(why))), VirtualClock())
+    assert stamps.accept(1.7e9, now=0.0)
+    assert told == []
+    assert stamps.accept(1.7e9 + 1.0, now=1.0)
+    assert told == ["stamp_off(1700000000)"]
+
+
 def test_odometry_in_another_frame_is_dropped_until_the_first_source_is_silent() -> None:
     async def body(lab: Lab) -> None:
         robot = Robot(lab)

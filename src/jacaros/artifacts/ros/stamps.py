@@ -54,10 +54,16 @@ class Stamps:
         self._heard = 0.0
 
     def accept(self, stamp: float, now: float) -> bool:
-        """Whether a message may be used; both times in seconds since the epoch, *stamp* by the sender's clock."""
+        """Return whether a message may be used; both times in seconds since the epoch, *stamp* by the sender's clock.
+
+        Args:
+            stamp: of the message; 0.0: it has none.
+            now: by our clock; 0.0: it is not known yet.
+        """
         if stamp == 0.0:
             return True
-        if abs(stamp - now) >= FAR:
+        # A clock that follows /clock stands at 0 until its first message, and odometry may come before that.
+        if now != 0.0 and abs(stamp - now) >= FAR:
             off = round(stamp - now, 3)
             text = f"the stamp is {off:g} s off our clock; do both follow the same clock (use_sim_time)?"
             self._faults.add(Structure("stamp_off", (off,)), text)
