@@ -13,6 +13,7 @@ from jacaros.bdi.finishing import pop_finished
 from jacaros.bdi.goal_failure import fail_intention, has_room
 from jacaros.bdi.intention import Frame, Intention
 from jacaros.bdi.internal_action import Crashed
+from jacaros.bdi.rescue import note_lack_of_memory
 from jacaros.bdi.waiting import OWN_SUSPENSION
 from jacaros.compiler.outcomes import SUSPENDED, Fail
 from jacaros.errors import InternalError
@@ -195,6 +196,7 @@ def _is_called(agent: Circumstance) -> bool:
 
 def _failed(agent: Circumstance, intention: Intention, fault: Exception) -> Any:
     """A step raised an exception: the event for the nearest handler, None when there is none."""
+    note_lack_of_memory(agent, fault)
     undo(agent.trail, 0)
     _report(agent, fault)
     frame: Frame = intention.frames[-1]

@@ -211,7 +211,13 @@ class Agent(Circumstance):
         return True
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message; it is looked at in a later cycle."""
+        """Take a message; it is looked at in a later cycle.
+
+        Raises:
+            Failure: the mailbox is full; the step that sends the message fails.
+        """
+        if len(self.inbox) >= self.options.mailbox_limit:
+            raise self.budgets["mailbox_limit"].failure(len(self.inbox), f" that {self.name} has not read")
         self.inbox.append(message)
         self.called = True
         self.architecture.ready()

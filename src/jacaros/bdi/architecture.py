@@ -67,6 +67,9 @@ class Architecture(Protocol):
     def log(self, level: str, text: str) -> None:
         """Tell people about trouble; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
 
+    def out_of_memory(self) -> None:
+        """A step or an event met a `MemoryError`; the agent goes on as long as it is let."""
+
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
 

@@ -1,42 +1,43 @@
-"""A belief base that holds so many beliefs and no more (agent option ``belief_limit``).
+"""A belief base with a limit (agent option ``belief_limit``).
 
-Agents without that option have a plain `BeliefBase`, whose tables ask nobody.
+Agents have a plain `BeliefBase`, whose tables count nothing, until half of the limit is reached (`watch`); unless the limit
+is small.
 """
 
-from typing import Any, Protocol
+from typing import Any
 
-from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.belief_base import BeliefBase, Table
-from jacaros.compiler.outcomes import Failure
-from jacaros.terms.values import Functor, String, Term, atom, functor
+from jacaros.bdi.budget import Holder
+from jacaros.terms.values import Functor, Term
 
-_ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
-
-
-class Holder(Protocol):
-    """The mind that the beliefs belong to."""
-
-    architecture: Architecture
-    current: Any
+SMALL = 100_000
+"""Limits up to this one are kept from the beginning."""
+INTERVAL = 10_000
+"""Reasoning cycles between two counts of the beliefs in a plain base."""
 
 
 class BoundedBeliefs(BeliefBase):
-    """Refuses beliefs beyond a limit: the step that adds one fails, one from outside is passed over.
+    """Refuses beliefs beyond a limit: the step that adds one fails, one from outside is refused.
 
     Args:
         holder: whose beliefs they are.
         limit: how many there may be, rules included.
-
-    Attributes:
-        refusals: how many from outside were refused; people are told of the first.
     """
 
     def __init__(self, holder: Holder, limit: int) -> None:
         super().__init__()
-        self._holder = holder
+        self.bind(holder, limit)
+
+    def bind(self, holder: Holder, limit: int) -> None:
+        """Count from now on."""
         self._limit = limit
-        self._held = 0
-        self.refusals = 0
+        self._held = sum(map(len, self.values()))
+        self._budget = holder.budgets["belief_limit"]
+
+    @property
+    def refusals(self) -> int:  # type: ignore[override]
+        """How many beliefs from outside were refused."""
+        return self._budget.refusals
 
     def __missing__(self, functor: Functor) -> Table:
         table = self[functor] = _BoundedTable(functor, self)
@@ -50,22 +51,14 @@ class BoundedBeliefs(BeliefBase):
         """
         if self._held < self._limit:
             return True
-        message = self._message()
-        if self._holder.current is not None:
-            raise Failure((_ERROR, atom("belief_limit")), (_ERROR_MSG, String(message)))
-        self.refusals += 1
-        if self.refusals == 1:
-            self._holder.architecture.log("error", f"beliefs from outside are refused: {message}")
+        largest = max(self.values(), key=len)
+        name = f"{largest.functor.name}/{largest.functor.arity}"
+        self._budget.refuse(self._held, f", most of them {name} ({len(largest)})")
         return False
 
     def count(self, change: int) -> None:
         """Take note of a belief that came or went."""
         self._held += change
-
-    def _message(self) -> str:
-        largest = max(self.values(), key=len)
-        name = f"{largest.functor.name}/{largest.functor.arity}"
-        return f"there are {self._held} beliefs (option belief_limit), most of them {name} ({len(largest)})"
 
 
 class _BoundedTable(Table):
@@ -83,3 +76,18 @@ class _BoundedTable(Table):
         removed = super().remove(row)
         self._base.count(-1)
         return removed
+
+
+def watch(beliefs: BeliefBase, holder: Holder, limit: int) -> bool:
+    """Bound a plain base from now on when half of the limit is reached; True when it is bounded."""
+    if beliefs.__class__ is not BeliefBase:
+        return True
+    if 2 * sum(map(len, beliefs.values())) < limit:
+        return False
+    for table in beliefs.values():
+        if table.__class__ is Table:
+            table.__class__ = _BoundedTable
+    beliefs.__class__ = BoundedBeliefs
+    assert isinstance(beliefs, BoundedBeliefs)
+    beliefs.bind(holder, limit)
+    return True

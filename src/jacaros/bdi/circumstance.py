@@ -8,8 +8,9 @@ from typing import Any
 from jacaros.bdi.act import Percept
 from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.belief_base import BeliefBase
-from jacaros.bdi.bounded_beliefs import BoundedBeliefs
-from jacaros.bdi.event import EVENT_GOAL, Event, event_literal
+from jacaros.bdi.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
+from jacaros.bdi.budget import budgets
+from jacaros.bdi.event import EVENT_GOAL, EVENT_INTENTION, Event, event_literal
 from jacaros.bdi.event_waits import EventWaits
 from jacaros.bdi.intention import Intention
 from jacaros.bdi.internal_action import InternalAction
@@ -25,6 +26,9 @@ from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import Term, functor
 
+CROWD = 2000
+"""Intentions that take turns.  With more of them, goals that the agent sets itself (``!!g``) begin one by one."""
+
 
 class Circumstance:
     """All that an agent holds.
@@ -39,6 +43,11 @@ class Circumstance:
             the intentions that made them.
         requeued: external events without plan that are to be tried again (``events=requeue``).
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
+        crowd: intentions for goals that the agent set itself beside `CROWD` others that can run: they join these as others
+            end, and one in each turn anyway, so that an agent that sets itself more and more goals keeps its other plans.
+        event_limit, intention_limit: how many events and intentions there may be.
+        budgets: what refuses more than a limit allows, by the name of the option.
+        next_count: number of the cycle in which beliefs are counted next.
         option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
         refused_options: there were applicable plans for the last event, and the filter let none pass.
         alive: every intention that is not over, by id.
@@ -101,16 +110,19 @@ class Circumstance:
         "beliefs",
         "blamed",
         "bodies",
+        "budgets",
         "call_own",
         "called",
         "condition_waits",
         "context",
+        "crowd",
         "current",
         "cycles",
         "delayed_events",
         "drowsy",
         "edges",
         "evaluators",
+        "event_limit",
         "event_waits",
         "events",
         "face",
@@ -120,12 +132,14 @@ class Circumstance:
         "goal_observer",
         "held_percepts",
         "inbox",
+        "intention_limit",
         "intentions",
         "intentions_made",
         "library",
         "meta",
         "name",
         "namespace_properties",
+        "next_count",
         "next_look",
         "option_filter",
         "options",
@@ -167,8 +181,12 @@ class Circumstance:
         self.actions = actions
         self.options = options
         self.trail = Trail()
+        self.current: Intention | None = None
+        self.budgets = budgets(self)
         limit = options.belief_limit
-        self.beliefs: BeliefBase = BoundedBeliefs(self, limit) if limit else BeliefBase()
+        self.beliefs: BeliefBase = BoundedBeliefs(self, limit) if limit <= SMALL else BeliefBase()
+        self.next_count = INTERVAL
+        self.event_limit, self.intention_limit = options.event_limit, options.intention_limit
         if options.search_limit:
             self.beliefs.budget = SearchBudget(options.search_limit)
         self.usual_events = options.events == "discard" and not options.new_focus
@@ -182,8 +200,8 @@ class Circumstance:
         self.requeued: list[Event] = []
         self.next_look = 0
         self.intentions: deque[Intention] = deque()
+        self.crowd: deque[Intention] = deque()
         self.alive: dict[int, Intention] = {}
-        self.current: Intention | None = None
         self.atomic: Intention | None = None
         self.atomic_over = False
         self.inbox: deque[SpeechAct] = deque()
@@ -275,11 +293,46 @@ class Circumstance:
 
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and resume those who wait for it."""
+        if (
+            len(self.events) >= self.event_limit or len(self.alive) >= self.intention_limit
+        ) and not self._admits(event):
+            return
         if self.urgency is not None:
             self.urgency.note_event(event)
         self.events.append(event)
         if self.event_waits:
             self.notify_event_waits(event)
+
+    def _admits(self, event: Event) -> bool:
+        """Whether an event may still come into the queue: one that an existing intention waits for may.
+
+        Raises:
+            Failure: it may not, and a step posts it.
+        """
+        if event[EVENT_INTENTION] is not None:
+            return True
+        if len(self.events) >= self.event_limit:
+            self.budgets["event_limit"].refuse(len(self.events))
+        else:
+            self.budgets["intention_limit"].refuse(len(self.alive))
+        return False
+
+    def line_up(self, intention: Intention) -> None:
+        """Put a new intention for a goal that the agent set itself behind all others, now that there are `CROWD`."""
+        if self.urgency is not None and self.urgency.of_intention(intention):
+            self.intentions.append(intention)
+        else:
+            self.crowd.append(intention)
+
+    def is_in_turn(self, intention: Intention) -> bool:
+        """Whether an intention waits for its turn."""
+        return intention in self.intentions or intention in self.crowd
+
+    def let_in(self) -> None:
+        """Let intentions of the crowd take part: as many as there is room for, and one anyway."""
+        intentions, crowd = self.intentions, self.crowd
+        for _ in range(min(len(crowd), max(1, CROWD - len(intentions)))):
+            intentions.append(crowd.popleft())
 
     def notify_event_waits(self, event: Event) -> None:
         """Resume the intentions that wait for this event."""
@@ -297,4 +350,4 @@ class Circumstance:
 
     def is_idle(self) -> bool:
         """Whether there is nothing to do until something comes from outside or a timer ends."""
-        return not (self.events or self.intentions or self.inbox or self.percepts or self.tasks)
+        return not (self.events or self.intentions or self.crowd or self.inbox or self.percepts or self.tasks)

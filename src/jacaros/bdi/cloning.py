@@ -36,7 +36,7 @@ def copy_mind(original: Circumstance, clone: Circumstance) -> None:
         elif _can_be_copied(original, intention):
             owner = _copied_intention(clone, intention, copies)
             clone.events.append((_copied_goal(goal, copies), owner, annotations, cause))
-    for intention in original.intentions:
+    for intention in (*original.intentions, *original.crowd):
         if _can_be_copied(original, intention):
             clone.intentions.append(_copied_intention(clone, intention, copies))
 

@@ -5,8 +5,11 @@ of this one, so it stays with an intention as long as nothing else wants a cycle
 nothing a program can see.
 """
 
+import sys
+
 from jacaros.bdi import edge_signals, rescue
 from jacaros.bdi.acting import execute, execute_plainly, is_plain
+from jacaros.bdi.bounded_beliefs import INTERVAL, watch
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.deliberation import event_of, handle_atomic_event, handle_event, is_ready
 from jacaros.bdi.finishing import end_achieved_goals
@@ -25,6 +28,12 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         if fuel > 1:
             return all(run(agent, 1) for _ in range(fuel))
         agent.beliefs.budget.renew()
+    if agent.cycles >= agent.next_count:
+        agent.next_count = agent.cycles + INTERVAL
+        if watch(agent.beliefs, agent, options.belief_limit):
+            agent.next_count = sys.maxsize
+    if agent.crowd:
+        agent.let_in()
     # Calls inside terms are evaluated for this agent meanwhile.
     before = AGENT.value
     AGENT.value = agent.call_own
@@ -51,7 +60,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                     intention = handle_event(agent)
             if agent.goal_conditions:
                 end_achieved_goals(agent)
-            if intention is None and intentions:
+            if intention is None and (intentions or agent.crowd):
                 intention = _select_intention(agent)
             if intention is not None:
                 try:
@@ -64,7 +73,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                 if agent.requeued:
                     events.extendleft(reversed(agent.requeued))
                     agent.requeued.clear()
-                elif not (events or intentions or agent.called or agent.edges):
+                elif not (events or intentions or agent.crowd or agent.called or agent.edges):
                     # That was all: the next cycle would find nothing to do.
                     agent.cycles += begun - fuel
                     return False
@@ -88,7 +97,7 @@ def _has_work(agent: Circumstance) -> bool:
         return True
     if agent.atomic is not None:
         return is_ready(agent, agent.atomic) or event_of(agent, agent.atomic) is not None
-    return bool(agent.events or agent.intentions)
+    return bool(agent.events or agent.intentions or agent.crowd)
 
 
 def _select_intention(agent: Circumstance) -> Intention | None:
@@ -103,7 +112,9 @@ def _select_intention(agent: Circumstance) -> Intention | None:
         else:
             intentions.remove(atomic)
         return atomic
-    while intentions:
+    while intentions or agent.crowd:
+        if not intentions:
+            agent.let_in()
         intention = intentions.popleft()
         if intention.dropped:
             continue

@@ -3,12 +3,13 @@
 from typing import Any
 
 from jacaros.bdi import meta_events, option_selection, rescue, subplans
-from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.circumstance import CROWD, Circumstance
 from jacaros.bdi.event import EVENT_INTENTION, Event
 from jacaros.bdi.goal_failure import has_room, too_deep, unplanned
 from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.stack import remove_event
 from jacaros.errors import InternalError
+from jacaros.terms.values import BY_SELF
 
 
 def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - written out for speed
@@ -50,9 +51,13 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
             agent.intentions_made = number = agent.intentions_made + 1
             agent.alive[number] = intention = Intention(number, cause)
             intention.frames.append(frame)
-            if not agent.intentions:
+            intentions = agent.intentions
+            if not intentions:
                 return intention
-            agent.intentions.append(intention)
+            if len(intentions) >= CROWD and annotations is BY_SELF and kind.kind:
+                agent.line_up(intention)
+            else:
+                intentions.append(intention)
             return None
         except InternalError:
             raise

@@ -43,7 +43,7 @@ def end_achieved_goals(agent: Circumstance) -> None:
     for intention in list(agent.alive.values()):
         for index, frame in enumerate(intention.frames):
             if frame[PLAN].goal_condition is not None and _is_achieved(agent, frame):
-                queued = intention in agent.intentions
+                queued = agent.is_in_turn(intention)
                 achieve(agent, intention, index)
                 if intention.frames:
                     queued = queued or not pop_finished(agent, intention)

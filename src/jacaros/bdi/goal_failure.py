@@ -88,7 +88,10 @@ def fail_intention(
         lost_goals.note_goals(agent, intention, reason, goal)
         intention.on_failed(reason)
     else:
-        _tell_people(agent, lost_goals.loss(agent, intention, reason, goal))
+        budget = agent.budgets.get(reason.error())
+        count = budget.note_loss() if budget is not None else 1
+        if count:
+            _tell_people(agent, lost_goals.loss(agent, intention, reason, goal), count)
     if agent.meta:
         _tell_failed(agent, intention, reason)
     agent.finish(intention)
@@ -108,8 +111,10 @@ def _tell(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, reason: 
     meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()), why)
 
 
-def _tell_people(agent: Circumstance, loss: lost_goals.Loss) -> None:
-    agent.architecture.log("warning", loss.text())
+def _tell_people(agent: Circumstance, loss: lost_goals.Loss, count: int = 1) -> None:
+    """Warn of a lost goal, the *count*-th of its kind."""
+    note = f"\n  {count} goals have failed for this reason" if count > 1 else ""
+    agent.architecture.log("warning", loss.text() + note)
     if agent.probe is not None:
         agent.probe.lost(loss.told, loss.details, loss.span)
 

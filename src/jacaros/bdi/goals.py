@@ -263,7 +263,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
     for intention in intentions_for(agent, goal):
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
-        queued = intention in agent.intentions
+        queued = agent.is_in_turn(intention)
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
@@ -303,8 +303,9 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         ended = reason.interrupted(intention.frames[index:])
         release_bindings(frame[GOAL], frame[SERIAL])
         cut(agent, intention, index)
-        if intention in agent.intentions:
-            agent.intentions.remove(intention)
+        for queue in (agent.intentions, agent.crowd):
+            if intention in queue:
+                queue.remove(intention)
         _post(
             agent,
             intention,

@@ -21,7 +21,10 @@ class Options:
         goal_depth: how many plans may be on the stack of an intention; a goal that would be one more fails (a quarter
             of a kilobyte each, and what the plans hold).
         search_limit: how many rules may be called, and answers of internal actions taken, in one cycle; 0 for any number.
-        belief_limit: how many beliefs there may be; 0 for any number.
+        belief_limit: how many beliefs there may be.
+        event_limit: how many events may wait.
+        intention_limit: how many intentions there may be.
+        mailbox_limit: how many messages may wait.
     """
 
     events: str = "discard"
@@ -30,7 +33,10 @@ class Options:
     rule_depth: int = 500_000
     goal_depth: int = 1_000_000
     search_limit: int = 0
-    belief_limit: int = 0
+    belief_limit: int = 10_000_000
+    event_limit: int = 1_000_000
+    intention_limit: int = 100_000
+    mailbox_limit: int = 1_000_000
     verbose: int = 1
     percept_interval: int = 1
     urgency: tuple[tuple[str, int], ...] = ()

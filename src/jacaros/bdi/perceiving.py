@@ -19,7 +19,7 @@ Annotations = tuple[Term, ...]
 def take_percepts(agent: Circumstance) -> None:
     """Bring the belief base in line with what was noticed, and raise the events, in order."""
     beliefs, holders, selects = agent.beliefs, agent.held_percepts, agent.selects
-    post = agent.events.append if agent.urgency is None else agent.queue
+    post = agent.events.append if _has_plain_queue(agent) else agent.post
     watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
     noticed = agent.percepts
     while noticed:
@@ -58,10 +58,19 @@ def take_percepts(agent: Circumstance) -> None:
         agent.do_soon(look_again)
 
 
+def _has_plain_queue(agent: Circumstance) -> bool:
+    """Whether events need only be put into the queue, and there is room for them."""
+    return (
+        agent.urgency is None
+        and len(agent.events) < agent.event_limit
+        and len(agent.alive) < agent.intention_limit
+    )
+
+
 def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
     """Bring the belief base in line with what was noticed at once, and raise the events, in order."""
     beliefs, holders, selects = agent.beliefs, agent.held_percepts, agent.selects
-    post = agent.events.append if agent.urgency is None else agent.queue
+    post = agent.events.append if _has_plain_queue(agent) else agent.post
     for percept in percepts:
         literal, annotations, kind = percept.literal, percept.annotations, percept.kind
         symbol, row, is_flat, change = percept.taken or _taken(percept)

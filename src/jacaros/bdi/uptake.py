@@ -39,6 +39,7 @@ def _is_change(kind: Trigger, name: str) -> bool:
 def _queued(agent: Circumstance) -> Iterator[Intention]:
     """The intentions that wait for nothing but their turn."""
     yield from agent.intentions
+    yield from agent.crowd
     for event in agent.events:
         intention = event[EVENT_INTENTION]
         if intention is not None:

@@ -102,6 +102,9 @@ class Run(Protocol):
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
 
+    def out_of_memory(self, name: str) -> None:
+        """End the run: an agent met a `MemoryError`."""
+
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make and start an agent; its final name, or None with the reason logged."""
 
@@ -291,6 +294,10 @@ class AgentHost:
             # Details that an agent is to tell are wanted, whatever is shown of others.
             shown = "info" if level == "debug" and verbose > 1 else level
             self._run.console.log(f"[{self.name}] {level}: {text}", shown)
+
+    def out_of_memory(self) -> None:
+        """A step or an event of the mind met a `MemoryError`."""
+        self._run.out_of_memory(self.name)
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""

@@ -31,6 +31,9 @@ _NUMBERS: Final = (
     "goal_depth",
     "search_limit",
     "belief_limit",
+    "event_limit",
+    "intention_limit",
+    "mailbox_limit",
 )
 _WITHOUT_EFFECT: Final = {
     "synchronised": "agents take turns anyway",
@@ -82,6 +85,9 @@ def mind_options(given: Mapping[str, str]) -> Options:
         goal_depth=_number(given, "goal_depth", options.goal_depth),
         search_limit=_number(given, "search_limit", options.search_limit),
         belief_limit=_number(given, "belief_limit", options.belief_limit),
+        event_limit=_number(given, "event_limit", options.event_limit),
+        intention_limit=_number(given, "intention_limit", options.intention_limit),
+        mailbox_limit=_number(given, "mailbox_limit", options.mailbox_limit),
         urgency=read_urgencies(given.get("urgency", "")) or (),
     )
 

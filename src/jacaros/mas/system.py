@@ -1,6 +1,7 @@
 """A running multi-agent system: where minds, bodies, environment, ROS and time are put together."""
 
 import asyncio
+import mmap
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AsyncExitStack
 from functools import partial
@@ -37,6 +38,12 @@ if TYPE_CHECKING:
     from jacaros.env.environment import Environment
     from jacaros.mas.diagnostics import Diagnostics
     from jacaros.mas.surroundings import Surroundings
+
+
+OUT_OF_MEMORY = 137
+"""Exit code of a run that ended for lack of memory: the one of a process that the kernel ends for it."""
+RESERVE = 32 << 20
+"""Bytes of address space that are released at the first `MemoryError`; nothing is written there, so they cost no memory."""
 
 
 class System:
@@ -95,6 +102,7 @@ class System:
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
         self.population = self._found(prepare, when_made)
+        self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
         self._exit_code: int | None = None
@@ -278,8 +286,29 @@ class System:
         """The defect of JaCaROS that ended the run, if one did."""
         return self._error
 
+    def out_of_memory(self, name: str = "") -> None:
+        """End the run because a `MemoryError` was raised, in the step of an agent or elsewhere.
+
+        The reserve makes room for stopping the robots, for closing and for the message.
+        """
+        if self._reserve is None:
+            return
+        self._reserve.close()
+        self._reserve = None
+        self.end(OUT_OF_MEMORY)
+        agent = f"[{name}] " if name else ""
+        self.console.log(
+            f"{agent}error: out of memory; the run ends\n"
+            "  = help: find out what grows; the agent options belief_limit, event_limit, intention_limit and "
+            "mailbox_limit bound it",
+            "error",
+        )
+
     def fail(self, error: BaseException) -> None:
-        """End the run because of a defect of JaCaROS itself."""
+        """End the run because of a defect of JaCaROS itself, or for lack of memory."""
+        if isinstance(error, MemoryError):
+            self.out_of_memory()
+            return
         if self._error is None:
             self._error = error
         self.end(1)

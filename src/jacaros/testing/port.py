@@ -96,6 +96,9 @@ class HarnessPort:
     def log(self, level: str, text: str) -> None:
         self._harness.logs.append(f"{level}: {text}")
 
+    def out_of_memory(self) -> None:
+        self.log("error", "out of memory")
+
     def stop_system(self, delay: float, exit_code: int) -> None:
         if delay > 0:
             self._harness.mind.shut_down_in(delay * 1000)

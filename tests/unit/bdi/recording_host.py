@@ -41,6 +41,7 @@ class RecordingHost:
         self.services: list[str] = []
         self.sent: list[SpeechAct] = []
         self.stopped = False
+        self.memory_errors = 0
         self.exit_code = 0
         self.agent: Agent
         self._complete = complete
@@ -88,6 +89,9 @@ class RecordingHost:
 
     def log(self, level: str, text: str) -> None:
         self.logged.append((level, text))
+
+    def out_of_memory(self) -> None:
+        self.memory_errors += 1
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         del delay

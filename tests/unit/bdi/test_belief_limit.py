@@ -1,8 +1,12 @@
 """The agent option ``belief_limit``: a belief base that grows without end costs an agent some of its goals, and no more."""
 
+import pytest
 from recording_host import RecordingHost, believed, mind
 
+from jacaros.bdi import circumstance
 from jacaros.bdi.act import Percept
+from jacaros.bdi.belief_base import BeliefBase
+from jacaros.bdi.bounded_beliefs import BoundedBeliefs
 from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.terms.values import SOURCE_PERCEPT, structure
@@ -32,10 +36,23 @@ def test_the_step_that_adds_one_too_many_fails_with_the_reason() -> None:
     assert len(believed(host, "grown")) == 8
 
 
-def test_without_the_option_there_is_no_limit() -> None:
-    host = limited(GROW.replace("!fill(N + 1)", "if (N < 2000) { !fill(N + 1) }"), 0)
-    assert host.printed == []
+def test_a_large_limit_is_kept_though_beliefs_are_counted_now_and_then(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(circumstance, "SMALL", 10)
+    host = limited(GROW, 30_000)
+    assert host.printed == [
+        "29999 belief_limit in line 5",
+        "there are 30000 beliefs (option belief_limit), most of them grown/1 (29998)",
+    ]
+    assert host.agent.beliefs.__class__ is BoundedBeliefs
+
+
+def test_as_long_as_there_are_few_beliefs_nothing_is_counted() -> None:
+    host = mind(GROW.replace("!fill(N + 1)", "if (N < 2000) { !fill(N + 1) }"))
+    host.run()
     assert len(believed(host, "grown")) == 2000
+    assert host.agent.beliefs.__class__ is BeliefBase
 
 
 def test_what_is_replaced_or_deleted_makes_room() -> None:
