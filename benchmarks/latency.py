@@ -1,16 +1,21 @@
 """From a published sensor message to the command that it leads to, through one plan of an agent.
 
-    latency.py [memory|ros1|ros2]
+    latency.py [memory|ros1|ros2] [--busy]
 
 An outside node publishes numbered odometry messages at 100 Hz and waits for the command with the same number: by turns
 through an agent (artifact, belief, event, plan, operation), and through an echo written with the client library alone.
-Prints both; figures on a busy machine say little.
+Prints both, and how many times as long the agent takes; figures on a busy machine say little.
+
+With ``--busy`` the agent's plan is urgent and has 100 intentions beside it that never rest, and the echo has a computing
+thread beside it.
 """
 
 import contextlib
 import os
+import re
 import shutil
 import socket
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -24,16 +29,55 @@ JACAROS = Path(sys.executable).parent / "jacaros"
 
 def main() -> None:
     """Measure on one kind of graph."""
-    kind = sys.argv[1] if len(sys.argv) > 1 else "memory"
-    if kind == "memory":
-        subprocess.run([sys.executable, HERE / "memory.py"], check=True)
-        return
+    busy = "--busy" in sys.argv
+    kind = next((word for word in sys.argv[1:] if word != "--busy"), "memory")
+    print(with_ratios(in_process(busy) if kind == "memory" else on_graph(kind, busy)))
+
+
+def in_process(busy: bool) -> str:
+    """Measure on the graph inside the process; beside something busy, the two ways take turns as processes."""
+    turns = [["agent"], ["bare"]] * 3 if busy else [[]]
+    reports = [
+        subprocess.run(
+            [sys.executable, HERE / "memory.py", *way], check=True, stdout=subprocess.PIPE, text=True
+        ).stdout
+        for way in turns
+    ]
+    return "".join(reports).rstrip()
+
+
+def on_graph(kind: str, busy: bool) -> str:
+    """Measure on a real graph."""
+    more = ["--busy"] if busy else []
     program = HERE / f"{kind}.py"
     with tempfile.TemporaryDirectory() as scratch, graph(kind, Path(scratch)) as environment:
-        agents = [JACAROS, "run", HERE / "echo.asl", "--ros", kind, "--quiet"]
-        with running(agents, environment), running([sys.executable, program, "echo"], environment):
+        agents = [JACAROS, "run", HERE / ("busy.asl" if busy else "echo.asl"), "--ros", kind, "--quiet"]
+        with running(agents, environment), running([sys.executable, program, "echo", *more], environment):
             time.sleep(3)
-            subprocess.run([sys.executable, program, "ping"], env=environment, check=True, timeout=120)
+            done = subprocess.run(
+                [sys.executable, program, "ping", *more],
+                env=environment,
+                check=True,
+                timeout=120,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+    return done.stdout.rstrip()
+
+
+def with_ratios(report: str) -> str:
+    """The report, and a line about how many times as long the agent takes."""
+    figures: dict[str, list[tuple[float, float]]] = {"agent": [], "bare": []}
+    for way, median, most in re.findall(r"(agent|bare) +median +([\d.]+) ms.* 99 % +([\d.]+) ms", report):
+        figures[way].append((float(median), float(most)))
+    if not all(figures.values()):
+        return report
+    ratios = [
+        statistics.median(row[place] for row in figures["agent"])
+        / statistics.median(row[place] for row in figures["bare"])
+        for place in (0, 1)
+    ]
+    return f"{report}\nagent / bare: median {ratios[0]:.2f}, 99 % {ratios[1]:.2f}"
 
 
 @contextlib.contextmanager

@@ -1,10 +1,17 @@
-"""The measurement on the graph inside the process: agent, echo and pings share one loop."""
+"""The measurement on the graph inside the process: agent, echo and pings share one loop.
 
+    memory.py [agent|bare]
+
+With a way: this one alone, an agent beside 100 busy intentions, or a bare echo beside a computing thread.
+"""
+
+import sys
 import time
 from pathlib import Path
 from typing import Any
 
-from pings import PERIOD, Measurement
+from computing import compute
+from pings import PERIOD, WAYS, Measurement, Pings
 
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.launch import launch
@@ -17,10 +24,15 @@ ODOMETRY, TWIST = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist"
 
 
 class InProcess:
-    """Joins the run's graph with a node for the bare echo and one for the pings."""
+    """Joins the run's graph with a node for the bare echo and one for the pings.
 
-    def __init__(self) -> None:
-        self.pings: Measurement | None = None
+    Args:
+        way: the only one to measure, beside something busy: an agent, or a computing thread; None for both ways in turn.
+    """
+
+    def __init__(self, way: str | None) -> None:
+        self.way = way
+        self.pings: Measurement | Pings | None = None
 
     def join(self, mas: System) -> None:
         """Start when the run has started."""
@@ -41,7 +53,15 @@ class InProcess:
             message.pose.pose.position.x = number
             publishers[way].publish(message)
 
-        pings = self.pings = Measurement(time.perf_counter, send)
+        pings: Measurement | Pings
+        pings = (
+            Measurement(time.perf_counter, send)
+            if self.way is None
+            else Pings(time.perf_counter, send, (self.way,))
+        )
+        self.pings = pings
+        if self.way == "bare":
+            compute()
         pinger.subscription("/cmd_vel", TWIST, lambda s: pings.returned("agent", s.message.linear.x))
         pinger.subscription("/bare/cmd_vel", TWIST, lambda s: pings.returned("bare", s.message.linear.x))
 
@@ -75,10 +95,13 @@ def start(node: Backend) -> None:
 
 def main() -> None:
     """Run, and print."""
-    measurement = InProcess()
+    way = sys.argv[1] if len(sys.argv) > 1 else None
+    assert way is None or way in WAYS
+    measurement = InProcess(way)
     world = Path(__file__).parent / "nobody.yaml"
     options = RunOptions(world=world)
-    launch(Path(__file__).parent / "echo.asl", options, StandardConsole("error"), measurement.join)
+    program = "busy.asl" if way == "agent" else "echo.asl"
+    launch(Path(__file__).parent / program, options, StandardConsole("error"), measurement.join)
     assert measurement.pings is not None
     print(measurement.pings.report("memory"))
 

@@ -1,7 +1,7 @@
 """Numbered odometry messages, one after the other, and how long each took to come back as a command."""
 
 import statistics
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 COUNT = 600
 WARM_UP = 100
@@ -26,19 +26,22 @@ class Pings:
     Args:
         now: seconds of a steady clock.
         send: publishes an odometry message with a number on the way's topic.
+        ways: the ways to measure.
     """
 
-    def __init__(self, now: Callable[[], float], send: Callable[[str, float], None]) -> None:
-        self._now, self._send = now, send
+    def __init__(
+        self, now: Callable[[], float], send: Callable[[str, float], None], ways: Sequence[str] = WAYS
+    ) -> None:
+        self._now, self._send, self._ways = now, send, ways
         self._sent: dict[str, tuple[float, float]] = {}
         self._number = 0
-        self.times: dict[str, list[float]] = {way: [] for way in WAYS}
+        self.times: dict[str, list[float]] = {way: [] for way in ways}
         self.lost = 0
 
     @property
     def over(self) -> bool:
         """Whether enough messages have been sent."""
-        return self._number >= len(WAYS) * (COUNT + WARM_UP)
+        return self._number >= len(self._ways) * (COUNT + WARM_UP)
 
     def next(self) -> None:
         """Send the next message, unless the last one is still on its way."""
@@ -48,7 +51,7 @@ class Pings:
             self.lost += 1
             del self._sent[way]
         self._number += 1
-        way = WAYS[self._number % len(WAYS)]
+        way = self._ways[self._number % len(self._ways)]
         self._sent[way] = (float(self._number), self._now())
         self._send(way, float(self._number))
 
@@ -58,13 +61,13 @@ class Pings:
         sent = self._sent.get(way)
         if sent is not None and sent[0] == number:
             del self._sent[way]
-            if self._number > len(WAYS) * WARM_UP:
+            if self._number > len(self._ways) * WARM_UP:
                 self.times[way].append(arrived - sent[1])
 
     def report(self, kind: str) -> str:
         """Two lines for people."""
         lines = []
-        for way in WAYS:
+        for way in self._ways:
             times = sorted(self.times[way])
             if not times:
                 lines.append(f"{kind:8} {way:6} nothing came back")
@@ -132,6 +135,13 @@ class FlatOut:
     def report(self, kind: str) -> str:
         """Two lines for people."""
         return "\n".join(f"{kind:8} {way:6} flat out {self.rates[way]:8.0f} a second" for way in WAYS)
+
+
+def measurement(
+    now: Callable[[], float], send: Callable[[str, float], None], busy: bool
+) -> "Pings | Measurement":
+    """What to measure: beside busy ones only the latency."""
+    return Pings(now, send) if busy else Measurement(now, send)
 
 
 class Measurement:

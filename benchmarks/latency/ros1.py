@@ -1,17 +1,18 @@
-"""Bare rospy: the pings (`ros1.py ping`), and the echo to compare with (`ros1.py echo`)."""
+"""Bare rospy: the pings (`ros1.py ping [--busy]`), and the echo to compare with (`ros1.py echo [--busy]`)."""
 
 import sys
 import threading
 import time
 
 import rospy
+from computing import compute
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from pings import PERIOD, Measurement
+from pings import PERIOD, measurement
 
 
-def echo() -> None:
-    """Answer on /bare/cmd_vel."""
+def echo(busy: bool) -> None:
+    """Answer on /bare/cmd_vel, beside a computing thread if *busy*."""
     rospy.init_node("bare_echo")
     publisher = rospy.Publisher("/bare/cmd_vel", Twist, queue_size=10)
 
@@ -21,10 +22,12 @@ def echo() -> None:
         publisher.publish(command)
 
     rospy.Subscriber("/bare/odom", Odometry, reply, queue_size=10)
+    if busy:
+        compute()
     rospy.spin()
 
 
-def ping() -> None:
+def ping(busy: bool) -> None:
     """Measure both ways."""
     rospy.init_node("pinger")
     publishers = {
@@ -37,7 +40,7 @@ def ping() -> None:
         message.pose.pose.position.x = number
         publishers[way].publish(message)
 
-    pings = Measurement(time.perf_counter, send)
+    pings = measurement(time.perf_counter, send, busy)
     lock = threading.Lock()
 
     def returned(message: Twist, way: str) -> None:
@@ -58,4 +61,4 @@ def ping() -> None:
 
 
 if __name__ == "__main__":
-    {"echo": echo, "ping": ping}[sys.argv[1]]()
+    {"echo": echo, "ping": ping}[sys.argv[1]]("--busy" in sys.argv)

@@ -1,18 +1,19 @@
-"""Bare rclpy: the pings (`ros2.py ping`), and the echo to compare with (`ros2.py echo`)."""
+"""Bare rclpy: the pings (`ros2.py ping [--busy]`), and the echo to compare with (`ros2.py echo [--busy]`)."""
 
 import sys
 import time
 
 import rclpy
+from computing import compute
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from pings import PERIOD, Measurement
+from pings import PERIOD, measurement
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import qos_profile_sensor_data
 
 
-def echo() -> None:
-    """Answer on /bare/cmd_vel."""
+def echo(busy: bool) -> None:
+    """Answer on /bare/cmd_vel, beside a computing thread if *busy*."""
     rclpy.init()
     node = rclpy.create_node("bare_echo")
     publisher = node.create_publisher(Twist, "/bare/cmd_vel", 10)
@@ -25,13 +26,15 @@ def echo() -> None:
     node.create_subscription(Odometry, "/bare/odom", reply, qos_profile_sensor_data)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
+    if busy:
+        compute()
     try:
         executor.spin()
     except (ExternalShutdownException, KeyboardInterrupt):
         return
 
 
-def ping() -> None:
+def ping(busy: bool) -> None:
     """Measure both ways."""
     rclpy.init()
     node = rclpy.create_node("pinger")
@@ -45,7 +48,7 @@ def ping() -> None:
         message.pose.pose.position.x = number
         publishers[way].publish(message)
 
-    pings = Measurement(time.perf_counter, send)
+    pings = measurement(time.perf_counter, send, busy)
     node.create_subscription(Twist, "/cmd_vel", lambda m: pings.returned("agent", m.linear.x), 10)
     node.create_subscription(Twist, "/bare/cmd_vel", lambda m: pings.returned("bare", m.linear.x), 10)
     executor = SingleThreadedExecutor()
@@ -59,4 +62,4 @@ def ping() -> None:
 
 
 if __name__ == "__main__":
-    {"echo": echo, "ping": ping}[sys.argv[1]]()
+    {"echo": echo, "ping": ping}[sys.argv[1]]("--busy" in sys.argv)

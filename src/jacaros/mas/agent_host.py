@@ -254,6 +254,7 @@ class AgentHost:
         body = self.situated()
         if body is not None:
             body.act(act)
+            self._scheduler.poll_soon()
         else:
             self._mind.complete(act.id, without_environment(act))
 

@@ -41,6 +41,8 @@ class Scheduler:
     """On the virtual clock: cycles of all agents between two polls of timers, sockets and other callbacks of the loop."""
     SECONDS_PER_ROUND = 0.001
     """In real time: seconds between two polls, unless a single cycle takes longer."""
+    PASSES = 4
+    """In real time: passes of the loop between two rounds, enough for a message on its way from socket to agent."""
 
     def __init__(
         self,
@@ -58,6 +60,7 @@ class Scheduler:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._due = False
         self._taking_turns = False
+        self._poll_soon = False
         self._stopped = False
 
     @property
@@ -79,6 +82,10 @@ class Scheduler:
         if self._queue and not self._taking_turns:
             self._round()
 
+    def poll_soon(self) -> None:
+        """In real time, end the round with the current turn: what an agent has begun is waiting for the loop."""
+        self._poll_soon = not self._clock.virtual
+
     def stop(self) -> None:
         """Let nobody have a turn any more."""
         self._stopped = True
@@ -97,19 +104,22 @@ class Scheduler:
             if self._clock.virtual:
                 self._call_soon()
             else:
-                self._call_after_sockets()
+                self._call_after(self.PASSES - 1)
         elif not self._stopped:
             self._on_idle()
 
-    def _call_after_sockets(self) -> None:
-        """Schedule the next round one pass of the loop later.
+    def _call_after(self, passes: int) -> None:
+        """Schedule the next round some passes of the loop later.
 
-        The loop polls its sockets, and puts their callbacks behind those that are scheduled already: without the extra
-        pass, what came in during this round would wait for the next one.
+        The loop polls its sockets, and puts their callbacks behind those that are scheduled already.  A message then makes
+        some hops, each in a pass of its own.  If a round came between them, each would wait for it.
         """
         self._due = True
-        assert self._loop is not None
-        self._loop.call_soon(self._call_soon)
+        if passes:
+            assert self._loop is not None
+            self._loop.call_soon(self._call_after, passes - 1)
+        else:
+            self._call_soon()
 
     def _round(self) -> None:
         """Let the ready agents have their turns until it is time to poll."""
@@ -118,6 +128,7 @@ class Scheduler:
         look = self.CYCLES_PER_ROUND if virtual else quantum
         began = moment = 0.0 if virtual else now()
         self._taking_turns = True
+        self._poll_soon = False
         try:
             while queue:
                 agent = queue.popleft()
@@ -129,12 +140,12 @@ class Scheduler:
                         queue.append(agent)
                 else:
                     cycles += 1
-                if cycles >= look:
+                if cycles >= look or self._poll_soon:
                     if virtual:
                         break
                     before, moment = moment, now()
                     quantum = self._fitting_quantum(moment - before)
-                    if moment - began >= self.SECONDS_PER_ROUND:
+                    if self._poll_soon or moment - began >= self.SECONDS_PER_ROUND:
                         break
                     look = cycles + quantum
         except Exception as error:

@@ -314,3 +314,65 @@ def test_what_came_in_by_a_socket_is_read_before_the_next_round_of_turns() -> No
 
     asyncio.run(main())
     assert order == ["turn", "turn", "turn", "message", "turn", "turn"]
+
+
+def test_a_message_makes_its_hops_to_the_agent_between_two_rounds() -> None:
+    order: list[str] = []
+
+    async def main() -> None:
+        loop = asyncio.get_running_loop()
+
+        def hop(left: int) -> None:
+            order.append("hop")
+            if left > 1:
+                loop.call_soon(hop, left - 1)
+
+        def make_turn(bench: Bench) -> bool:
+            order.append("turn")
+            if len(order) == 1:
+                loop.call_soon(hop, Scheduler.PASSES - 1)
+            return order.count("turn") == 2
+
+        await have_turns(Bench(1.0, make_turn))
+
+    asyncio.run(main())
+    assert order == ["turn", "hop", "hop", "hop", "turn"]
+
+
+def test_an_agent_that_has_begun_an_action_ends_the_round_with_its_turn() -> None:
+    free: list[float] = []
+
+    async def main() -> None:
+        def make_turn(bench: Bench) -> bool:
+            if len(bench.turns) == 3:
+                scheduler.poll_soon()
+                asyncio.get_running_loop().call_soon(lambda: free.append(len(bench.turns)))
+            return len(bench.turns) == 6
+
+        bench = Bench(1e-9, make_turn)
+        scheduler = Scheduler(WallClock(), real_time=lambda: bench.now)
+        scheduler.make_ready(bench)
+        await bench.over.wait()
+
+    asyncio.run(main())
+    assert free == [3]
+
+
+def test_on_the_virtual_clock_an_action_does_not_end_the_round() -> None:
+    clock = VirtualClock()
+    log: list[str] = []
+
+    class Acting(Worker):
+        def run(self, fuel: int) -> bool:
+            scheduler.poll_soon()
+            return super().run(fuel)
+
+    async def main() -> None:
+        scheduler.make_ready(Acting("a", 1000, log))
+        await asyncio.sleep(0)
+        log.append("loop")
+        scheduler.stop()
+
+    scheduler = Scheduler(clock)
+    run(main, clock)
+    assert log == ["a"] * 20 + ["loop"]
