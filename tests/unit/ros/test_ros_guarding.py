@@ -106,7 +106,7 @@ def test_guard_and_agents_find_each_other_by_graph_and_name(monkeypatch: pytest.
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
     assert GraphAddress("ros2").identity == GraphAddress("ros2", 7).identity == "7"
     assert GraphAddress("ros2", 8).identity == "8"
-    assert GraphAddress("ros1", master="http://a:1").identity == "http://a:1"
+    assert GraphAddress("ros1", master="http://a.example:1").identity == "http://a.example:1"
     assert GraphAddress("ros2", 8, namespace="a").arguments == [
         "--ros",
         "ros2",
