@@ -20,6 +20,8 @@ DEFINITIONS = {
     "msg/Moves": "geometry_msgs/Pose start\ngeometry_msgs/Pose end\ngeometry_msgs/Twist twist\n",
     "msg/Deep": "Moves one\nMoves two\n",
     "srv/Weigh": "string[] names\nfloat64[3] offsets\nuint8[] picture\n---\nfloat64 weight\nbool success\n",
+    "action/Follow": "trajectory_msgs/JointTrajectory trajectory\n---\nint32 SUCCESSFUL=0\nint32 INVALID_GOAL=-1\n"
+    "int32 error_code\nstring error_string\n---\nstd_msgs/Header header\n",
     "action/Sort": "uint8 BY_NAME=0\nuint8 BY_WEIGHT=1\nuint8 order\n---\nfloat32 weight\n---\nfloat32 progress\n",
 }
 
@@ -186,3 +188,11 @@ def test_robots_are_told_from_parts_of_a_robot(topics: dict[str, str], spaces: l
 )
 def test_names_are_such_as_agents_can_write(ros_name: str, name: str) -> None:
     assert plain_name(ros_name) == name
+
+
+def test_an_action_that_moves_joints_gets_the_points_of_their_trajectory(types: StoredInterfaces) -> None:
+    text = checked(types, acting(types, "follow", "arm/follow", "odd_msgs/action/Follow"))
+    assert "parameters: [joint_names, points]" in text
+    assert "trajectory.joint_names: $joint_names" in text
+    assert "each: $points" in text
+    assert "fields: {positions: $1, time_from_start: $2}" in text

@@ -206,3 +206,15 @@ def test_a_file_is_written_but_not_over_another(capsys: pytest.CaptureFixture[st
     assert file.read_text(encoding="utf-8") == first
     told(capsys, "map", "/scan", "-o", str(file), "--force")
     assert "LaserScan" in file.read_text(encoding="utf-8")
+
+
+def test_a_field_is_shown_with_the_constants_that_name_its_values(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["ros", "show", "sensor_msgs/msg/BatteryState"]) == 0
+    told = capsys.readouterr().out.splitlines()
+    at = next(number for number, line in enumerate(told) if line.startswith("  power_supply_status "))
+    assert told[at + 1 : at + 3] == [
+        "      0 = POWER_SUPPLY_STATUS_UNKNOWN",
+        "      1 = POWER_SUPPLY_STATUS_CHARGING",
+    ]
+    at = next(number for number, line in enumerate(told) if line.startswith("  voltage "))
+    assert not told[at + 1].startswith("      ")

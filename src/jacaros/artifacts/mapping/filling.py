@@ -14,7 +14,7 @@ from jacaros.artifacts.mapping.read_values import ALL_OF_IT
 from jacaros.artifacts.mapping.taking import QUATERNION, check_names, owner_of
 from jacaros.env.values import Atom, Structure, text
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
-from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
+from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
 from jacaros.yaml_nodes import Problem
 
@@ -241,6 +241,9 @@ def _converter(
             raise WrongPath(f"{owner} has no constants for {last}", "write names: {0: ...}")
         words |= {name: value[0] if isinstance(value, bytes) else value for name, value in meant.items()}
 
+    if leaf.base == DURATION and not leaf.array:
+        steps.append(_not_negative)
+
     def convert(value: Any) -> Any:
         if words and isinstance(
             value, str
@@ -251,6 +254,12 @@ def _converter(
         return for_field(value, leaf, interfaces)
 
     return convert
+
+
+def _not_negative(value: Any) -> Any:
+    if isinstance(value, int | float) and value < 0:
+        raise ValueError("a duration is not negative")
+    return value
 
 
 def _number(value: object) -> float:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from jacaros.ros.fields import FieldType
+from jacaros.ros.interfaces import installed
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.typestore import RosbagsSchema
 
@@ -24,10 +25,10 @@ class Interfaces(Protocol):
 
 
 class StoredInterfaces:
-    """The definitions that come with the package: what is checked where there is no middleware."""
+    """The definitions that come with the package or are installed here: what is checked where there is no middleware."""
 
     def __init__(self, folders: tuple[Path, ...] = ()) -> None:
-        self._factory = MessageFactory(RosbagsSchema(folders))
+        self._factory = MessageFactory(RosbagsSchema((*folders, *installed())))
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type."""

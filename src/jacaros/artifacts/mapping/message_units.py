@@ -78,10 +78,16 @@ _KINDS = {
     "rad/s": "angle",
     "m/s": "speed",
     "s": "time",
+    "degrees": "angle",
     "°C": "temperature",
     "0 to 1": "share",
 }
 """Kinds of those units of messages that mappings convert."""
+
+
+def _kinds(unit: str) -> set[str]:
+    """The kinds that values in a unit of messages can have: of "rad or m" an angle and a length; of volts none."""
+    return {_KINDS[each] for each in unit.split(" or ") if each in _KINDS}
 
 
 def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: Interfaces) -> None:
@@ -95,10 +101,12 @@ def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: 
     there = unit_at(path, root, interfaces)
     if there == conversion.unit:
         raise WrongPath(f"messages have {path.text} in {there} already", "leave 'unit' out")
-    kind, wanted = _KINDS.get(there), UNITS[conversion.unit].kind
-    if kind is not None and kind != wanted:
-        listed = ", ".join(name for name, each in UNITS.items() if each.kind == kind)
-        raise WrongPath(
-            f"messages have {path.text} in {there}, and {conversion.unit} is a unit of {wanted}",
-            f"units of {kind} are {listed}; or say what messages have: message_unit: ...",
-        )
+    kinds, wanted = _kinds(there), UNITS[conversion.unit].kind
+    if not there or wanted in kinds:
+        return
+    listed = ", ".join(name for name, each in UNITS.items() if each.kind in kinds)
+    units = f"units of {' and '.join(sorted(kinds))} are {listed}; or" if kinds else "leave 'unit' out, or"
+    raise WrongPath(
+        f"messages have {path.text} in {there}, and {conversion.unit} is a unit of {wanted}",
+        f"{units} say what messages have: message_unit: ...",
+    )

@@ -20,11 +20,13 @@ class Leaf:
         path: from the root, as mapping files write it; of the elements of an array, those of the first.
         type: of the value.
         unit: empty where there is none, or it is not known.
+        owner: type of the message that has it as a field.
     """
 
     path: str
     type: FieldType
     unit: str = ""
+    owner: str = ""
 
 
 def leaves(fields: Fields, type_name: str, path: str = "", unit: str = "") -> Iterator[Leaf]:
@@ -33,7 +35,7 @@ def leaves(fields: Fields, type_name: str, path: str = "", unit: str = "") -> It
         here = f"{path}.{name}" if path else name
         own = unit_of(type_name, name) or unit
         if not kind.is_message:
-            yield Leaf(here, kind, own)
+            yield Leaf(here, kind, own, type_name)
         elif is_time(kind):
             yield Leaf(here, kind, "s")
         else:

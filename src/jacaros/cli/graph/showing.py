@@ -6,13 +6,16 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
+from jacaros.artifacts.mapping.interfaces import Interfaces, constants
 from jacaros.cli.graph.definitions import Leaf, is_time, leaves, parts, value_at
 from jacaros.cli.graph.first_mapping import lines_for
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.kinds import Kind, Thing
 from jacaros.cli.graph.listening import one_message
+from jacaros.cli.graph.values import is_named
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError, UnknownInterface
+from jacaros.ros.fields import INTEGER_RANGES
 from jacaros.ros.graph import Endpoint
 from jacaros.ros.message import to_seconds
 
@@ -102,9 +105,21 @@ def _row(joined: Joined, leaf: Leaf, message: Any) -> dict[str, Any]:
         row["type"] = row["type"].rpartition("/")[2].lower()
     if leaf.unit:
         row["unit"] = leaf.unit
+    if named := _constants(joined.backend, leaf):
+        row["constants"] = named
     if message is not None:
         row["value"] = _plain(value_at(message, leaf.path), leaf)
     return row
+
+
+def _constants(types: Interfaces, leaf: Leaf) -> dict[str, Any]:
+    """The constants that name the values of a field."""
+    name = leaf.path.rpartition(".")[2]
+    if leaf.type.base not in INTEGER_RANGES or not is_named(types, leaf.owner, name, leaf.type):
+        return {}
+    known = constants(types, leaf.owner)
+    own = {each: value for each, value in known.items() if each.startswith(f"{name.upper()}_")}
+    return {each: _single(value) for each, value in (own or known).items()}
 
 
 def _plain(value: Any, leaf: Leaf) -> Any:
@@ -192,9 +207,11 @@ def _table(rows: list[dict[str, Any]]) -> Iterator[str]:
         return
     cells = [[row["path"], row["type"], row.get("unit", ""), _text(row)] for row in rows]
     widths = [max(len(cell[column]) for cell in cells) for column in range(3)]
-    for cell in cells:
+    for row, cell in zip(rows, cells, strict=True):
         line = "  ".join(text.ljust(width) for text, width in zip(cell, widths, strict=False))
         yield f"  {line}  {cell[3]}".rstrip()
+        for name, value in row.get("constants", {}).items():
+            yield f"      {value} = {name}"
 
 
 def _text(row: dict[str, Any]) -> str:

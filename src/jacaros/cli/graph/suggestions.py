@@ -290,13 +290,14 @@ def _filled(types: Interfaces, type_name: str, key: str) -> tuple[list[Value], l
 
 
 _PLACES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/Pose", "geometry_msgs/msg/Point")
+_TRAJECTORY_POINT = "trajectory_msgs/msg/JointTrajectoryPoint"
 _OCTETS = ("byte", "char", "int8", "uint8")
 
 
 def _can_be_given(kind: FieldType) -> bool:
     """Whether an agent can write the list: places, or numbers and texts that are no covariance and no picture."""
     if kind.is_message:
-        return kind.base in _PLACES
+        return kind.base in (*_PLACES, _TRAJECTORY_POINT)
     return not kind.fixed and kind.base not in _OCTETS
 
 
@@ -305,6 +306,8 @@ def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[Value, list[st
     if not kind.is_message:
         value = list_of(name, kind)
         return value, [f"  {name}: {value.as_value}"]
+    if kind.base == _TRAJECTORY_POINT:
+        return _trajectory(name)
     elements = values_of(types, kind.base)
     told = f"a list of {_call('place', elements).partition(':')[0]}"
     lines = [
@@ -313,6 +316,16 @@ def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[Value, list[st
         f"    fields: {{{_elements(types, kind.base, elements)}}}",
     ]
     return Value(name, name.lower(), "", Unit(told)), lines
+
+
+def _trajectory(path: str) -> tuple[Value, list[str]]:
+    """A parameter for the points of a trajectory of joints: without points nothing would move."""
+    lines = [
+        f"  {path}:   # in the order of the joints: radians, or metres of a joint that slides",
+        "    each: $points",
+        "    fields: {positions: $1, time_from_start: $2}",
+    ]
+    return Value(path, "points", "", Unit("a list of point(Positions, Seconds)")), lines
 
 
 def _elements(types: Interfaces, type_name: str, values: Sequence[Value]) -> str:

@@ -128,14 +128,25 @@ def values_of(types: Interfaces, type_name: str) -> list[Value]:
     return _with_own_names(list(_walk(types, type_name, "", "")))
 
 
+_TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
+
+
 def lists_of(types: Interfaces, type_name: str) -> list[tuple[str, FieldType]]:
-    """The fields of a message that are lists."""
-    return [(name, kind) for name, kind in types.fields(type_name).items() if kind.array]
+    """The fields of a message that are lists; also those of a trajectory of joints in it."""
+    found = []
+    for name, kind in types.fields(type_name).items():
+        if kind.array:
+            found.append((name, kind))
+        elif kind.base == _TRAJECTORY:
+            found += [(f"{name}.{inner}", each) for inner, each in lists_of(types, kind.base)]
+    return found
 
 
 def list_of(path: str, kind: FieldType) -> Value:
     """A list of plain values as one value."""
-    return Value(path, path.lower(), "", Unit("a list", 3 if kind.base in FLOATS else None))
+    return Value(
+        path, path.rpartition(".")[2].lower(), "", Unit("a list", 3 if kind.base in FLOATS else None)
+    )
 
 
 def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[Value]:
@@ -166,12 +177,12 @@ def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path:
     if kind.base in FLOATS:
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
         return Value(path, word, conversion, _UNITS.get(unit, Unit(unit, 3)))
-    if kind.base in INTEGER_RANGES and _is_named(types, type_name, name, kind):
+    if kind.base in INTEGER_RANGES and is_named(types, type_name, name, kind):
         return Value(path, word, "as: name")
     return Value(path, word)
 
 
-def _is_named(types: Interfaces, type_name: str, name: str, kind: FieldType) -> bool:
+def is_named(types: Interfaces, type_name: str, name: str, kind: FieldType) -> bool:
     """Whether the constants of a message are names for the values of a field, each value having one."""
     known = constants(types, type_name)
     own = [value for constant, value in known.items() if constant.startswith(f"{name.upper()}_")]

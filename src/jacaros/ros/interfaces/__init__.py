@@ -5,6 +5,8 @@ Definitions are the usual text files, ``<root>/<package>/msg/<Type>.msg``, ``<ro
 ROS 2 interface package, built for installations that lack ``example_interfaces``.
 """
 
+import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,6 +21,13 @@ def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
         if path.is_file():
             return path.read_text(encoding="utf-8")
     return None
+
+
+def installed() -> tuple[Path, ...]:
+    """Folders with the definitions of the ROS 2 packages that are installed here: ``share`` of each prefix."""
+    prefixes = [*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix]
+    shares = (Path(prefix) / "share" for prefix in dict.fromkeys(prefixes) if prefix)
+    return tuple(share for share in shares if share.is_dir())
 
 
 def split_service(text: str) -> tuple[str, str]:

@@ -155,6 +155,20 @@ def test_a_goal_is_cancelled_while_suspended_unless_the_mapping_says_otherwise()
     with_mapped(COUNT.replace("MORE", "suspend: go_on"), continues)
 
 
+MARK = """
+operations:
+  mark: {parameters: [seconds], publish: m, type: visualization_msgs/msg/Marker, fields: {lifetime: $seconds}}
+"""
+
+
+def test_a_negative_duration_is_refused_before_anything_is_sent() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        assert (await lab.call(artifact, "mark", -3)).reason == 'wrong_value("lifetime")'
+        await lab.do(artifact, "mark", 3)
+
+    with_mapped(MARK, body)
+
+
 DOCK = """
 operations:
   dock:

@@ -254,3 +254,47 @@ def test_a_unit_that_there_is_not_stops_no_check_of_types(unit: str, tmp_path: P
     messages = [each.message for each in check_mapping_file(file)]
     assert any(each.startswith("there is no unit") for each in messages)
     assert any("has no field 'nothing'" in each for each in messages)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        (
+            "topic: b, type: sensor_msgs/msg/BatteryState, fields: [{path: voltage, unit: percent}]",
+            "voltage in V",
+        ),
+        (
+            "topic: j, type: sensor_msgs/msg/JointState, fields: [{path: 'position[0]', unit: percent}]",
+            "rad or m",
+        ),
+    ],
+)
+def test_a_unit_that_the_message_cannot_be_converted_to_is_an_error(line: str, told: str) -> None:
+    with pytest.raises(MappingError, match=told):
+        check_mapping(read_mapping(f"properties: {{p: {{{line}}}}}"), stored_interfaces())
+
+
+def test_a_joint_is_shown_in_degrees_or_millimetres() -> None:
+    for unit in ("degrees", "millimetres"):
+        fields = f"[{{path: 'position[0]', unit: {unit}}}]"
+        line = f"properties: {{p: {{topic: j, type: sensor_msgs/msg/JointState, fields: {fields}}}}}"
+        check_mapping(read_mapping(line), stored_interfaces())
+
+
+def test_a_duration_is_not_negative() -> None:
+    line = "operations: {mark: {publish: m, type: visualization_msgs/msg/Marker, fields: {lifetime: -3}}}"
+    with pytest.raises(MappingError, match="a duration is not negative"):
+        check_mapping(read_mapping(line), stored_interfaces())
+
+
+def test_types_of_packages_that_are_installed_are_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "share" / "fresh_msgs" / "msg" / "Fresh.msg"
+    file.parent.mkdir(parents=True)
+    file.write_text("float64 value\n", encoding="utf-8")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    stored_interfaces.cache_clear()
+    line = "properties: {p: {topic: t, type: fresh_msgs/msg/Fresh, fields: [value]}}"
+    check_mapping(read_mapping(line), stored_interfaces())
+    stored_interfaces.cache_clear()
