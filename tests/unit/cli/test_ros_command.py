@@ -26,10 +26,10 @@ def test_types_are_defined_in_folders_that_the_command_names(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    definition = tmp_path / "types" / "odd_msgs" / "msg" / "Thing.msg"
+    definition = tmp_path / "types" / "arm_msgs" / "msg" / "Thing.msg"
     definition.parent.mkdir(parents=True)
     definition.write_text("float64 weight\n")
-    told(capsys, "show", "odd_msgs/msg/Thing", "--world", "house", "--interfaces", "types")
+    told(capsys, "show", "arm_msgs/msg/Thing", "--world", "house", "--interfaces", "types")
     (tmp_path / "maps").mkdir()
     told(capsys, "map", "odom", "--world", "house", "--interfaces", "types", "-o", "maps/robot.yaml")
     assert '\ninterfaces: ["../types"]\n' in (tmp_path / "maps" / "robot.yaml").read_text()
