@@ -66,9 +66,18 @@ def command(
     async def main() -> None:
         backend = address.open(WallClock(), f"{name}_guard", _log)
         agents = f"{backend.node_name.rpartition('/')[0]}/{name}"
-        await Guard(backend, socket_path(ros, address.identity, agents), timeout, once, _log).run()
+        path = socket_path(ros, address.identity, agents)
+        await Guard(backend, path, timeout, once, _log, _leave_output if once else lambda: None).run()
 
     run(main, WallClock())
+
+
+def _leave_output() -> None:
+    """Close the standard error inherited from agents that have died: a reader of their pipe waits for its end."""
+    if not os.isatty(2):
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, 2)
+        os.close(null)
 
 
 def _log(text: str) -> None:

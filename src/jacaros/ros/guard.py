@@ -137,12 +137,20 @@ class Guard:
         timeout: seconds without a heartbeat after which it stops the robot.
         once: end when the agents have ended in good order, or when none come.
         log: takes a line for people.
+        orphaned: called when agents have died, after that was logged.
     """
 
     def __init__(
-        self, backend: Backend, path: Path, timeout: float, once: bool, log: Callable[[str], None]
+        self,
+        backend: Backend,
+        path: Path,
+        timeout: float,
+        once: bool,
+        log: Callable[[str], None],
+        orphaned: Callable[[], None] = lambda: None,
     ) -> None:
         self._backend, self._path, self._once, self._log = backend, path, once, log
+        self._orphaned = orphaned
         self._watch = Watch(timeout, self._trip, self._release)
         self._brakes = Brakes(backend, log)
         self._writer: asyncio.StreamWriter | None = None
@@ -232,6 +240,7 @@ class Guard:
             self._writer = None
             if self._watch.agents:
                 self._watch.lose()
+                self._orphaned()
         self._wake.set()
 
     def _take(self, message: dict[str, Any]) -> None:

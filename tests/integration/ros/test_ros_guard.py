@@ -80,6 +80,7 @@ def test_the_robot_stands_after_its_agents_are_killed(guarded: Callable[..., Gua
     run = guarded(driven, driven)
     run.until_driving()
     took = run.stood_after(run.agents.signal(signal.SIGKILL))
+    assert run.agents.end() == -signal.SIGKILL, "a guard does not keep the output of dead agents open"
     print(f"SIGKILL, {driven}: standing after {took:.2f} s")
     assert took <= STATIONARY
 
