@@ -14,12 +14,18 @@ from pathlib import Path
 from types import ModuleType
 
 from jacaros.errors import JacarosError
+from jacaros.module_outlines import INCOMPLETE, UNSEEN, fill
+from jacaros.text_files import file_text
 
 _numbers = itertools.count(1)
 
 
 class ModuleUnreadable(JacarosError):
     """A project's Python file cannot be imported; the original error is the ``__cause__``."""
+
+
+class NotImported(JacarosError):
+    """What a project's Python file declares cannot be known without running it, and running it was not asked for."""
 
 
 class ProjectModules:
@@ -30,9 +36,12 @@ class ProjectModules:
 
     Args:
         folders: where the files are looked for, in order.
+        unseen: if given, no file is run: modules are outlines (`jacaros.module_outlines`), and files with declarations that
+            an outline does not show are added here when somebody asks for them.
     """
 
-    def __init__(self, *folders: Path | str) -> None:
+    def __init__(self, *folders: Path | str, unseen: set[Path] | None = None) -> None:
+        self.unseen = unseen
         self.folders = tuple(dict.fromkeys(Path(folder).resolve() for folder in folders))
         self._prefix = f"jacaros_project_{next(_numbers)}"
         self._loaded: dict[str, tuple[ModuleType, ...]] = {}
@@ -69,6 +78,20 @@ class ProjectModules:
             )
         return found
 
+    def require_seen(self, module: ModuleType, name: str) -> None:
+        """Refuse to say that a module has no such name while that is not known.
+
+        Raises:
+            NotImported: the module is an outline, and the name may be there when the file is run.
+        """
+        if self.unseen is None:
+            return
+        value = vars(module).get(name)
+        if value is UNSEEN or (value is None and INCOMPLETE in vars(module)):
+            file = Path(module.__file__ or module.__name__)
+            self.unseen.add(file)
+            raise NotImported(f"{file} is not imported, so {name} is not known; --import imports it")
+
     def name_of(self, module: ModuleType) -> str:
         """The name by which the project knows a module, such as ``my.geometry``."""
         return module.__name__.removeprefix(f"{self._prefix}.")
@@ -96,12 +119,28 @@ class ProjectModules:
         assert spec.loader is not None, file
         module = sys.modules[full] = self._modules[name] = importlib.util.module_from_spec(spec)
         try:
-            with self._importing():
-                spec.loader.exec_module(module)
+            if self.unseen is not None:
+                fill(module, file, file_text(file), self._outline)
+            else:
+                with self._importing():
+                    spec.loader.exec_module(module)
         except (Exception, SystemExit) as error:
+            if isinstance(error, ModuleUnreadable) and self.unseen is not None:
+                raise  # of a module that this one imports
             del sys.modules[full], self._modules[name]
             raise ModuleUnreadable(_where(error, file)) from error
         return module
+
+    def _outline(self, name: str) -> ModuleType | None:
+        """The outline of another module of the project that one imports."""
+        name = name.removeprefix(f"{self._prefix}.")
+        place = self.place(name)
+        if place is None:
+            return None
+        if place.is_file():
+            return self._file(name, place)
+        entry = place / "__init__.py"
+        return self._file(name, entry, place) if entry.is_file() else self._empty_package(name, place)
 
     @contextmanager
     def _importing(self) -> Iterator[None]:

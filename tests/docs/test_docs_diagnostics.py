@@ -13,6 +13,7 @@ from jacaros.cli.main import call
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
 EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]
 OF_FILES = {
+    "not-imported",
     "too-many",
     "no-effect",
     "unknown-artifact-type",

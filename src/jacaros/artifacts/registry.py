@@ -1,6 +1,7 @@
 """From the type name in ``makeArtifact`` to the Python class."""
 
 import importlib
+import importlib.util
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType, ModuleType
@@ -24,7 +25,7 @@ from jacaros.artifacts.tools.latch import Latch
 from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
 from jacaros.env.default.blackboard import Blackboard
 from jacaros.env.default.console import Console
-from jacaros.project_modules import ModuleUnreadable, ProjectModules
+from jacaros.project_modules import ModuleUnreadable, NotImported, ProjectModules
 
 BUILT_IN: Mapping[str, type[Artifact]] = MappingProxyType(
     {
@@ -92,7 +93,19 @@ def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], 
 
     def find(name: str) -> type[Artifact]:
         mapped = _mapped(name, own.folders)
-        return mapped or _of_project(name, own) or find_type(name, (*_beside(name, own), *modules))
+        found = mapped or _of_project(name, own)
+        if found is not None:
+            return found
+        near = (*_beside(name, own), *modules)
+        by_path = own.unseen is None or name.startswith("jacaros.")
+        try:
+            return find_type(name, near, by_path=by_path)
+        except UnknownArtifactType:
+            for module in near:
+                own.require_seen(module, name.rpartition(".")[2])
+            if not by_path and _is_installed(name):
+                raise NotImported(f"{name} is not imported") from None
+            raise
 
     return find
 
@@ -101,6 +114,7 @@ def find_type(
     name: str,
     search_modules: Sequence[ModuleType] = (),
     built_in: Mapping[str, type[Artifact]] = BUILT_IN,
+    by_path: bool = True,
 ) -> type[Artifact]:
     """Find the artifact type called *name*.
 
@@ -108,7 +122,7 @@ def find_type(
     order: a dotted Python path (``my_robot.gripper.Gripper``); a class of the project's own
     modules, where a package in front of the name (``tools.Counter``, as Java programs write) is ignored;
     a built-in by its bare name; a built-in by the thesis's name (``jason.architecture.ArtOdometry``).
-    What begins with ``cartago.tools.`` is a tool of CArtAgO in any case.
+    What begins with ``cartago.tools.`` is a tool of CArtAgO in any case.  Without *by_path* no dotted path is imported.
 
     Raises:
         UnknownArtifactType: there is none.
@@ -116,7 +130,7 @@ def find_type(
     found = (
         _mapped(name, (Path(),))
         or TOOLS.get(name)
-        or _by_path(name)
+        or (_by_path(name) if by_path else None)
         or _of_modules(name.rpartition(".")[2], search_modules)
         or built_in.get(name)
         or _by_alias(name, built_in)
@@ -162,6 +176,15 @@ def _beside(name: str, project: ProjectModules) -> Sequence[ModuleType]:
     """The project's modules that a name leads to: what may have been meant by a misspelt one is there."""
     path = name.rpartition(".")[0]
     return project.load(path) if path and project.place(path) is not None else ()
+
+
+def _is_installed(name: str) -> bool:
+    """Whether a dotted name begins with an installed package, which is not imported."""
+    top, dot, _ = name.partition(".")
+    if not dot or not top.isidentifier():
+        return False
+    found = importlib.util.find_spec(top)
+    return found is not None and found.origin is not None  # else any folder of that name
 
 
 def _by_path(name: str) -> type[Artifact] | None:

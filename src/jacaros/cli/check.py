@@ -43,8 +43,19 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
     multiple=True,
     help="A mapping file that programs (.asl) are run with: do they ask for what it offers? May be given more often.",
 )
+@click.option(
+    "--import",
+    "imports",
+    is_flag=True,
+    help="Run the Python files of the project to know all that they declare (default: only read them).",
+)
 def command(
-    files: tuple[Path, ...], style: str, strict: bool, ignore: tuple[str, ...], mappings: tuple[str, ...]
+    files: tuple[Path, ...],
+    style: str,
+    strict: bool,
+    ignore: tuple[str, ...],
+    mappings: tuple[str, ...],
+    imports: bool,
 ) -> int:
     """Tell what is wrong in each FILE: an agent program (.asl, or .py for an agent in Python), a project (.mas2j, .jcm)
     with the programs of its agents, a mapping file (.yaml), or a folder with all of them.
@@ -52,11 +63,13 @@ def command(
     All problems are told at once. Each kind has a code; the reference page "Diagnostics" explains them. A comment
     `// jacaros: ignore CODE` switches a warning off for its line, or, on a line of its own, for the clause below
     it; `// jacaros: ignore-file CODE` for the file. The exit code is 1 if there is an error.
+
+    No Python code of the project is run, unless you give --import: what it declares is read from its source.
     """  # fmt: skip
     unknown = [code for code in ignore if code not in KINDS]
     if unknown:
         raise UsageError(f"there is no code {unknown[0]}")
-    findings = check_files([existing(file, _KINDS) for file in files], mappings)
+    findings = check_files([existing(file, _KINDS) for file in files], mappings, imports)
     if not findings.files and not findings.diagnostics:
         raise no_programs(files)
     findings.diagnostics = bounded(

@@ -33,13 +33,20 @@ from jacaros.terms.text import text
     metavar="LABEL|TRIGGER",
     help="Only what belongs to the plan of that label, or to the plans for that event, such as `+!go` or `+!go/2`.",
 )
-def command(file: Path, show: bool, wanted: str | None) -> int:
+@click.option(
+    "--import",
+    "imports",
+    is_flag=True,
+    help="Run the Python files of the project to know all that they declare (default: only read them).",
+)
+def command(file: Path, show: bool, wanted: str | None, imports: bool) -> int:
     """Compile all plans and rules of FILE, an agent program (.asl), and tell how much code they become.
 
     Nothing of that is needed to run a program: an agent compiles its plans when their first event comes. What is wrong
-    in the program is told as `jacaros check` tells it, with exit code 1.
+    in the program is told as `jacaros check` tells it, with exit code 1. No Python code of the project is run, unless you
+    give --import.
     """  # fmt: skip
-    program, code = _read(existing(file, (".asl",)))
+    program, code = _read(existing(file, (".asl",)), imports)
     if program is None:
         return 1
     plans = ProgramPlans(program.plans, code.actions).plans
@@ -63,11 +70,11 @@ def command(file: Path, show: bool, wanted: str | None) -> int:
     return 1 if too_large else 0
 
 
-def _read(file: Path) -> tuple[nodes.Program | None, PythonCode]:
+def _read(file: Path, imports: bool) -> tuple[nodes.Program | None, PythonCode]:
     """The program, or None when something is wrong in it, which has been told."""
-    findings = check_files([file])
+    findings = check_files([file], imports=imports)
     errors = [each for each in findings.diagnostics if each.severity == "error"]
-    code = PythonCode(ProjectModules(file.parent))
+    code = PythonCode(ProjectModules(file.parent, unseen=None if imports else set()))
     if errors:
         findings.diagnostics = bounded(errors)
         tell(findings)

@@ -14,7 +14,8 @@ from jacaros.env.manual import Manual, describe
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.loading import load_deployment
-from jacaros.project_modules import ProjectModules
+from jacaros.module_outlines import UNSEEN
+from jacaros.project_modules import NotImported, ProjectModules
 from jacaros.text_files import is_file
 
 PROJECT_FILES = (".asl", ".mas2j", ".jcm")
@@ -30,13 +31,23 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
     help="Folder of the project whose own artifacts count (default: this one).",
 )
 @click.option("--json", "as_json", is_flag=True, help="As JSON, for other programs.")
-def command(what: str, project: Path, as_json: bool) -> None:
-    """Tell what WHAT offers: an artifact type, a Python file or a mapping file of them, or a project file."""
+@click.option(
+    "--import",
+    "imports",
+    is_flag=True,
+    help="Run the Python files of the project to know all that they declare (default: only read them).",
+)
+def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
+    """Tell what WHAT offers: an artifact type, a Python file or a mapping file of them, or a project file.
+
+    No Python code of the project is run, unless you give --import: what it declares is read from its source.
+    """
+    unseen = None if imports else set[Path]()
     if what.endswith(PROJECT_FILES):
-        described = _Project(load_deployment(what))
+        described = _Project(load_deployment(what), unseen)
         click.echo(_json(described.data()) if as_json else "\n".join(described.lines()))
         return
-    manuals = [describe(kind) for kind in _kinds(what, project)]
+    manuals = [describe(kind) for kind in _kinds(what, project, unseen)]
     if as_json:
         click.echo(
             _json([dataclasses.asdict(manual) for manual in manuals] if len(manuals) != 1 else manuals[0])
@@ -45,16 +56,16 @@ def command(what: str, project: Path, as_json: bool) -> None:
         click.echo("\n\n".join(map(_for_people, manuals)))
 
 
-def _kinds(what: str, project: Path) -> Sequence[type[Artifact]]:
+def _kinds(what: str, project: Path, unseen: set[Path] | None) -> Sequence[type[Artifact]]:
     """The artifact types that are meant."""
     if what.endswith(".py"):
-        return _types_in(Path(what))
+        return _types_in(Path(what), unseen)
     if what.endswith((".yaml", ".yml")):
-        return _mapped_types(what, project)
-    return [_find(what, project)]
+        return _mapped_types(what, project, unseen)
+    return [_find(what, project, unseen)]
 
 
-def _mapped_types(name: str, folder: Path) -> list[type[Artifact]]:
+def _mapped_types(name: str, folder: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
     """The artifact types of a mapping file, in their order."""
     # Imported here: mappings bring their own reader.
     from jacaros.artifacts.mapping.file import find_mapping, load_mapping
@@ -62,7 +73,7 @@ def _mapped_types(name: str, folder: Path) -> list[type[Artifact]]:
     path = find_mapping(name, (folder,))
     if path is None:
         raise UsageError(f"there is no mapping file {name}")
-    return [_find(f"{path}#{each}", folder) for each in load_mapping(path).artifacts]
+    return [_find(f"{path}#{each}", folder, unseen) for each in load_mapping(path).artifacts]
 
 
 def _for_people(manual: Manual) -> str:
@@ -76,22 +87,26 @@ def _json(data: Any) -> str:
     )
 
 
-def _find(name: str, folder: Path) -> type[Artifact]:
+def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
     # Imported here: all built-in artifacts come with it.
     from jacaros.artifacts.registry import type_finder
 
     try:
-        return type_finder(folder)(name)
+        return type_finder(ProjectModules(folder, unseen=unseen))(name)
     except UnknownArtifactType as unknown:
         raise UsageError(str(unknown)) from unknown
 
 
-def _types_in(file: Path) -> list[type[Artifact]]:
+def _types_in(file: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
     """The artifact types of a Python file, in their order."""
     if not is_file(file):
         raise UsageError(f"there is no file {file}")
-    found = _own_types(ProjectModules(file.parent), file.stem)
+    modules = ProjectModules(file.parent, unseen=unseen)
+    found = _own_types(modules, file.stem)
     if not found:
+        for module in modules.load(file.stem):
+            for name in [name for name, value in vars(module).items() if value is UNSEEN] or [file.stem]:
+                modules.require_seen(module, name)
         raise UsageError(f"{file} has no artifact type (a class derived from jacaros.env.Artifact)")
     return found
 
@@ -108,11 +123,11 @@ def _own_types(modules: ProjectModules, name: str) -> list[type[Artifact]]:
 class _Project:
     """What a project consists of, and the types of its artifacts."""
 
-    def __init__(self, deployment: Deployment) -> None:
+    def __init__(self, deployment: Deployment, unseen: set[Path] | None) -> None:
         from jacaros.artifacts.registry import ARTIFACTS, type_finder
 
         self._deployment = deployment
-        modules = ProjectModules(deployment.base_path, *deployment.source_paths)
+        modules = ProjectModules(deployment.base_path, *deployment.source_paths, unseen=unseen)
         find = type_finder(modules)
         self._unknown: dict[str, str] = {}
         types: dict[type[Artifact], None] = {}
@@ -120,7 +135,7 @@ class _Project:
             for artifact in workspace.artifacts:
                 try:
                     types[find(artifact.type_name)] = None
-                except UnknownArtifactType as unknown:
+                except (UnknownArtifactType, NotImported) as unknown:
                     self._unknown[artifact.type_name] = str(unknown)
         types.update(dict.fromkeys(_own_types(modules, ARTIFACTS)))
         self._manuals = [describe(kind) for kind in types]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from difflib import get_close_matches
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -9,6 +10,7 @@ from jacaros.bdi.internal_action import InternalAction
 from jacaros.errors import JacarosError
 from jacaros.extension.calling import Undeclarable, action_of, function_of
 from jacaros.extension.declaring import ACTION, Declared, declarations
+from jacaros.module_outlines import INCOMPLETE, UNSEEN
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.terms.values import Term
 
@@ -22,6 +24,7 @@ class Additions:
         actions: internal actions by name.
         functions: evaluators of arithmetic functions by name.
         arities: their least and greatest numbers of arguments.
+        unseen: names that may be added when their file is run, or (with a dot at the end) the beginnings of such names.
         plain: names of functions without decorator, as programs would write them.
     """
 
@@ -30,6 +33,7 @@ class Additions:
         self.functions: dict[str, Callable[..., Term]] = {}
         self.arities: dict[str, Limits] = {}
         self.plain: set[str] = set()
+        self.unseen: dict[str, Path] = {}
         self._places: dict[str, str] = {}
 
     def collect(self, modules: ProjectModules, name: str) -> None:
@@ -39,10 +43,14 @@ class Additions:
             ModuleUnreadable: a file cannot be imported, or declares what cannot be; the text names file and line.
         """
         for module in modules.load(name):
+            if INCOMPLETE in vars(module):
+                self.unseen[f"{modules.name_of(module)}."] = Path(module.__file__ or name)
             self._collect_module(modules.name_of(module), module, name.partition(".")[0])
 
     def _collect_module(self, module_name: str, module: ModuleType, top: str) -> None:
         for key, value in list(vars(module).items()):
+            if value is UNSEEN and module.__file__ is not None:
+                self.unseen[_default_name(module_name, key)] = Path(module.__file__)
             if not callable(value) or getattr(value, "__module__", None) != module.__name__:
                 continue
             default = _default_name(module_name, key)
@@ -112,6 +120,7 @@ def find_class(modules: ProjectModules, name: str, kind: type[Any]) -> type[Any]
     if not found:
         return None
     for module in found:
+        modules.require_seen(module, last)
         candidate = vars(module).get(last)
         if isinstance(candidate, type) and issubclass(candidate, kind):
             return candidate

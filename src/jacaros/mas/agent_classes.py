@@ -13,7 +13,7 @@ from jacaros.errors import JacarosError
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.python_code import PythonCode
-from jacaros.project_modules import ProjectModules
+from jacaros.project_modules import NotImported, ProjectModules
 
 if TYPE_CHECKING:
     from jacaros.extension.classes import Made
@@ -54,6 +54,8 @@ class AgentClasses:
                     loading.check(self._modules, spec, self._warn_once)
                 else:
                     self._objects(spec)
+            except NotImported:
+                continue
             except JacarosError as error:
                 found = error.diagnostics if isinstance(error, ProjectError) else ()
                 wrong += [d for d in found if d not in wrong]
@@ -145,7 +147,7 @@ class AgentClasses:
                 for written in reversed(spec.architecture_classes)
                 if not written.startswith(_KNOWN_ARCHITECTURES)
             ]
-        except ProjectError:
+        except (ProjectError, NotImported):
             raise
         except JacarosError as error:
             raise self._project_error(spec, str(error)) from error

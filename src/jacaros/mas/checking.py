@@ -38,13 +38,15 @@ class Findings:
     Attributes:
         diagnostics: sorted by file and place, each once.
         files: all files that have been read, programs, included files and projects.
+        unseen: Python files with names that only running them can tell; None when they are run.
     """
 
     diagnostics: list[Diagnostic] = field(default_factory=list)
     files: set[Path] = field(default_factory=set)
+    unseen: set[Path] | None = field(default_factory=set)
 
 
-def check_files(paths: Sequence[Path], mappings: Sequence[str] = ()) -> Findings:
+def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bool = False) -> Findings:
     """Check programs, projects with the programs of their agents, and whole folders.
 
     In a folder a program is checked by itself only if no project there names it and no other program includes it.
@@ -52,8 +54,9 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = ()) -> Findings
     Args:
         paths: files and folders.
         mappings: mapping files that programs given by themselves are run with; what they do is compared with these.
+        imports: run the Python files of projects, to know all that they declare; otherwise they are read only.
     """
-    findings = Findings()
+    findings = Findings(unseen=None if imports else set())
     for path in paths:
         if path.is_dir():
             _check_folder(path, findings)
@@ -67,8 +70,19 @@ def check_files(paths: Sequence[Path], mappings: Sequence[str] = ()) -> Findings
             _check_program_with_mappings(path, mappings, findings)
         else:
             _check_lone_program(path, findings)
+    findings.diagnostics += map(_not_imported, sorted(findings.unseen or ()))
     findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
     return findings
+
+
+def _not_imported(file: Path) -> Diagnostic:
+    return Diagnostic(
+        "note",
+        f"names from {file} were not checked: only running it tells them",
+        None,
+        "--import runs the Python code of the project, and checks them",
+        "not-imported",
+    )
 
 
 def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
@@ -89,7 +103,7 @@ def _check_folder(folder: Path, findings: Findings) -> None:
     for path in files_below(folder, (".asl",)):
         if path.resolve() in findings.files:
             continue
-        own = alone[path.resolve()] = Findings()
+        own = alone[path.resolve()] = Findings(unseen=findings.unseen)
         _check_lone_program(path, own)
         included |= own.files - {path.resolve()}
     for file, own in alone.items():
@@ -103,7 +117,7 @@ def _check_projects(folder: Path, findings: Findings) -> None:
     used: set[Path] = set()
     alone: dict[Path, Findings] = {}
     for path in files_below(folder, PROJECTS):
-        own = alone[path.resolve()] = Findings()
+        own = alone[path.resolve()] = Findings(unseen=findings.unseen)
         used |= _check_project(path, own)
     for file, own in alone.items():
         if file not in used:
@@ -123,7 +137,7 @@ def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
     findings.files |= reading.used
     findings.diagnostics += [_of_project(each) for each in reading.diagnostics]
     folders = (deployment.base_path, *deployment.source_paths)
-    findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, folders)]
+    findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, folders, findings.unseen)]
     different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}
     programs = []
     for agent in different.values():
@@ -138,14 +152,17 @@ def _check_project(path: Path, findings: Findings) -> frozenset[Path]:
     if deployment.artifact_environment:
         # What agents in Python make, and what programs with errors would make, is not known.
         known = programs if len(programs) == len(different) else []
-        findings.diagnostics += _of_artifacts(deployment, known, folders)
+        findings.diagnostics += _of_artifacts(deployment, known, folders, findings.unseen)
     if len(programs) == len(different):
-        findings.diagnostics += _of_beliefs(deployment, programs, folders)
+        findings.diagnostics += _of_beliefs(deployment, programs, folders, findings.unseen)
     return reading.used
 
 
 def _of_beliefs(
-    deployment: Deployment, programs: list[tuple[AgentSpec, nodes.Program]], folders: tuple[Path, ...]
+    deployment: Deployment,
+    programs: list[tuple[AgentSpec, nodes.Program]],
+    folders: tuple[Path, ...],
+    unseen: set[Path] | None,
 ) -> list[Diagnostic]:
     """Misspelt names of beliefs in the programs of a project; not where classes of its own may make more."""
     if any(
@@ -158,7 +175,7 @@ def _of_beliefs(
     def types() -> "list[type[Artifact]] | None":
         from jacaros.artifacts.registry import type_finder  # here: see `_of_artifacts`
 
-        return made_types(deployment, trees, type_finder(ProjectModules(*folders)))
+        return made_types(deployment, trees, type_finder(ProjectModules(*folders, unseen=unseen)))
 
     trees = [program for _, program in programs]
     return check_beliefs(trees, types, folders)
@@ -170,11 +187,14 @@ def _check_lone_program(path: Path, findings: Findings) -> None:
     if program is not None:
         lone = Deployment(path.stem, path.parent)
         agent = AgentSpec(path.stem, path)
-        findings.diagnostics += _of_beliefs(lone, [(agent, program)], (path.parent,))
+        findings.diagnostics += _of_beliefs(lone, [(agent, program)], (path.parent,), findings.unseen)
 
 
 def _of_artifacts(
-    deployment: Deployment, programs: list[tuple[AgentSpec, nodes.Program]], folders: tuple[Path, ...]
+    deployment: Deployment,
+    programs: list[tuple[AgentSpec, nodes.Program]],
+    folders: tuple[Path, ...],
+    unseen: set[Path] | None,
 ) -> list[Diagnostic]:
     """What is wrong with the artifacts of a project, and with what its agents do with them."""
     # Imported here: programs without artifacts are checked without them.
@@ -189,7 +209,7 @@ def _of_artifacts(
         if not _is_wrong_mapping(artifact.type_name, folders)
     ]
     try:
-        find_type = type_finder(ProjectModules(*folders))
+        find_type = type_finder(ProjectModules(*folders, unseen=unseen))
         types_of(artifacts, find_type)
     except ModuleUnreadable as error:
         return [Diagnostic("error", str(error), code="wrong-project")]
@@ -246,8 +266,8 @@ def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: 
         return
     if program is not None:
         agents = [(deployment.agents[0], program)]
-        findings.diagnostics += _of_artifacts(deployment, agents, (path.parent,))
-        findings.diagnostics += _of_beliefs(deployment, agents, (path.parent,))
+        findings.diagnostics += _of_artifacts(deployment, agents, (path.parent,), findings.unseen)
+        findings.diagnostics += _of_beliefs(deployment, agents, (path.parent,), findings.unseen)
 
 
 def _mapping_files(
@@ -270,14 +290,20 @@ def _check_python_agent(path: Path, findings: Findings) -> None:
     findings.files.add(path.resolve())
     agent = AgentSpec(path.stem, path, path.stem)
     deployment = Deployment(path.stem, path.parent, (agent,))
-    findings.diagnostics += [_of_project(each) for each in _of_classes(deployment, (path.parent,))]
+    findings.diagnostics += [
+        _of_project(each) for each in _of_classes(deployment, (path.parent,), findings.unseen)
+    ]
 
 
-def _of_classes(deployment: Deployment, folders: tuple[Path, ...]) -> list[Diagnostic]:
+def _of_classes(
+    deployment: Deployment, folders: tuple[Path, ...], unseen: set[Path] | None
+) -> list[Diagnostic]:
     """What is wrong with the classes that agents are declared to be of."""
     found: list[Diagnostic] = []
     try:
-        AgentClasses(ProjectModules(*folders), deployment.base_path, found.append).check(deployment.agents)
+        AgentClasses(ProjectModules(*folders, unseen=unseen), deployment.base_path, found.append).check(
+            deployment.agents
+        )
     except ProjectError as error:
         found += error.diagnostics
     return found
@@ -296,7 +322,7 @@ def _check_program(
         All that the agent runs; None if it cannot be run.
     """
     findings.files.add(path.resolve())
-    code = PythonCode(ProjectModules(*folders))
+    code = PythonCode(ProjectModules(*folders, unseen=findings.unseen))
     programs = Programs(folders, lambda _: None, code)
     sources: list[SourceFile] = []
 
@@ -315,7 +341,7 @@ def _check_program(
     program, diagnostics = read_program(sources[0], include, code.functions)
     diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
-    known = KnownActions(code.actions, code.hint)
+    known = KnownActions(code.actions, code.hint, code.is_unseen)
     whole = _with_additions(program, agent)
     own = [*diagnostics, *check(whole, known, errors)]
     for source in sources:

@@ -13,7 +13,7 @@ from jacaros.env.kernel.signature import Parameter
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Atom
 from jacaros.mas.deployment import ArtifactSpec, FocusSpec, ProjectError, WorkspaceSpec
-from jacaros.project_modules import ModuleUnreadable
+from jacaros.project_modules import ModuleUnreadable, NotImported
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -62,6 +62,8 @@ def types_of(
             found[artifact.type_name] = find_type(artifact.type_name)
         except ModuleUnreadable:
             raise
+        except NotImported:
+            continue
         except Exception as error:
             told = str(error) or type(error).__name__
             hint = None if "did you mean" in told else _where(artifact.type_name)

@@ -72,6 +72,17 @@ class PythonCode:
         self.actions.update(self._additions.actions)
         self.evaluators.update(self._additions.functions)
 
+    def is_unseen(self, name: str) -> bool:
+        """Return whether a name may be there when the project's files are run, which this check does not do."""
+        if self._additions is None or name in self.actions:
+            return False
+        for unseen, file in self._additions.unseen.items():
+            if name == unseen or (unseen.endswith(".") and name.startswith(unseen)):
+                if self.modules.unseen is not None:
+                    self.modules.unseen.add(file)
+                return True
+        return False
+
     def take_errors(self) -> list[Diagnostic]:
         """What is wrong with the modules that programs named since the last call."""
         wrong = [error for name in self._met if (error := self._read.get(name)) is not None]
@@ -105,4 +116,8 @@ class _Functions(dict[str, Any]):
     def get(self, name: str, default: Any = None) -> Any:
         self._code.name_met(name)
         additions = self._code._additions
-        return default if additions is None else additions.arities.get(name, default)
+        if additions is None:
+            return default
+        if name not in additions.arities and self._code.is_unseen(name):
+            return (0, None)
+        return additions.arities.get(name, default)

@@ -102,9 +102,13 @@ def test_types_of_the_project_file_are_looked_for(folder: Path) -> None:
     assert "did you mean Counter?" in found.message
 
 
-def test_a_mistake_in_the_artifacts_is_told(folder: Path) -> None:
-    (folder / "artifacts.py").write_text("import nothing_of_this_name\n", encoding="utf-8")
-    (found,) = check(folder, "!go.\n+!go <- jump.")
+@pytest.mark.parametrize(
+    ("python", "imports"), [("class Counter(:", False), ("import nothing_of_this_name\n", True)]
+)
+def test_a_mistake_in_the_artifacts_is_told(folder: Path, python: str, imports: bool) -> None:
+    (folder / "artifacts.py").write_text(python, encoding="utf-8")
+    check(folder, "!go.\n+!go <- jump.")
+    (found,) = check_files([folder / "p.jcm"], imports=imports).diagnostics
     assert (found.severity, found.code) == ("error", "wrong-project")
     assert "artifacts.py:1" in found.message
 

@@ -43,10 +43,12 @@ class KnownActions:
     Attributes:
         signatures: by name; those of the language have a leading dot.
         hint: what to do about a name that is not among them, as far as that is known.
+        is_unseen: whether a name may be among them when the project's Python code runs.
     """
 
     signatures: Mapping[str, Signature]
     hint: Callable[[str], str | None] = _no_hint
+    is_unseen: Callable[[str], bool] = lambda _: False
 
 
 def unknown_actions(
@@ -64,6 +66,8 @@ def unknown_actions(
             continue
         if name in ARITIES:
             yield _wrong_function(node)
+            continue
+        if known.is_unseen(name):
             continue
         if not name.startswith(".") and not node.arguments:
             # An atom with a dot, such as a class name.

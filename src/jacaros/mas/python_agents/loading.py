@@ -16,6 +16,7 @@ from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.python_agents.faults import place_of_fault
 from jacaros.mas.python_agents.host import PythonAgentHost
 from jacaros.mas.service_directory import NAME as DIRECTORY_NAME
+from jacaros.module_outlines import UNSEEN
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 
 _OF_MINDS: Final = (
@@ -39,9 +40,13 @@ def agent_class(modules: ProjectModules, spec: AgentSpec) -> type[PythonAgent]:
     """
     if spec.python_class is not None:
         return spec.python_class
-    found = _classes(_module(modules, spec))
+    module = _module(modules, spec)
+    found = _classes(module)
     wanted = spec.options.get("class") or spec.agent_class
     file = spec.source_path
+    if not found or (wanted is not None and wanted.rpartition(".")[2] not in found):
+        for name in [name for name, value in vars(module).items() if value is UNSEEN] or [""]:
+            modules.require_seen(module, name)
     if not found:
         raise _wrong(spec, f"{file} has no class derived from jacaros.PythonAgent")
     if wanted is not None:

@@ -1,0 +1,405 @@
+"""What a Python file declares, without running it: its classes and functions with empty bodies.
+
+An outline is made from the syntax tree of the file.  Of its code only this is executed: class and function statements
+with the decorators of jacaros, constants, and imports of jacaros and of a few harmless modules.  What only running the
+file can tell (a class made by a call, a base class of another package, an unknown decorator) becomes `UNSEEN`.
+"""
+
+import ast
+import importlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final
+
+_HARMLESS: Final = frozenset(
+    {
+        "__future__",
+        "abc",
+        "collections",
+        "collections.abc",
+        "dataclasses",
+        "enum",
+        "math",
+        "numbers",
+        "typing",
+    }
+)
+"""Modules beside jacaros that an outline imports: all that they do is known."""
+
+_DECORATORS: Final = frozenset(
+    {
+        *("operation", "internal_operation", "link", "initializer", "common_operation"),
+        *("internal_action", "arithmetic_function", "dataclass", "abstractmethod", "final", "override"),
+        *("staticmethod", "classmethod", "property"),
+    }
+)
+_TRANSPARENT: Final = frozenset({"functools", "contextlib", "typing"})
+"""Modules whose decorators leave the parameters of a function as they are."""
+_KEEPING: Final = frozenset({"cache", "lru_cache", "wraps", "cached_property", "contextmanager", "overload"})
+_BINDING_CALLS: Final = frozenset(
+    {"exec", "eval", "globals", "locals", "setattr", "vars", "__import__", "import_module"}
+)
+INCOMPLETE: Final = "__jacaros_incomplete__"
+"""The attribute of an outline with names that only running the file can tell."""
+
+
+class Unseen:
+    """Something that is not known until the file is run; usable wherever an annotation or a default value is."""
+
+    def __getattr__(self, name: str) -> "Unseen":
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self
+
+    def __call__(self, *_: object, **__: object) -> "Unseen":
+        return self
+
+    def __getitem__(self, _: object) -> "Unseen":
+        return self
+
+    def __or__(self, _: object) -> "Unseen":
+        return self
+
+    __ror__ = __or__
+
+
+UNSEEN: Final = Unseen()
+
+
+def fill(module: ModuleType, file: Path, text: str, project: Callable[[str], ModuleType | None]) -> None:
+    """Give *module* the names that a file declares.
+
+    Args:
+        module: an empty one.
+        file: its file, for errors.
+        text: of the file.
+        project: gives the outline of another module of the project; None for a name that is not one of them.
+
+    Raises:
+        SyntaxError: the text is not Python.
+        Exception: a declaration is wrong, such as an operation with keyword parameters.
+    """
+    tree = ast.parse(text, str(file))
+    outline = _Outline(module, project)
+    for statement in _flat(tree.body):
+        for part in outline.visible(statement):
+            code = compile(
+                ast.fix_missing_locations(ast.Module([part], [])), str(file), "exec", dont_inherit=True
+            )
+            exec(code, module.__dict__)
+    if (doc := ast.get_docstring(tree)) is not None:
+        module.__doc__ = doc
+
+
+def _flat(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements of a module; of conditions and ``try`` all branches."""
+    for statement in body:
+        if isinstance(statement, ast.If):
+            yield from _flat([*statement.body, *statement.orelse])
+        elif isinstance(statement, ast.Try):
+            handlers = [each for handler in statement.handlers for each in handler.body]
+            yield from _flat([*handlers, *statement.body, *statement.orelse, *statement.finalbody])
+        else:
+            yield statement
+
+
+class _Outline:
+    """Makes harmless statements of those of one file.
+
+    Args:
+        module: has the names that are known so far.
+        project: gives other modules of the project.
+    """
+
+    def __init__(self, module: ModuleType, project: Callable[[str], ModuleType | None]) -> None:
+        self._module, self._project = module, project
+        self._names = module.__dict__
+
+    def visible(self, statement: ast.stmt) -> Iterator[ast.stmt]:
+        """Give what is to be executed in place of a statement; imports and unknown names are bound here."""
+        if isinstance(statement, ast.Import | ast.ImportFrom):
+            self._import(statement)
+        elif isinstance(statement, ast.ClassDef):
+            made = self._class(statement)
+            if made is None:
+                self._names[statement.name] = UNSEEN
+            else:
+                yield made
+        elif isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
+            function = self._function(statement)
+            if function is None:
+                self._names[statement.name] = UNSEEN
+            else:
+                yield function
+        elif isinstance(statement, ast.Assign | ast.AnnAssign):
+            yield from self._assigned(statement)
+        elif _binds_more(statement):
+            self._names[INCOMPLETE] = True
+
+    # imports
+
+    def _import(self, statement: ast.Import | ast.ImportFrom) -> None:
+        if isinstance(statement, ast.Import):
+            for each in statement.names:
+                whole = self._found(each.name)
+                top = each.name.partition(".")[0]
+                self._names[each.asname or top] = (
+                    whole if each.asname or whole is UNSEEN else self._found(top)
+                )
+            return
+        source = self._found("." * statement.level + (statement.module or ""))
+        for each in statement.names:
+            if each.name == "*":
+                if source is UNSEEN or INCOMPLETE in vars(source):
+                    self._names[INCOMPLETE] = True
+                if source is not UNSEEN:
+                    shown = getattr(source, "__all__", [name for name in vars(source) if name[0] != "_"])
+                    self._names.update({name: getattr(source, name, UNSEEN) for name in shown})
+            else:
+                self._names[each.asname or each.name] = self._part(source, statement, each.name)
+
+    def _part(self, source: Any, statement: ast.ImportFrom, name: str) -> Any:
+        if source is UNSEEN and not statement.level:
+            return UNSEEN
+        found = getattr(source, name, None) if source is not UNSEEN else None
+        if found is None:  # a module of a package
+            found = self._found("." * statement.level + ".".join(filter(None, (statement.module, name))))
+        return found
+
+    def _found(self, name: str) -> Any:
+        level = len(name) - len(name.lstrip("."))
+        if level:
+            package = self._module.__package__ or ""
+            parts = package.split(".")[: len(package.split(".")) - level + 1]
+            name = ".".join([*parts, *filter(None, [name.lstrip(".")])])
+        own = self._project(name)
+        if own is not None:
+            return own
+        if name in _HARMLESS or name == "jacaros" or name.startswith("jacaros."):
+            try:
+                return importlib.import_module(name)
+            except Exception:  # needs what is not installed here
+                return UNSEEN
+        return UNSEEN
+
+    # declarations
+
+    def _class(self, node: ast.ClassDef) -> ast.ClassDef | None:
+        bases = [base.value if isinstance(base, ast.Subscript) else base for base in node.bases]
+        found = [self._value(base) for base in bases]
+        if any(not isinstance(each, type) and not _is_typing(each) for each in found) or node.keywords:
+            return None
+        if any(not self._is_known(each) for each in node.decorator_list):
+            return None
+        body: list[ast.stmt] = []
+        for statement in _flat(node.body):
+            if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
+                function = self._function(statement)
+                if function is None:
+                    return None
+                body.append(function)
+            elif isinstance(statement, ast.ClassDef):
+                inner = self._class(statement)
+                body += [inner] if inner is not None else [_unseen(statement, statement.name)]
+            elif isinstance(statement, ast.Assign | ast.AnnAssign):
+                body += _attributes(statement)
+            elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
+                body.append(statement)
+            elif _binds_more(statement):
+                return None
+        self._names["__unseen__"] = Unseen
+        kept = [base for base, value in zip(bases, found, strict=True) if isinstance(value, type)]
+        return ast.copy_location(
+            ast.ClassDef(
+                name=node.name, bases=kept, keywords=[], body=body or [ast.Pass()],
+                decorator_list=node.decorator_list, **_TYPE_PARAMETERS,
+            ),
+            node,
+        )  # fmt: skip
+
+    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.stmt | None:
+        """The function with an empty body; None when a decorator may make anything of it."""
+        decorators = []
+        for each in node.decorator_list:
+            if isinstance(each, ast.Attribute) and each.attr in ("setter", "getter", "deleter"):
+                return ast.copy_location(ast.Pass(), node)
+            if self._is_known(each):
+                decorators.append(each)
+            elif not self._is_transparent(each):
+                return None
+        first = node.body[:1]
+        body: list[ast.stmt] = list(first) if ast.get_docstring(node) is not None else []
+        body.append(ast.Expr(ast.Yield()) if _yields(node) else ast.Pass())
+        self._names["__unseen__"] = Unseen
+        return ast.copy_location(
+            type(node)(
+                name=node.name, args=_arguments(node.args), body=body, decorator_list=decorators,
+                returns=_written(node.returns), **_TYPE_PARAMETERS,
+            ),
+            node,
+        )  # fmt: skip
+
+    def _is_known(self, decorator: ast.expr) -> bool:
+        """Whether a decorator is one of those that only declare, with constants as its arguments."""
+        called = decorator.func if isinstance(decorator, ast.Call) else decorator
+        if isinstance(decorator, ast.Call) and not all(
+            map(_is_constant, [*decorator.args, *(each.value for each in decorator.keywords)])
+        ):
+            return False
+        value = self._value(called)
+        module = getattr(value, "__module__", "") or ""
+        ours = module.startswith(("jacaros.", "dataclasses", "abc", "typing", "builtins"))
+        return value is not UNSEEN and ours and getattr(value, "__name__", "") in _DECORATORS
+
+    def _is_transparent(self, decorator: ast.expr) -> bool:
+        called = decorator.func if isinstance(decorator, ast.Call) else decorator
+        if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name):
+            return called.value.id in _TRANSPARENT
+        return isinstance(called, ast.Name) and called.id in _KEEPING
+
+    def _assigned(self, statement: ast.Assign | ast.AnnAssign) -> Iterator[ast.stmt]:
+        targets: list[ast.expr] = (
+            statement.targets if isinstance(statement, ast.Assign) else [statement.target]
+        )
+        value = statement.value
+        if value is None:
+            return
+        if _is_constant(value) and all(isinstance(each, ast.Name) for each in targets):
+            yield ast.copy_location(ast.Assign(targets=targets, value=value), statement)
+            return
+        found = self._value(value)
+        for target in targets:
+            for each in ast.walk(target):
+                if isinstance(each, ast.Name):
+                    self._names[each.id] = found if isinstance(target, ast.Name) else UNSEEN
+
+    def _value(self, node: ast.expr) -> Any:
+        """What a name, with or without dots, means; `UNSEEN` for anything else."""
+        if isinstance(node, ast.Name):
+            import builtins
+
+            return self._names.get(node.id, getattr(builtins, node.id, UNSEEN))
+        if isinstance(node, ast.Attribute):
+            owner = self._value(node.value)
+            return UNSEEN if owner is UNSEEN else getattr(owner, node.attr, UNSEEN)
+        return UNSEEN
+
+
+_TYPE_PARAMETERS: Final[dict[str, Any]] = {"type_params": []} if "type_params" in ast.ClassDef._fields else {}
+
+
+def _is_typing(value: object) -> bool:
+    """Whether a base class is one of those that only type checkers mind."""
+    return getattr(value, "__module__", "") == "typing"
+
+
+def _is_constant(node: ast.expr) -> bool:
+    try:
+        ast.literal_eval(node)
+    except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+        return False
+    return True
+
+
+def _made_unseen() -> ast.expr:
+    """Another object each time: values of an enumeration are different ones."""
+    return ast.Call(ast.Name("__unseen__", ast.Load()), [], [])
+
+
+def _unseen(node: ast.stmt, name: str) -> ast.stmt:
+    value = _made_unseen()
+    return ast.copy_location(ast.Assign(targets=[ast.Name(name, ast.Store())], value=value), node)
+
+
+def _attributes(statement: ast.Assign | ast.AnnAssign) -> list[ast.stmt]:
+    """Attributes of a class: constants as they are, others unseen."""
+    if isinstance(statement, ast.Assign):
+        names = [
+            each.id for target in statement.targets for each in ast.walk(target) if isinstance(each, ast.Name)
+        ]
+        if _is_constant(statement.value) and all(isinstance(each, ast.Name) for each in statement.targets):
+            return [statement]
+        return [_unseen(statement, name) for name in names]
+    if not isinstance(statement.target, ast.Name):
+        return []
+    value = statement.value
+    if value is not None and not _is_constant(value):
+        value = _made_unseen()
+    annotation = _written(statement.annotation) or ast.Constant("object")
+    return [ast.copy_location(ast.AnnAssign(statement.target, annotation, value, 1), statement)]
+
+
+def _arguments(given: ast.arguments) -> ast.arguments:
+    """Parameters with annotations as texts, and constants as default values."""
+
+    def parameter(each: ast.arg) -> ast.arg:
+        return ast.copy_location(ast.arg(each.arg, _written(each.annotation)), each)
+
+    def default(each: ast.expr | None) -> ast.expr | None:
+        return each if each is None or _is_constant(each) else _made_unseen()
+
+    return ast.arguments(
+        posonlyargs=[parameter(each) for each in given.posonlyargs],
+        args=[parameter(each) for each in given.args],
+        vararg=parameter(given.vararg) if given.vararg else None,
+        kwonlyargs=[parameter(each) for each in given.kwonlyargs],
+        kw_defaults=[default(each) for each in given.kw_defaults],
+        kwarg=parameter(given.kwarg) if given.kwarg else None,
+        defaults=[each for each in map(default, given.defaults) if each is not None],
+    )
+
+
+_OF_TYPES: Final = (
+    ast.Name,
+    ast.Attribute,
+    ast.Subscript,
+    ast.BinOp,
+    ast.BitOr,
+    ast.Tuple,
+    ast.List,
+    ast.Constant,
+    ast.Load,
+)
+
+
+def _written(annotation: ast.expr | None) -> ast.expr | None:
+    """An annotation as a text, which may be evaluated: names, brackets and ``|`` only."""
+    if annotation is None:
+        return None
+    if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
+        try:
+            annotation = ast.parse(annotation.value, mode="eval").body
+        except (SyntaxError, ValueError):
+            return None
+    if not all(isinstance(each, _OF_TYPES) for each in ast.walk(annotation)):
+        return None
+    if any(isinstance(each, ast.Constant) and isinstance(each.value, str) for each in ast.walk(annotation)):
+        return None  # texts within texts would be evaluated in turn
+    return ast.copy_location(ast.Constant(ast.unparse(annotation)), annotation)
+
+
+def _yields(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    """Whether a function is a generator: it has a yield that is not of a function within it."""
+    stack: list[ast.AST] = list(function.body)
+    while stack:
+        node = stack.pop()
+        if isinstance(node, ast.Yield | ast.YieldFrom):
+            return True
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
+            stack.extend(ast.iter_child_nodes(node))
+    return False
+
+
+def _binds_more(statement: ast.stmt) -> bool:
+    """Whether a statement may give a module or a class names that cannot be seen."""
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Name) and (isinstance(node.ctx, ast.Store) or node.id in _BINDING_CALLS):
+            return True
+        if isinstance(
+            node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Import | ast.ImportFrom
+        ):
+            return True
+        if isinstance(node, ast.Attribute) and node.attr in ("import_module", "modules", "update"):
+            return True
+    return False
