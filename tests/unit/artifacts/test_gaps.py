@@ -6,11 +6,12 @@ from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
 from jacaros.artifacts.ros.lane import GUARD_TRIPPED
 from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.clock import VirtualClock
 from jacaros.env.values import Structure
 from jacaros.ros.backends.memory_faults import delayed, dropped
 from jacaros.ros.guarded import guarded_by
 
-A_SECOND = 1000 * 10_000
+A_SECOND = 1000 * VirtualClock.CYCLES_PER_MILLISECOND
 """Cycles of agents that move the virtual clock by a second, while nothing else has a turn."""
 
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import WallClock, run
+from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
 from jacaros.ros.address import GraphAddress
 from jacaros.ros.backend import Backend
-from jacaros.ros.guard import Guard
+from jacaros.ros.guard import STAMPED, Brakes, Guard
 from jacaros.ros.guarded import Guarded
 from jacaros.ros.guarding import LEAVING, Watch
 from jacaros.ros.heartbeat import Heartbeat, line
@@ -202,6 +202,26 @@ def test_a_loop_that_is_stuck_trips_the_guard_and_its_motions_are_interrupted(tm
     assert lab.heard
     assert "no heartbeat" in lab.lines[0]
     assert lab.lost == []
+
+
+def test_a_stamped_velocity_carries_the_time_unless_it_is_a_simulators() -> None:
+    stamps: list[int] = []
+
+    async def main() -> None:
+        backend = open_backend("memory", clock, "guard", log=lambda text: None)
+        await backend.start()
+        backend.subscription("/s", STAMPED, lambda sample: stamps.append(sample.message.header.stamp.sec))
+        brakes = Brakes(backend, lambda text: None)
+        brakes.cover([("/s", STAMPED)], [])
+        for simulated in (False, True):
+            brakes.simulated_time = simulated
+            brakes.stop()
+            await clock.sleep(0.1)
+        await backend.close()
+
+    clock = VirtualClock()
+    run(main, clock)
+    assert stamps == [int(clock.start), 0]
 
 
 def test_a_message_is_one_line_of_json() -> None:

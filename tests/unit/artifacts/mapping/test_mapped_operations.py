@@ -12,6 +12,7 @@ from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.ros.lane import lane_of
 from jacaros.env import ArtifactId, Atom, Out, Structure
 from jacaros.ros.backend import DISCOVERY
+from jacaros.ros.guarded import guarded_by
 from jacaros.ros.parameter import Declaration
 
 DRIVE = """
@@ -60,6 +61,34 @@ def test_a_robot_stops_when_its_operation_is_cancelled() -> None:
         await lab.sleep(1)
         run.execution.cancel()
         await settle()
+        assert lab.last_command == STANDSTILL
+
+    with_mapped(DRIVE, body)
+
+
+def test_publishing_for_a_while_fails_when_the_process_was_frozen_meanwhile() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        run = lab.begin(artifact, "drive", 0.5, 0, 10)
+        await lab.sleep(1)
+        lab.clock.busy(2000 * lab.clock.CYCLES_PER_MILLISECOND)
+        await run.done
+        await settle()
+        assert run.reason == "interrupted(3)"
+        assert lab.last_command == STANDSTILL
+
+    with_mapped(DRIVE, body)
+
+
+def test_publishing_for_a_while_fails_when_a_guard_has_stopped_the_robot() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        lab.record()
+        run = lab.begin(artifact, "drive", 0.5, 0, 10)
+        await lab.sleep(1)
+        guarded_by(lab.backend).interrupt()
+        await run.done
+        await settle()
+        assert run.reason == "interrupted(1)"
         assert lab.last_command == STANDSTILL
 
     with_mapped(DRIVE, body)
