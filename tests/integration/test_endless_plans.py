@@ -1,5 +1,7 @@
 """A plan that never ends holds nobody up: not the other agents, not the timers, not the world."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -49,3 +51,16 @@ def test_a_plan_without_end_holds_nobody_up(tmp_path: Path, kind: str, fast: boo
     result = run_project(tmp_path / "shared.mas2j", fast=fast, seconds=600)
     assert result.of("clerk") == ["waited"]
     assert result.ground_truth.latest().x > 0
+
+
+def test_a_busy_run_leaves_the_interpreter_to_other_threads_within_a_millisecond(tmp_path: Path) -> None:
+    (tmp_path / "bob.asl").write_text("!g. +!g <- .stopMAS.", encoding="utf-8")
+    command = (
+        "import sys; from jacaros.mas.console import StandardConsole; from jacaros.mas.launch import launch; "
+        "from jacaros.mas.options import RunOptions; "
+        "launch('bob.asl', RunOptions(), StandardConsole(), lambda mas: print(sys.getswitchinterval()))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", command], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert float(done.stdout) <= 0.001

@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import sys
 from collections.abc import Callable
 from contextlib import nullcontext
 from functools import partial
@@ -21,6 +22,11 @@ GARBAGE_THRESHOLD = 100_000
 """Terms are made and dropped by the million, mostly without cycles: looking for cycles more often costs a
 tenth of the time and finds nothing."""
 
+SWITCH_INTERVAL = 0.0005
+"""Seconds for which a busy loop may keep the interpreter from a thread that has a message for it.
+
+Python's own 5 ms are more than a message otherwise takes to become a command."""
+
 
 def launch(
     project: str | Path | Deployment,
@@ -36,7 +42,7 @@ def launch(
         options: how to run it.
         console: its outputs.
         when_started: called when everything has been made, before the first agent has its turn.
-        own_process: settings of the whole process may be changed: signals and the garbage collector.
+        own_process: settings of the whole process may be changed: signals, the garbage collector, the switches of threads.
 
     Raises:
         JacarosError: the project cannot be run; the text tells what is wrong.
@@ -46,6 +52,7 @@ def launch(
     if own_process:
         # Before the programs are read: their syntax trees are many objects that all stay.
         gc.set_threshold(GARBAGE_THRESHOLD, 20, 100)
+        sys.setswitchinterval(SWITCH_INTERVAL)
     deployment = mapped(
         project if isinstance(project, Deployment) else load_deployment(project), options.mappings
     )
