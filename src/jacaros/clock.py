@@ -9,9 +9,11 @@ import asyncio
 import heapq
 import itertools
 import selectors
+import threading
 import time
+from collections import deque
 from collections.abc import Callable, Coroutine, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
@@ -224,7 +226,74 @@ class _VirtualSelector(selectors.DefaultSelector):
         return super().select(timeout)
 
 
-class VirtualEventLoop(asyncio.SelectorEventLoop):
+def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
+    """Run *work* in a daemon thread; the future has its result, or what it raised.
+
+    The end of the process waits for the threads of asyncio's own executor, for ever if one never returns.
+    """
+    loop = asyncio.get_running_loop()
+    future: asyncio.Future[T] = loop.create_future()
+
+    def bring(deliver: Callable[[], None]) -> None:
+        if not future.done():
+            deliver()
+
+    def run_work() -> None:
+        deliver: Callable[[], None]
+        try:
+            deliver = partial(future.set_result, work())
+        except StopIteration as error:  # which no future takes
+            deliver = partial(future.set_exception, RuntimeError(f"the thread raised {error!r}"))
+        except BaseException as error:
+            deliver = partial(future.set_exception, error)
+        with suppress(RuntimeError):  # the loop has been closed
+            loop.call_soon_threadsafe(bring, deliver)
+
+    threading.Thread(target=run_work, name="jacaros work", daemon=True).start()
+    return future
+
+
+class _DaemonThreads(asyncio.BaseEventLoop):
+    """The part of a loop that runs work of ``asyncio.to_thread`` in daemon threads."""
+
+    THREADS = 32
+    """Threads at a time, as asyncio has at most."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._threads = 0
+        self._queued: deque[tuple[asyncio.Future[Any], Callable[[], Any]]] = deque()
+
+    def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
+        self, executor: Any, func: Any, *args: Any
+    ) -> Any:
+        """Run *func* in a thread of *executor*, or in a daemon thread if that is None."""
+        if executor is not None:
+            return super().run_in_executor(executor, func, *args)
+        future = self.create_future()
+        self._queued.append((future, partial(func, *args)))
+        self._start_threads()
+        return future
+
+    def _start_threads(self) -> None:
+        while self._queued and self._threads < self.THREADS:
+            future, work = self._queued.popleft()
+            if not future.done():
+                self._threads += 1
+                start_thread(work).add_done_callback(partial(self._thread_done, future))
+
+    def _thread_done(self, future: asyncio.Future[Any], done: asyncio.Future[Any]) -> None:
+        self._threads -= 1
+        error = done.exception()
+        if not future.done():
+            if error is not None:
+                future.set_exception(error)
+            else:
+                future.set_result(done.result())
+        self._start_threads()
+
+
+class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
     """An asyncio loop whose waiting is done on a virtual clock: ``asyncio.sleep`` and time-outs take no real time."""
 
     def __init__(self, clock: VirtualClock) -> None:
@@ -254,16 +323,15 @@ class VirtualEventLoop(asyncio.SelectorEventLoop):
         future.add_done_callback(lambda _: self._foreign_work_done())
         return future
 
-    async def shutdown_default_executor(self, *limit: float | None) -> None:
-        """Wait for the threads of `run_in_executor`; the time-out that Python sets must not come at once."""
-        self.virtual_selector.foreign_work += 1
-        try:
-            await super().shutdown_default_executor(*limit)
-        finally:
-            self._foreign_work_done()
-
     def _foreign_work_done(self) -> None:
         self.virtual_selector.foreign_work -= 1
+
+
+_Loop: Any = getattr(asyncio, "ProactorEventLoop", asyncio.SelectorEventLoop)  # the former on Windows
+
+
+class _RealEventLoop(_DaemonThreads, _Loop):  # type: ignore[misc]
+    """The loop of asyncio, with daemon threads."""
 
 
 @contextmanager
@@ -281,9 +349,7 @@ def standing_still(loop: asyncio.AbstractEventLoop) -> Iterator[None]:
 
 def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:
     """Make the event loop that goes with *clock*."""
-    if isinstance(clock, VirtualClock):
-        return VirtualEventLoop(clock)
-    return asyncio.new_event_loop()
+    return VirtualEventLoop(clock) if isinstance(clock, VirtualClock) else _RealEventLoop()
 
 
 def clock_of(loop: asyncio.AbstractEventLoop) -> Clock:

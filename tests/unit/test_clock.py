@@ -87,6 +87,31 @@ def test_time_stands_still_while_a_worker_thread_runs():
     assert order == [("thread", 0.0), "timer"]
 
 
+@pytest.mark.parametrize("clock", [VirtualClock, WallClock])
+def test_a_thread_that_does_not_return_does_not_hold_the_end_up(clock):
+    gate = threading.Event()
+
+    async def main():
+        asyncio.get_running_loop().run_in_executor(None, gate.wait)
+        return 3
+
+    assert run(main, clock()) == 3
+    assert not gate.is_set()
+    gate.set()
+
+
+def test_threads_give_their_results_and_errors():
+    async def main():
+        results = await asyncio.gather(*(asyncio.to_thread(abs, -number) for number in range(100)))
+        assert results == list(range(100))
+        with pytest.raises(ZeroDivisionError):
+            await asyncio.to_thread(divmod, 1, 0)
+        with pytest.raises(RuntimeError, match="StopIteration"):
+            await asyncio.to_thread(next, iter(()))
+
+    run(main, WallClock())
+
+
 def test_busy_agents_move_time_by_a_millisecond_per_ten_thousand_cycles():
     clock = VirtualClock()
     rung = []

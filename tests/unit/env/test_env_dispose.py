@@ -421,7 +421,7 @@ def test_an_operation_that_does_not_let_itself_be_stopped_is_left_behind(play):
         assert stage.elapsed == 21.0
         assert call.reason == Structure("artifact_disposed", ("it",))
         assert stage.lines == [
-            "[it] operation go_on/0 has not ended 20 s after its artifact was disposed; it is left behind",
+            "[it] operation go_on/0 did not stop within 20 s of its artifact's disposal; abandoning it",
             "[it] given back",
         ]
         await stage.environment.close()

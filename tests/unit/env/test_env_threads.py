@@ -6,6 +6,7 @@ import threading
 import pytest
 
 from jacaros.env import Artifact, InvalidArtifact, Out, Structure, operation
+from jacaros.env.kernel import registry
 
 
 class Blocking(Artifact):
@@ -210,5 +211,22 @@ def test_a_callback_may_start_a_process_while_a_thread_has_the_artifact(play):
         stage.it.gate.set()
         await call.wait()
         assert stage.property(blocking, "count") == (22,)
+
+    play(scene)
+
+
+def test_a_thread_that_does_not_return_is_abandoned_when_the_environment_is_closed(play, monkeypatch):
+    monkeypatch.setattr(registry, "THREADS", 0.01)
+
+    async def scene(stage):
+        calls = [stage.call(await blocking_of(stage), "work", Out())]
+        await until_inside(stage)
+        gate = stage.it.gate
+        await stage.environment.close()
+        assert calls[0].reason == Structure("artifact_disposed", ("it",))
+        assert stage.lines == [
+            "[it] operation work/1 did not stop within 0.01 s of its artifact's disposal; abandoning it"
+        ]
+        gate.set()
 
     play(scene)

@@ -1,6 +1,10 @@
 """All artifacts of an environment, whatever their workspace, and the links between them."""
 
+import asyncio
+import threading
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.interface import Interface
@@ -10,6 +14,8 @@ Promise = tuple[Interface, Callable[[], Steps]]
 """What an artifact that has not been made yet will offer, and what makes it."""
 OutPort = tuple[ArtifactId, str]
 """An artifact and the name of one of its out ports."""
+THREADS = 2.0
+"""Seconds that operations in threads have to come to their end when the environment is closed."""
 
 
 class Registry:
@@ -29,6 +35,8 @@ class Registry:
         self._links: dict[OutPort, dict[ArtifactId, None]] = {}
         self._linked: dict[ArtifactId, dict[OutPort, None]] = {}
         self._last_number = 0
+        self._limit: threading.Timer | None = None
+        self._threads_left = False
         self.when_disposed: list[Callable[[ArtifactId], None]] = []
 
     def next_number(self) -> int:
@@ -75,9 +83,22 @@ class Registry:
             callback(steps.id)
 
     async def ended(self) -> None:
-        """Wait until all disposed artifacts have given back everything."""
+        """Wait until all disposed artifacts have given back everything; for threads `THREADS` seconds, all together."""
+        if self._threads_left:
+            self._leave_threads()
+        elif self._limit is None and any(steps.threads for steps in self._ending):
+            # On the wall clock: virtual time stands still while a thread runs.
+            loop = asyncio.get_running_loop()
+            self._limit = threading.Timer(THREADS, partial(_call_on, loop, self._leave_threads))
+            self._limit.daemon = True
+            self._limit.start()
         for steps in self._ending:
             await steps.closed()
+
+    def _leave_threads(self) -> None:
+        self._threads_left = True
+        for steps in self._ending:
+            steps.leave_threads_behind(THREADS)
 
     def _remove(self, artifact_id: ArtifactId) -> None:
         del self._steps[artifact_id]
@@ -112,3 +133,8 @@ class Registry:
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """The artifacts behind *port* of *from_id*, in the order of linking."""
         return tuple(self._links.get((from_id, port), ()))
+
+
+def _call_on(loop: asyncio.AbstractEventLoop, callback: Callable[[], None]) -> None:
+    with suppress(RuntimeError):  # the loop has been closed
+        loop.call_soon_threadsafe(callback)

@@ -6,9 +6,10 @@ Nothing here knows what an artifact looks like to its author (`Artifact`) or whe
 
 import asyncio
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 
+from jacaros.clock import standing_still, start_thread
 from jacaros.env.errors import InvalidArtifact, OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
@@ -235,7 +236,8 @@ class Steps(StepInProgress):
             work = partial(
                 in_thread, execution, partial(declared.function, self._artifact, *execution.arguments)
             )
-            return await asyncio.get_running_loop().run_in_executor(None, work)
+            with standing_still(asyncio.get_running_loop()):
+                return await start_thread(work)
         finally:
             self.publication.thaw()
 
@@ -382,16 +384,28 @@ class Steps(StepInProgress):
         """Wait until the disposed artifact has given back everything; what does not end is left behind in the end."""
         if self.over:
             return
-        limit = self.clock.call_later(PATIENCE, self._leave_behind)
+        limit = self.clock.call_later(PATIENCE, partial(self._leave_behind, self._running, PATIENCE))
         try:
             await self.ending.over_with()
         finally:
             limit.cancel()
 
-    def _leave_behind(self) -> None:
-        for execution in self._running:
+    @property
+    def threads(self) -> list[OperationExecution]:
+        """The operations under way that a thread runs."""
+        return [each for each in self._running if each.declared is not None and each.declared.threaded]
+
+    def leave_threads_behind(self, seconds: float) -> None:
+        """Wait no longer for threads of the disposed artifact, after *seconds*."""
+        if self.threads:
+            self._leave_behind(self.threads, seconds)
+
+    def _leave_behind(self, executions: Iterable[OperationExecution], seconds: float) -> None:
+        for execution in tuple(executions):
             key = outcomes.key(execution.request)
-            told = f"operation {key} has not ended {PATIENCE:g} s after its artifact was disposed; it is left behind"
+            told = (
+                f"operation {key} did not stop within {seconds:g} s of its artifact's disposal; abandoning it"
+            )
             self.setting.log(f"[{self.id.name}] {told}")
             self._tell(execution, outcomes.disposed(execution.request))
             if (
@@ -400,8 +414,9 @@ class Steps(StepInProgress):
                 and execution.declared.kind != EXTERNAL
             ):
                 self._throw_away(execution.task)
-        self._running.clear()
-        self.ending.run(self.initialised, self.complain)
+            self._running.pop(execution, None)
+        if not self._running:
+            self.ending.run(self.initialised, self.complain)
 
     def _throw_away(self, task: "asyncio.Task[None]") -> None:
         """End a task that takes no cancellation: the end of the loop would wait for it for ever."""

@@ -84,7 +84,7 @@ class RunningAgent(OpenMind):
         Raises:
             AslError: it is no literal.
         """
-        return Goal(goal, self.mind, self._waits)
+        return Goal(goal, self.mind, self._waits, lambda: self.ended)
 
     async def until(self, formula: str, timeout: float | None = None) -> dict[str, Any]:
         """Wait until a formula holds for the agent, such as ``count(X) & X > 2``.
@@ -185,9 +185,10 @@ class Goal(PursuedGoal):
     it was dropped.  A goal that nobody awaits is pursued all the same; when it fails, people are told, as of every goal.
     """
 
-    def __init__(self, written: str, mind: Agent, waits: Waits) -> None:
+    def __init__(self, written: str, mind: Agent, waits: Waits, agent_ended: Callable[[], bool]) -> None:
         super().__init__(written, WatchedGoal(mind, literal(written), self._news))
         self._mind = mind
+        self._agent_ended = agent_ended
         self._waits = waits
         self._waiting: list[asyncio.Future[None]] = []
         self._awaited = False
@@ -207,7 +208,12 @@ class Goal(PursuedGoal):
         self._awaited = True
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         dropped = (lambda: self.state == "dropped", _Ends(future))
-        if not self._watched.ended:
+        if not self._watched.ended and self._agent_ended():
+            await asyncio.sleep(0)  # a run that has ended says so one turn later
+            self._waits.check()
+            if self.state != "dropped":
+                raise AgentEnded(f"{self._not_achieved()}: agent {self._mind.name} has ended")
+        elif not self._watched.ended:
             self._waiting.append(future)
             self._mind.condition_waits.append(dropped)
             self._mind.called = True

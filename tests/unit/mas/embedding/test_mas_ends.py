@@ -12,7 +12,7 @@ from jacaros.asl.errors import AslError
 from jacaros.bdi.agent import Agent
 from jacaros.env import Artifact, operation
 from jacaros.errors import InternalError
-from jacaros.mas.embedding.errors import AgentEnded, RunEnded, UnknownAgent
+from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
 
 
 @pytest.mark.parametrize("how", ["ends", "raises", "is cancelled"])
@@ -74,6 +74,32 @@ def test_waiting_for_what_cannot_come_any_more_raises() -> None:
             await bob.until("p")
 
     assert run(test).exit_code == 5
+
+
+def test_a_goal_of_an_agent_that_has_ended_is_not_waited_for() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "+!long <- .wait(100000).")
+        lost, dropped = bob.achieve("long"), bob.achieve("long")
+        await mas.sleep(1)
+        dropped.drop()
+        bob.kill()
+        with pytest.raises(AgentEnded, match="agent bob has ended"):
+            await lost
+        with pytest.raises(GoalFailed, match="was dropped"):
+            await dropped
+
+    assert run(test).exit_code == 0
+
+
+def test_a_goal_of_a_run_that_has_ended_is_not_waited_for() -> None:
+    async def test(mas: Mas) -> None:
+        goal = mas.add_agent("bob", "+!long <- .wait(100000).").achieve("long")
+        await mas.sleep(1)
+        mas.stop()
+        with pytest.raises(RunEnded, match="the run ended with exit code 0"):
+            await goal
+
+    assert run(test).exit_code == 0
 
 
 def test_the_system_can_be_stopped_from_python() -> None:
@@ -187,4 +213,4 @@ def test_a_run_ends_though_an_operation_takes_no_cancellation() -> None:
 
     logs: list[str] = []
     run(test, logs=logs)
-    assert "it is left behind" in logs[-1]
+    assert "abandoning it" in logs[-1]
