@@ -1,8 +1,10 @@
 """Messages between agents: each arrives once, in the order of sending, as a copy of its own."""
 
 from collections.abc import Callable
+from contextlib import suppress
 
 from jacaros.bdi.speech_act import SpeechAct
+from jacaros.compiler.outcomes import Failure
 from jacaros.mas.ports import Mailbox
 from jacaros.terms.detaching import detached, holds_collection
 from jacaros.terms.substitution import is_ground, rename
@@ -29,6 +31,9 @@ class Mailboxes:
 
         Variables are renamed apart, and sets, maps and queues copied: what the receiver binds or changes stays
         unknown to the sender.
+
+        Raises:
+            Failure: the mailbox is full; the step that sends fails.
         """
         receiver = self._find(message.receiver)
         if receiver is None:
@@ -49,7 +54,9 @@ class Mailboxes:
         if sender is not None:
             id = f"{message.id}_undelivered"
             told = ("undelivered", message.receiver, message.sender, message.content, id, message.id)
-            sender.receive(SpeechAct(*told))
+            # Whoever reports it runs no step that could fail: a sender whose mailbox is full does not learn of it.
+            with suppress(Failure):
+                sender.receive(SpeechAct(*told))
 
 
 def _parted(message: SpeechAct) -> SpeechAct:

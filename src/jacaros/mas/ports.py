@@ -15,9 +15,12 @@ class Mailbox(Protocol):
     """Where the messages for one participant go."""
 
     def receive(self, message: SpeechAct) -> None:
-        """Take a message in, or send it on its way; return soon, and do not raise.
+        """Take a message in, or send it on its way; return soon.
 
         A message that turns out later not to reach its receiver is given to `Mailboxes.returned`.
+
+        Raises:
+            Failure: the mailbox is full.
         """
 
 

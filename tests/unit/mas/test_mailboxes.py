@@ -3,6 +3,7 @@
 import pytest
 
 from jacaros.bdi.speech_act import SpeechAct
+from jacaros.compiler.outcomes import Failure
 from jacaros.mas.directory import Directory
 from jacaros.mas.mailboxes import Mailboxes
 from jacaros.terms.collections import SetValue
@@ -94,3 +95,14 @@ def test_a_taken_name_gets_a_number() -> None:
     assert directory.free_name("a") == "a_2"
     with pytest.raises(ValueError, match="there is an agent a already"):
         directory.add("a", 3)
+
+
+def test_the_step_that_sends_to_a_full_mailbox_fails_and_a_report_to_one_is_dropped() -> None:
+    class Full:
+        def receive(self, message: SpeechAct) -> None:
+            raise Failure((atom("mailbox_limit"),))
+
+    mailboxes = Mailboxes({"ann": Full(), "bob": Full()}.get)
+    with pytest.raises(Failure):
+        mailboxes.deliver(said(atom("x")))
+    mailboxes.returned(said(atom("x")))
