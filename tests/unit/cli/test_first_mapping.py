@@ -196,3 +196,9 @@ def test_an_action_that_moves_joints_gets_the_points_of_their_trajectory(types: 
     assert "trajectory.joint_names: $joint_names" in text
     assert "each: $points" in text
     assert "fields: {positions: $1, time_from_start: $2}" in text
+
+
+def test_the_code_of_an_aborted_goal_is_named_where_the_result_has_constants(types: StoredInterfaces) -> None:
+    line = "code: {path: error_code, as: name}"
+    assert line in checked(types, acting(types, "follow", "arm/follow", "odd_msgs/action/Follow"))
+    assert line not in checked(types, acting(types, "sort", "sort", "odd_msgs/action/Sort"))

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from jacaros.artifacts.mapping.interfaces import Interfaces
+from jacaros.artifacts.mapping.interfaces import Interfaces, constants
 from jacaros.artifacts.mapping.read_names import RESERVED
 from jacaros.cli.graph.known_topics import KNOWN, Body
 from jacaros.cli.graph.values import HEADER, MANY, Unit, Value, list_of, lists_of, values_of
@@ -209,7 +209,7 @@ def acting(types: Interfaces, name: str, action: str, type_name: str) -> Entry:
     inputs, body = _filled(types, goal_type(type_name), "goal")
     outputs = _results(types, result_type(type_name))
     lines = [*_parameters(inputs), f"action: {action}", f"type: {type_name}", *body, *_outputs(outputs)]
-    lines += _feedback(types, name, type_name)
+    lines += [*_code(types, result_type(type_name)), *_feedback(types, name, type_name)]
     lines += [_SUCCESS[type_name]] if type_name in _SUCCESS else []
     lines.append(
         "suspend: cancel   # .suspend cancels the goal, so that the robot stops; .resume sends it again"
@@ -222,6 +222,14 @@ _SUCCESS = {
     "irobot_create_msgs/action/Undock": "success: {path: is_docked, is: false}",
 }
 """What else than its status tells whether an action went well."""
+
+
+def _code(types: Interfaces, result: str) -> list[str]:
+    """The name of an error, where the result has constants for it; a number without a constant stays a number."""
+    known = list(constants(types, result).values())
+    if "error_code" not in types.fields(result) or not known or len(set(known)) < len(known):
+        return []
+    return ["code: {path: error_code, as: name}   # of aborted(Code,Text): the constant"]
 
 
 def _feedback(types: Interfaces, name: str, type_name: str) -> list[str]:
