@@ -176,10 +176,18 @@ class Guard:
             server = await asyncio.start_unix_server(self._serve, sock=listening)
             await self._guard(loop)
             server.close()
+            await self._disconnect()
             await self._backend.close()
         finally:
             listening.close()
             self._path.unlink(missing_ok=True)
+
+    async def _disconnect(self) -> None:
+        writer, self._writer = self._writer, None
+        if writer is not None:
+            writer.close()
+            with suppress(OSError):
+                await writer.wait_closed()
 
     async def _guard(self, loop: asyncio.AbstractEventLoop) -> None:
         deadline = loop.time() + CONNECTING if self._once else math.inf
