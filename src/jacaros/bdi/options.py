@@ -25,6 +25,7 @@ class Options:
         event_limit: how many events may wait.
         intention_limit: how many intentions there may be.
         mailbox_limit: how many messages may wait.
+        plans_from_others: whether plans of messages (``tellHow``) are added.
     """
 
     events: str = "discard"
@@ -40,3 +41,4 @@ class Options:
     verbose: int = 1
     percept_interval: int = 1
     urgency: tuple[tuple[str, int], ...] = ()
+    plans_from_others: bool = True

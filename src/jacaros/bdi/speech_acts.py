@@ -303,6 +303,11 @@ def _trigger_of(content: Term) -> Any:
 
 
 def _tell_how(agent: Circumstance, message: SpeechAct) -> None:
+    if not agent.options.plans_from_others:
+        agent.architecture.log(
+            "warning", f"a plan told by {message.sender} was refused: this run is restricted"
+        )
+        return
     for content in _contents(message.content):
         try:
             agent.add_plan(content, atom(message.sender))  # type: ignore[attr-defined]

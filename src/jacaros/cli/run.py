@@ -111,6 +111,13 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     metavar="FILE",
     help="Write what truly happens in the world as JSON lines.",
 )
+@click.option(
+    "--restrict",
+    "restricted",
+    is_flag=True,
+    help="Forbid agents to take plans from others (tellHow), to use files (.include, .save_agent, .list_files, "
+    ".create_agent with a program) and to make Python objects (cartago.*): the step fails.",
+)
 @click.option("--view", is_flag=True, help="Show the world in the terminal.")
 @click.option("--quiet", is_flag=True, help="Tell warnings and errors only.")
 def command(
@@ -138,6 +145,7 @@ def command(
     record_limit: int,
     replay: Path | None,
     ground_truth: Path | None,
+    restricted: bool,
     view: bool,
     quiet: bool,
 ) -> int:
@@ -161,6 +169,7 @@ def command(
             clock = "ros"
     options = RunOptions(
         fast=clock == "fast",
+        restricted=restricted,
         seed=seed,
         ros=ros,
         world=world,

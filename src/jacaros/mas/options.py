@@ -34,6 +34,8 @@ class RunOptions:
         rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
         mappings: mapping files whose artifacts are made at the start.
         guard: have a process of its own stop the robot when this one no longer can.
+        restricted: agents take no plans from others (``tellHow``), read and write no files, and make no Python objects; see
+            docs/explanation/trust.md.
         diagnostics: publish the state of agents and connection on ``/diagnostics``; None: on real graphs.
     """
 
@@ -58,6 +60,7 @@ class RunOptions:
     diagnostics: bool | None = None
     mappings: tuple[str, ...] = ()
     guard: bool = False
+    restricted: bool = False
 
     @property
     def real_graph(self) -> bool:

@@ -84,7 +84,7 @@ class Population:
         name = spec.name
         self._specs[name] = spec
         seed = f"{self._seed}/{name}"
-        options = mind_options(spec.options)
+        options = replace(mind_options(spec.options), plans_from_others=not self._code.restricted)
         plans = self._plans_of(program)
         host = self._classes.make(spec, _initial(spec, program), self._run, seed, options, self._code, plans)
         self._directory.add(name, host)

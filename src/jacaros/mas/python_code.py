@@ -1,11 +1,13 @@
 """The Python code of a project, read when a program or the project file first names it."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.internal_action import STANDARD, InternalAction
+from jacaros.bdi.context import Context
+from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.terms.values import Term
 
@@ -21,6 +23,7 @@ class PythonCode:
 
     Args:
         modules: the project's modules.
+        restricted: internal actions that read or write files, bring programs in or make Python objects fail.
 
     Attributes:
         actions: the internal actions of the language and of the modules read so far; shared by all agents.
@@ -29,9 +32,12 @@ class PythonCode:
         evaluators: what computes them.
     """
 
-    def __init__(self, modules: ProjectModules) -> None:
+    def __init__(self, modules: ProjectModules, restricted: bool = False) -> None:
         self.modules = modules
+        self.restricted = restricted
         self.actions: dict[str, InternalAction] = dict(STANDARD)
+        if restricted:
+            self.actions.update({name: _refused(STANDARD[name], at) for name, at in _OF_FILES.items()})
         self.functions: Mapping[str, Limits] = _Functions(self)
         self._additions: Additions | None = None
         self._read: dict[str, ModuleUnreadable | None] = {}
@@ -56,7 +62,10 @@ class PythonCode:
         from jacaros.mas.python_objects import PACKAGE, actions
 
         if not any(known.startswith(PACKAGE) for known in self.actions):
-            self.actions.update(actions(self.modules))
+            found = actions(self.modules)
+            if self.restricted:
+                found |= {name: _refused(found[name]) for name in _OF_OBJECTS}
+            self.actions.update(found)
 
     def _read_module(self, module: str) -> None:
         # Imported here: most projects have no Python code.
@@ -104,6 +113,25 @@ class PythonCode:
         """Let an agent evaluate the functions of the project, also in what it reads at run time."""
         agent.project_functions = self.functions
         agent.evaluators = self.evaluators
+
+
+_OF_FILES = {".include": 0, ".list_files": 0, ".save_agent": 0, ".create_agent": 2}
+"""Internal actions on files, and with how many arguments they are."""
+
+
+_OF_OBJECTS = ("cartago.new_obj", "cartago.invoke_obj", "cartago.new_array")
+"""Internal actions that make Python objects, and call them."""
+
+
+def _refused(action: InternalAction, arguments: int = 0) -> InternalAction:
+    """An internal action that fails when it has so many arguments or more."""
+
+    def refuse(ctx: Context, *given: Term) -> Any:
+        if len(given) >= arguments:
+            raise ActionError(f"{action.name} is forbidden: this run is restricted (--restrict)")
+        return action.function(ctx, *given)
+
+    return replace(action, function=refuse, direct=None)
 
 
 class _Functions(dict[str, Any]):

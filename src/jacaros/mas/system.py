@@ -124,7 +124,7 @@ class System:
         def warn(text: str) -> None:
             self.console.log(text, "warning")
 
-        deployment, code = self.deployment, PythonCode(self._modules)
+        deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
         programs = Programs(deployment.source_paths, warn, code, prepare)
         classes = AgentClasses(self._modules, deployment.base_path, lambda warning: warn(warning.render()))
         return Population(self, self.directory, programs, classes, code, self._seed, self._situate, when_made)
