@@ -81,6 +81,11 @@ class Output:
         self._failures = self._lost = 0
         self._cut = self._in_line = False
 
+    @property
+    def waiting(self) -> bool:
+        """Whether the sink has not taken all of the text yet."""
+        return self._waiting > 0
+
     def write(self, text: str) -> None:
         """Write whole lines."""
         with self._changed:

@@ -5,13 +5,14 @@ time, so that it does not slow a virtual run, which may do hundreds of seconds b
 standard error is no terminal, it is a line now and then.
 """
 
+import io
 import math
 import sys
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from itertools import groupby
-from typing import Any
+from typing import Any, TextIO, cast
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -19,6 +20,7 @@ from rich.text import Text
 
 from jacaros.inspector.braille import BrailleMap, character, draw_world
 from jacaros.inspector.robot_view import UNKNOWN, RobotView
+from jacaros.output import Output
 
 FRAME_PERIOD = 0.1
 """Seconds between two pictures, on the wall."""
@@ -31,11 +33,46 @@ _DOOR = ("▒", "bold yellow")
 _OPEN = ("pursued", "resumed", "suspended")
 
 
+class Screen(io.TextIOBase):
+    """A terminal as a file for Rich.  Drawing never waits for it: a terminal that nobody reads must not stop agents.
+
+    Args:
+        stream: standard error, or another stream.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._output = Output(stream, "the terminal")
+
+    @property
+    def lagging(self) -> bool:
+        """Whether the terminal has not taken the last picture yet."""
+        return self._output.waiting
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        """The encoding of the stream."""
+        return self._stream.encoding
+
+    def write(self, text: str) -> int:
+        """Write *text*, or queue what the terminal does not take now."""
+        self._output.write(text)
+        return len(text)
+
+    def isatty(self) -> bool:
+        """Return whether the stream is a terminal."""
+        return self._stream.isatty()
+
+    def end(self) -> None:
+        """Write what waits, as long as the terminal takes it."""
+        self._output.close()
+
+
 class TerminalView:
     """Shows a run; told of it like a recorder, see `jacaros.inspector.watch.Watcher`.
 
     Args:
-        console: where to draw; standard error by default.
+        console: where to draw; standard error by default, without waiting for a reader.
         wall: seconds on the wall.
     """
 
@@ -44,9 +81,10 @@ class TerminalView:
         console: Console | None = None,
         wall: Callable[[], float] = time.monotonic,
     ) -> None:
+        self._screen = Screen(sys.stderr) if console is None else None
         self._drawing: Mapping[str, Any] = {}
         self._open: dict[str, bool] = {}
-        self._console = console if console is not None else Console(stderr=True)
+        self._console = console if console is not None else Console(file=cast(TextIO, self._screen))
         self._wall = wall
         self._live: Live | None = None
         self._walls: BrailleMap | None = None
@@ -83,7 +121,8 @@ class TerminalView:
             max(FRAME_PERIOD, min(0.5, 10.0 * self._cost)) if self._console.is_terminal else LINE_PERIOD
         ):
             self._measure_speed(passed)
-            self._draw()
+            if self._screen is None or not self._screen.lagging:
+                self._draw()
             self._cost = self._wall() - self._drawn_at
 
     def text(self, t: float, agent: str, text: str) -> None:
@@ -111,6 +150,8 @@ class TerminalView:
             self._draw()
             self._live.stop()
             self._live = None
+        if self._screen is not None:
+            self._screen.end()
 
     def _measure_speed(self, passed: float) -> None:
         now = (self._t - self._drawn_t) / passed

@@ -1,6 +1,9 @@
 """The terminal view: what it draws, how seldom, and what it does without a terminal."""
 
 import io
+import os
+import sys
+import threading
 from typing import Any
 
 import pytest
@@ -155,3 +158,26 @@ def test_closing_leaves_the_last_picture_and_twice_is_harmless() -> None:
     view.close()
     view.close()
     assert out.getvalue().count("turtlebot") >= 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
+def test_a_terminal_that_nobody_reads_stops_no_agent(monkeypatch: pytest.MonkeyPatch) -> None:
+    reader, terminal = os.openpty()
+    wall = Wall()
+    with open(terminal, "w", encoding="utf-8") as stream:
+        monkeypatch.setattr(sys, "stderr", stream)
+        view = TerminalView(wall=wall)
+
+        def run() -> None:
+            view.world(World.load("house").description.drawing())
+            for number in range(200):  # far more than a terminal holds
+                wall.now += 1.0
+                view.frame(float(number), [robot(x=0.01 * number)])
+                view.text(float(number), "guard", "a line " * 40)
+
+        agents = threading.Thread(target=run, daemon=True)
+        agents.start()
+        agents.join(20.0)
+        stopped = agents.is_alive()
+        os.close(reader)
+    assert not stopped
