@@ -5,7 +5,6 @@ import concurrent.futures
 import threading
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
@@ -128,8 +127,9 @@ def ask(
 
     alive = post(loop, question, tell)
     while alive:
-        with suppress(concurrent.futures.TimeoutError):
-            result: T = answer.result(timeout=0.2)
+        # Not `result(timeout)`: the problem that was told may be a TimeoutError itself.
+        if concurrent.futures.wait([answer], timeout=0.2).done:
+            result: T = answer.result()
             return result
         alive = not loop.is_closed() and not ending()
     raise LoopEnded

@@ -204,3 +204,16 @@ def test_what_comes_on_the_loop_does_not_overtake_what_came_from_a_thread() -> N
         assert got == [0, 1]
 
     run(main, WallClock())
+
+
+def test_a_timeout_that_is_the_answer_is_not_taken_for_having_to_wait() -> None:
+    async def main() -> None:
+        loop = asyncio.get_running_loop()
+
+        def asking() -> None:
+            ask(loop, lambda tell: tell(None, TimeoutError("too late")), lambda: False)
+
+        with pytest.raises(TimeoutError, match="too late"):
+            await in_thread(loop, asking, "asking")
+
+    run(main, WallClock())
