@@ -6,7 +6,7 @@
      makeArtifact("reply", "Reply", [], _);
      focus(Odometry);
      for (.range(I, 1, 100)) {
-       !!work(I, 0);
+        !!work(I, 0);
      };
      .print("listening").
 
