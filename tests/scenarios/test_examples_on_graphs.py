@@ -18,9 +18,6 @@ RunWorld = Callable[..., WorldProcess]
 RunAgents = Callable[..., Agents]
 
 HOUSE = Path(jacaros.sim.__file__).parent / "worlds" / "house.yaml"
-FASTER = ("--speed", "2")
-"""The world of a longer run: twice as fast as real time, which its agents follow on ``/clock``."""
-FOLLOW = ("--clock", "ros")
 
 
 def is_kilted() -> bool:
@@ -62,8 +59,8 @@ def test_the_robot_drives_out_and_back(run_world: RunWorld, run_agents: RunAgent
 
 
 def test_the_robot_drives_the_square(run_world: RunWorld, run_agents: RunAgents) -> None:
-    world = run_world("empty", *FASTER)
-    agents = run_agents(EXAMPLES / "02_square/square.jcm", *FOLLOW)
+    world = run_world("empty")
+    agents = run_agents(EXAMPLES / "02_square/square.jcm")
     assert agents.end() == 0
     judge(checker("02_square").check(world.close()), agents)
     assert [line.split(" done")[0] for line in agents.lines] == [f"[robot] side {n}" for n in (1, 2, 3, 4)]
@@ -75,8 +72,8 @@ def test_the_agent_tells_every_state_of_the_robot_s_battery(
     run_world: RunWorld, run_agents: RunAgents
 ) -> None:
     # This robot only stands, so its world can be much faster.
-    world = run_world(EXAMPLES / "03_fake_battery/weak_battery.yaml", "--speed", "10")
-    agents = run_agents(EXAMPLES / "03_fake_battery/robot_battery.jcm", *FOLLOW)
+    world = run_world(EXAMPLES / "03_fake_battery/weak_battery.yaml", "--speed", "5")
+    agents = run_agents(EXAMPLES / "03_fake_battery/robot_battery.jcm", "--clock", "ros")
     assert agents.end() == 0
     # The agent joins when the battery has begun to run down, as with a real robot.
     joined, *later = agents.lines
@@ -102,8 +99,8 @@ def test_the_patrol_goes_on_after_a_recharge(
         "drain_per_metre: 3": "drain_per_metre: 6.5",
         "charge_per_second: 10": "charge_per_second: 40",
     }
-    world = run_world(changed(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", battery), *FASTER)
-    agents = run_agents(EXAMPLES / "04_patrol/patrol.jcm", *FOLLOW)
+    world = run_world(changed(tmp_path, EXAMPLES / "04_patrol/patrol.yaml", battery))
+    agents = run_agents(EXAMPLES / "04_patrol/patrol.jcm")
     world.until_truth(is_back_on_patrol, "a corner after a recharge")
     agents.stop()
     judge(example.check(world.close(), cycles=1), agents)
@@ -118,7 +115,7 @@ def test_the_house_is_cleaned_with_a_recharge_between_two_tasks_of_a_room(
     shutil.copytree(EXAMPLES / "05_house_cleaning", project)
     changed(project, EXAMPLES / "05_house_cleaning/robot.asl", {"rounds(4).": "rounds(1)."})
     battery = {"level: 100": "level: 37.8", "charge_per_second: 5": "charge_per_second: 40"}
-    world = run_world(changed(tmp_path, HOUSE, battery), *FASTER)
-    agents = run_agents(project / "house_cleaning.jcm", *FOLLOW)
+    world = run_world(changed(tmp_path, HOUSE, battery))
+    agents = run_agents(project / "house_cleaning.jcm")
     assert agents.end() == 0
     judge(checker("05_house_cleaning").check(world.close(), rounds=1), agents)
