@@ -116,7 +116,7 @@ def interrupt(kind: str, program: Path, listener: int | None, chance: random.Ran
     anywhere = chance.random() < 0.2
     began = time.monotonic()
     moment = chance.uniform(0.0, 2.0) if anywhere else START
-    while time.monotonic() - began < moment and not (velocities.heard and not anywhere):
+    while time.monotonic() - began < moment and not (any(velocities.heard) and not anywhere):
         velocities.read(0.01)
     if not anywhere:
         time.sleep(chance.uniform(0.0, 0.05))
