@@ -6,6 +6,7 @@ callbacks.  A step that never ends leaves it no turn; then the signal is raised 
 
 import asyncio
 import signal
+import warnings
 from collections.abc import Callable, Coroutine, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
@@ -122,4 +123,6 @@ class Interruption:
                 self._ending
             ):  # else what was interrupted is an import, as at the start: nothing is left behind
                 self._tell("the run has ended; an operation that does not end is left behind")
+        # The exception may hit between the making of a coroutine and its first step; the process ends anyway.
+        warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)
         raise Interrupted
