@@ -1,15 +1,16 @@
 """Operations that publish wait until a subscription is matched, so that their first message arrives."""
 
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from robot_lab import STANDSTILL, Lab, in_lab
 
 from jacaros.artifacts.ros.cleaning import ArtCleaning
+from jacaros.artifacts.ros.matching import SETTLING, TURN, Matching
 from jacaros.artifacts.ros.velocity import ArtCmdVel
 from jacaros.env import Structure
-from jacaros.ros.backend import DISCOVERY, Sample
+from jacaros.ros.backend import DISCOVERY, Publisher, Sample
 
 
 def on_a_graph(body: Callable[[Lab], Awaitable[Any]]) -> Lab:
@@ -180,3 +181,45 @@ def test_a_household_that_nobody_listens_to_is_delayed_once() -> None:
         assert len(warnings(lab)) == 1
 
     on_a_graph(body)
+
+
+class Topic:
+    """A publisher as far as `Matching` knows it."""
+
+    topic = "/report"
+
+    def __init__(self) -> None:
+        self.subscription_count = 0
+
+
+def line_of(topic: Topic) -> Matching:
+    def missed(name: str, seconds: float, again: bool) -> None:
+        raise AssertionError(f"{name} was matched")
+
+    return Matching(cast(Publisher, topic), 3.0, missed)
+
+
+def test_a_later_message_does_not_overtake_one_that_waits() -> None:
+    topic = Topic()
+    matching = line_of(topic)
+    first = matching.pauses()
+    next(first)
+    topic.subscription_count = 1
+    assert not matching.exists()
+    second = matching.pauses()
+    assert next(second) == TURN
+    assert list(first) == [SETTLING]
+    assert list(second) == []
+    assert matching.exists()
+
+
+def test_a_message_that_is_suspended_while_it_waits_does_not_block_the_others() -> None:
+    topic = Topic()
+    matching = line_of(topic)
+    suspended = matching.pauses()
+    next(suspended)
+    topic.subscription_count = 1
+    assert sum(matching.pauses()) == pytest.approx(3.0)
+    assert matching.exists()
+    assert list(suspended) == [SETTLING]
+    assert matching.exists()

@@ -1,6 +1,7 @@
 """Wait for the first subscription of a publisher: what it sends before is lost, and no error says so."""
 
 import math
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 
 from jacaros.artifacts.ros.options import Reader, one_of, positive
@@ -14,6 +15,9 @@ MATCH_OPTIONS: Mapping[str, Reader] = {"match_timeout": positive, "unmatched": o
 
 LOOK = 0.05
 """Seconds between two looks at the number of subscriptions."""
+
+TURN = 0.005
+"""Seconds between two looks at the messages that wait in front."""
 
 SETTLING = 0.2
 """Seconds between the first match and the first message: the other end may have to match too, as may a bridge's own
@@ -38,9 +42,14 @@ class Matching:
         self._timeout = timeout
         self._missed = missed
         self._vain = False
+        self._line: deque[object] = deque()
+        """The messages that wait, in order: a later one must not overtake them when a subscription is matched."""
 
     def exists(self) -> bool:
-        """Whether a subscription is matched now."""
+        """Whether a message may be sent now: a subscription is matched, and no earlier message waits."""
+        return not self._line and self._matched()
+
+    def _matched(self) -> bool:
         if self._publisher.subscription_count:
             self._vain = False
             return True
@@ -50,17 +59,36 @@ class Matching:
         """Give the seconds to pause, one pause after the other, until messages arrive or the time is over.
 
         There are none while a subscription is matched.  After a wait in vain there are none either until one has been
-        matched, so that a topic without subscribers delays only the first operation.
+        matched, so that a topic without subscribers delays only the first operation.  The message must be sent as soon
+        as there are no more pauses: the next one in line may go then.
 
         Args:
             always: wait again after a wait in vain: for open-loop motions, which go wrong when a command is lost.
         """
         if self.exists():
             return
+        ticket = object()
+        self._line.append(ticket)
+        try:
+            for _ in range(math.ceil(self._timeout / TURN)):
+                if self._line[0] is ticket:
+                    break
+                yield TURN
+            while self._line[0] is not ticket:  # those in front are suspended, and lose their place
+                self._line.popleft()
+            yield from self._first_pauses(always)
+        finally:
+            if ticket in self._line:
+                self._line.remove(ticket)
+
+    def _first_pauses(self, always: bool) -> Iterator[float]:
+        """Give the pauses of the first message in line."""
+        if self._matched():  # those in front have waited
+            return
         if not self._vain or always:
             for _ in range(math.ceil(self._timeout / LOOK)):
                 yield LOOK
-                if self.exists():
+                if self._matched():
                     yield SETTLING
                     return
         again, self._vain = self._vain, True
