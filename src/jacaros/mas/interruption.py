@@ -50,7 +50,7 @@ class Interruption:
         self.exit_code = 0
         self._tell = tell
         self._told = False
-        self._ending = False
+        self._ending = self._over = False
         self._end: Callable[[], object] | None = None
         self._alarm_before: Any = None
 
@@ -67,6 +67,7 @@ class Interruption:
         except Interrupted:
             return self.exit_code
         finally:
+            self._over = True
             self._disarm()
 
     def signals(self) -> AbstractContextManager[None]:
@@ -92,6 +93,8 @@ class Interruption:
 
     def _notice(self, number: int, frame: FrameType | None) -> None:
         """Take a signal, in its handler."""
+        if self._over:
+            return  # nothing is left to interrupt
         again, self.exit_code = self.exit_code != 0, 128 + number
         if again or self._end is None:
             self._interrupt(number, frame)

@@ -82,7 +82,8 @@ class Lifetime:
         self._hooking: set[int] = set()
         """Threads that are running the hooks."""
         self._told = False
-        self._stopped = threading.Event()
+        # No lock of Python's: a second signal may raise an exception while one is held, which then stays locked.
+        self._stopped: queue.SimpleQueue[None] = queue.SimpleQueue()
         self._finishing = threading.Lock()
         self._finished = False
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -148,7 +149,7 @@ class Lifetime:
         self.state = State.LEAVING
         self._open = False
         self._run_hooks()
-        self._stopped.set()
+        self._stopped.put(None)
 
     def stop_soon(self) -> None:
         """Stop the robots as soon as the loop has a turn; callable in a signal handler."""
@@ -170,8 +171,13 @@ class Lifetime:
 
     def stop_if_late(self, deadline: float) -> None:
         """Stop the robots here, in a thread, if the loop was told to and has not done so by *deadline* (monotonic)."""
-        if self._told and not self._stopped.wait(max(0.0, deadline - time.monotonic())):
-            self.stop()
+        if self._told:
+            try:
+                self._stopped.get(timeout=max(0.0, deadline - time.monotonic()))
+            except queue.Empty:
+                self.stop()
+            else:
+                self._stopped.put(None)  # for the next signal
 
     def leave_if_orphaned(self) -> None:
         """Leave, in a thread, when the loop's thread has ended without closing the node."""

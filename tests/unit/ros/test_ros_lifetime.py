@@ -5,6 +5,8 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
+from types import FrameType
 from typing import Any
 
 import pytest
@@ -102,7 +104,7 @@ def test_a_stuck_loop_leaves_the_hooks_to_a_thread() -> None:
     body = """try:
         os.kill(os.getpid(), signal.SIGTERM)
     except SystemExit:
-        while not lifetime._stopped.is_set(): pass
+        while lifetime._stopped.empty(): pass
         say("stuck until here")"""
     _, lines = run_program(body, True)
     assert lines[:2] == ["zero True thread", "stuck until here"]
@@ -300,3 +302,39 @@ def test_goals_under_way_are_cancelled_when_the_process_ends() -> None:
         await graph_node.close()
 
     run(main, WallClock())
+
+
+def test_an_exception_in_the_middle_of_stopping_does_not_block_the_end() -> None:
+    """A second signal is raised wherever the first one's work is: here after each of its steps in turn."""
+    steps, interrupted = 0, True
+    while interrupted:
+        steps += 1
+        lifetime = Lifetime(lambda line: None)
+        interrupted = _interrupt_after(steps, lifetime.stop)
+        ending = threading.Thread(target=lifetime.leave_now, daemon=True)
+        ending.start()
+        ending.join(10.0)
+        assert not ending.is_alive(), f"interrupted after {steps} steps"
+    assert steps > 5
+
+
+def _interrupt_after(steps: int, call: Callable[[], None]) -> bool:
+    """Whether *call* was still under way after *steps* events of a trace, where it is interrupted."""
+    seen = 0
+
+    def trace(frame: FrameType, event: str, argument: object) -> Any:
+        nonlocal seen
+        seen += 1
+        if seen == steps:
+            raise KeyboardInterrupt
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        call()
+    except KeyboardInterrupt:
+        return True
+    finally:
+        sys.settrace(before)
+    return False
