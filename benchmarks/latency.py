@@ -1,13 +1,17 @@
 """From a published sensor message to the command that it leads to, through one plan of an agent.
 
     latency.py [memory|ros1|ros2] [--busy]
+    latency.py ros1 --profile
 
 An outside node publishes numbered odometry messages at 100 Hz and waits for the command with the same number: by turns
 through an agent (artifact, belief, event, plan, operation), and through an echo written with the client library alone.
 Prints both, and how many times as long the agent takes; figures on a busy machine say little.
 
 With ``--busy`` the agent's plan is urgent and has 100 intentions beside it that never rest, and the echo has a computing
-thread beside it.
+thread beside it.  On the graph in memory the two measure one after the other, each in a process of its own.
+
+With ``--profile`` the agents' process also prints, for each stop of a message on its way, the time since the stop before.
+Looking at the clock makes the agent slower by some microseconds.
 """
 
 import contextlib
@@ -29,9 +33,11 @@ JACAROS = Path(sys.executable).parent / "jacaros"
 
 def main() -> None:
     """Measure on one kind of graph."""
-    busy = "--busy" in sys.argv
-    kind = next((word for word in sys.argv[1:] if word != "--busy"), "memory")
-    print(with_ratios(in_process(busy) if kind == "memory" else on_graph(kind, busy)))
+    busy, profile = "--busy" in sys.argv, "--profile" in sys.argv
+    kind = next((word for word in sys.argv[1:] if not word.startswith("--")), "memory")
+    if profile and kind != "ros1":
+        sys.exit("latency: --profile measures ROS 1 only")
+    print(with_ratios(in_process(busy) if kind == "memory" else on_graph(kind, busy, profile)))
 
 
 def in_process(busy: bool) -> str:
@@ -46,12 +52,13 @@ def in_process(busy: bool) -> str:
     return "".join(reports).rstrip()
 
 
-def on_graph(kind: str, busy: bool) -> str:
-    """Measure on a real graph."""
+def on_graph(kind: str, busy: bool, profile: bool) -> str:
+    """Measure on a real graph; with *profile*, the agents' process prints where the time goes."""
     more = ["--busy"] if busy else []
     program = HERE / f"{kind}.py"
     with tempfile.TemporaryDirectory() as scratch, graph(kind, Path(scratch)) as environment:
-        agents = [JACAROS, "run", HERE / ("busy.asl" if busy else "echo.asl"), "--ros", kind, "--quiet"]
+        jacaros = [sys.executable, HERE / "stops.py"] if profile else [JACAROS]
+        agents = [*jacaros, "run", HERE / ("busy.asl" if busy else "echo.asl"), "--ros", kind, "--quiet"]
         with running(agents, environment), running([sys.executable, program, "echo", *more], environment):
             time.sleep(3)
             done = subprocess.run(

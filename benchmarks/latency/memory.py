@@ -2,11 +2,17 @@
 
     memory.py [agent|bare]
 
-With a way: this one alone, an agent beside 100 busy intentions, or a bare echo beside a computing thread.
+With a way: this one alone, an agent beside 100 busy intentions, or a bare echo beside a computing thread.  Then another
+process says when a message begins, as on a real graph: the thread of the loop has not got the interpreter yet.
 """
 
+import asyncio
+import os
+import struct
+import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +25,16 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
+
+SWITCH_INTERVAL = 0.005
+"""Python's own switch interval in seconds, which the bare echoes of the other graphs have."""
+
+BEATS = """
+import os, struct, time
+while True:
+    time.sleep(%r)
+    os.write(1, struct.pack("d", time.perf_counter()))
+"""
 
 ODOMETRY, TWIST = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist"
 
@@ -53,17 +69,17 @@ class InProcess:
             message.pose.pose.position.x = number
             publishers[way].publish(message)
 
-        pings: Measurement | Pings
-        pings = (
-            Measurement(time.perf_counter, send)
-            if self.way is None
-            else Pings(time.perf_counter, send, (self.way,))
-        )
+        if self.way is None:
+            pings: Measurement | Pings = self._in_turn(mas, send)
+        else:
+            pings = self._alone(mas, send, self.way)
         self.pings = pings
-        if self.way == "bare":
-            compute()
         pinger.subscription("/cmd_vel", TWIST, lambda s: pings.returned("agent", s.message.linear.x))
         pinger.subscription("/bare/cmd_vel", TWIST, lambda s: pings.returned("bare", s.message.linear.x))
+
+    def _in_turn(self, mas: System, send: Callable[[str, float], None]) -> Measurement:
+        """Measure both ways; a timer begins the messages."""
+        pings = Measurement(time.perf_counter, send)
 
         def tick() -> None:
             if pings.over:
@@ -73,6 +89,29 @@ class InProcess:
                 mas.clock.call_later(PERIOD, tick)
 
         mas.clock.call_later(0.5, tick)
+        return pings
+
+    def _alone(self, mas: System, send: Callable[[str, float], None], way: str) -> Pings:
+        """Measure one way beside something busy; another process begins the messages."""
+        pings = Pings(time.perf_counter, send, (way,))
+        beats = subprocess.Popen([sys.executable, "-c", BEATS % PERIOD], stdout=subprocess.PIPE)
+        assert beats.stdout is not None
+        pipe, loop = beats.stdout.fileno(), asyncio.get_running_loop()
+
+        def beat() -> None:
+            data = os.read(pipe, 4096)
+            if pings.over or not data:
+                loop.remove_reader(pipe)
+                beats.kill()
+                mas.end(0)
+            else:
+                pings.next(*struct.unpack("d", data[-8:]))
+
+        loop.add_reader(pipe, beat)
+        if way == "bare":
+            sys.setswitchinterval(SWITCH_INTERVAL)
+            compute()
+        return pings
 
     def _bare(self, node: Backend) -> None:
         publisher = node.publisher("/bare/cmd_vel", TWIST)

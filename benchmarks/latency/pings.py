@@ -43,8 +43,12 @@ class Pings:
         """Whether enough messages have been sent."""
         return self._number >= len(self._ways) * (COUNT + WARM_UP)
 
-    def next(self) -> None:
-        """Send the next message, unless the last one is still on its way."""
+    def next(self, moment: float | None = None) -> None:
+        """Send the next message, unless the last one is still on its way.
+
+        Args:
+            moment: when the message began, in seconds of the clock; now by default.
+        """
         for way, (_, began) in list(self._sent.items()):
             if self._now() - began < PATIENCE:
                 return
@@ -52,7 +56,7 @@ class Pings:
             del self._sent[way]
         self._number += 1
         way = self._ways[self._number % len(self._ways)]
-        self._sent[way] = (float(self._number), self._now())
+        self._sent[way] = (float(self._number), self._now() if moment is None else moment)
         self._send(way, float(self._number))
 
     def returned(self, way: str, number: float) -> None:

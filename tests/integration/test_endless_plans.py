@@ -64,3 +64,22 @@ def test_a_busy_run_leaves_the_interpreter_to_other_threads_within_a_millisecond
         [sys.executable, "-c", command], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     assert float(done.stdout) <= 0.001
+
+
+def test_a_run_inside_a_program_leaves_its_switch_interval_alone(tmp_path: Path) -> None:
+    (tmp_path / "bob.asl").write_text("!g. +!g <- .stopMAS.", encoding="utf-8")
+    (tmp_path / "host.py").write_text(
+        "import sys\nimport jacaros\nfrom jacaros.testing import run_project\n\n"
+        "async def main():\n"
+        "    async with jacaros.Mas() as mas:\n"
+        "        await mas.add_agent('bob', '+!g.').achieve('g')\n\n"
+        "sys.setswitchinterval(0.25)\n"
+        "run_project('bob.asl')\n"
+        "jacaros.run(main())\n"
+        "print(sys.getswitchinterval())\n",
+        encoding="utf-8",
+    )
+    done = subprocess.run(
+        [sys.executable, "host.py"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "0.25\n"
