@@ -152,7 +152,8 @@ class Mas(EmbeddedRun):
 
         Raises:
             AslError: the program is wrong; the text shows each mistake in its line.
-            UsageError: there is an agent of that name.
+            UsageError: there is an agent of that name; the name is empty or has spaces or control characters; or the
+                caller is not in the thread of the run's loop.
             OperationFailed: a workspace or an artifact is not there.
             RunEnded: the run has ended.
         """
@@ -175,6 +176,10 @@ class Mas(EmbeddedRun):
                 architecture_classes=tuple(architectures),
                 belief_base_class=belief_base,
                 python_class=python_class,
+            )
+        if not spec.name.isprintable() or not spec.name or " " in spec.name:
+            raise UsageError(
+                f"invalid agent name {spec.name!r}: it must not be empty or have spaces or control characters"
             )
         if spec.name in system.directory.names():
             raise UsageError(f"there is an agent {spec.name} already; every name is given once")

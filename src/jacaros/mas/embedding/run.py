@@ -91,6 +91,7 @@ class EmbeddedRun:
     def _running(self) -> tuple[System, Waits]:
         if self._begun is None:
             raise RunEnded("the system has not begun to run: use it inside `async with Mas(...) as mas:`")
+        self._begun[1].check_thread()
         return self._begun
 
     @property

@@ -1,17 +1,19 @@
 """What Python code waits for in a run: each wait ends with what it is for, with its time, its agent or the run."""
 
 import asyncio
+import threading
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 from jacaros.clock import Clock
+from jacaros.errors import UsageError
 from jacaros.mas.embedding.errors import AgentEnded, RunEnded
 
 T = TypeVar("T")
 
 
 class Waits:
-    """The waits of one run.
+    """The waits of one run; made in the thread of its loop, the only one that may use the run.
 
     Args:
         clock: of the run; time-outs are counted on it.
@@ -19,6 +21,7 @@ class Waits:
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
+        self._thread = threading.current_thread()
         self._open: dict[asyncio.Future[Any], tuple[str | None, Callable[[], str]]] = {}
         self._over: str | None = None
 
@@ -56,12 +59,26 @@ class Waits:
             if timer is not None:
                 timer.cancel()
 
+    def check_thread(self) -> None:
+        """Check that the caller is in the thread of the run's loop.
+
+        Raises:
+            UsageError: it is in another one, where it would race with the agents.
+        """
+        if threading.current_thread() is not self._thread:
+            raise UsageError(
+                f"called in thread {threading.current_thread().name!r}, but the run belongs to thread "
+                f"{self._thread.name!r}; from other threads use loop.call_soon_threadsafe(function) with the loop of the run"
+            )
+
     def check(self) -> None:
-        """See whether the run goes on.
+        """Check that the run continues and that the caller is in its thread.
 
         Raises:
             RunEnded: it has ended.
+            UsageError: the caller is in another thread.
         """
+        self.check_thread()
         if self._over is not None:
             raise RunEnded(self._over)
 

@@ -260,3 +260,32 @@ def test_a_callback_for_prints_that_raises_harms_no_agent() -> None:
     run(test, lines, logs)
     assert lines == ["[bob] a", "[bob] b"]
     assert "ValueError: no printing" in logs[0]
+
+
+def test_calls_from_another_thread_are_refused_with_a_way_out() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "+!work(N) <- .print(N).")
+        calls = {
+            "achieve": lambda: bob.achieve("work(1)"),
+            "perceive": lambda: bob.perceive("x(1)"),
+            "add_agent": lambda: mas.add_agent("eve", "x."),
+            "stop": mas.stop,
+        }
+        for name, call in calls.items():
+            with pytest.raises(UsageError, match=r"called in thread .*loop\.call_soon_threadsafe"):
+                await asyncio.to_thread(call)
+            refused.append(name)
+
+    refused: list[str] = []
+    mas = run(test, [])
+    assert refused == ["achieve", "perceive", "add_agent", "stop"]
+    assert mas.exit_code == 0
+
+
+@pytest.mark.parametrize("name", ["", "a b", "a\n[b] forged", "n\0"])
+def test_a_name_that_would_forge_output_is_refused(name: str) -> None:
+    async def test(mas: Mas) -> None:
+        with pytest.raises(UsageError, match="invalid agent name"):
+            mas.add_agent(name, "x.")
+
+    run(test, [])
