@@ -68,7 +68,7 @@ class Waits:
         if threading.current_thread() is not self._thread:
             raise UsageError(
                 f"called in thread {threading.current_thread().name!r}, but the run belongs to thread "
-                f"{self._thread.name!r}; from other threads use loop.call_soon_threadsafe(function) with the loop of the run"
+                f"{self._thread.name!r}; from other threads use loop.call_soon_threadsafe(function) of its loop"
             )
 
     def check(self) -> None:
