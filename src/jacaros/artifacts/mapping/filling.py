@@ -241,7 +241,7 @@ def _converter(
             raise WrongPath(f"{owner} has no constants for {last}", "write names: {0: ...}")
         words |= {name: value[0] if isinstance(value, bytes) else value for name, value in meant.items()}
 
-    if leaf.base == DURATION and not leaf.array:
+    if DURATION in (leaf.base, owner) and not leaf.array:  # as a whole, or its seconds
         steps.append(_not_negative)
 
     def convert(value: Any) -> Any:

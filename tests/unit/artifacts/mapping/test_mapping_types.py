@@ -281,8 +281,11 @@ def test_a_joint_is_shown_in_degrees_or_millimetres() -> None:
         check_mapping(read_mapping(line), stored_interfaces())
 
 
-def test_a_duration_is_not_negative() -> None:
-    line = "operations: {mark: {publish: m, type: visualization_msgs/msg/Marker, fields: {lifetime: -3}}}"
+@pytest.mark.parametrize("field", ["lifetime", "lifetime.sec"])
+def test_a_duration_is_not_negative(field: str) -> None:
+    line = (
+        f"operations: {{mark: {{publish: m, type: visualization_msgs/msg/Marker, fields: {{{field}: -3}}}}}}"
+    )
     with pytest.raises(MappingError, match="a duration is not negative"):
         check_mapping(read_mapping(line), stored_interfaces())
 
