@@ -1,6 +1,6 @@
 """From a published sensor message to the command that it leads to, through one plan of an agent.
 
-    latency.py [memory|ros1|ros2] [--busy]
+    latency.py [memory|ros1|ros2] [--busy [--same-interval]]
     latency.py ros1 --profile
 
 An outside node publishes numbered odometry messages at 100 Hz and waits for the command with the same number: by turns
@@ -9,6 +9,8 @@ Prints both, and how many times as long the agent takes; figures on a busy machi
 
 With ``--busy`` the agent's plan is urgent and has 100 intentions beside it that never rest, and the echo has a computing
 thread beside it.  On the graph in memory the two measure one after the other, each in a process of its own.
+The echo's process keeps Python's own switch interval of 5 ms; with ``--same-interval`` it has the 0.5 ms that
+``jacaros run`` sets.
 
 With ``--profile`` the agents' process also prints, for each stop of a message on its way, the time since the stop before.
 Looking at the clock makes the agent slower by some microseconds.
@@ -27,14 +29,20 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from jacaros.mas.launch import SWITCH_INTERVAL
+
 HERE = Path(__file__).resolve().parent / "latency"
 JACAROS = Path(sys.executable).parent / "jacaros"
+INTERVAL = "BENCHMARK_SWITCH_INTERVAL"
+"""Read by latency/computing.py."""
 
 
 def main() -> None:
     """Measure on one kind of graph."""
     busy, profile = "--busy" in sys.argv, "--profile" in sys.argv
     kind = next((word for word in sys.argv[1:] if not word.startswith("--")), "memory")
+    if "--same-interval" in sys.argv:
+        os.environ[INTERVAL] = str(SWITCH_INTERVAL)
     if profile and kind != "ros1":
         sys.exit("latency: --profile measures ROS 1 only")
     print(with_ratios(in_process(busy) if kind == "memory" else on_graph(kind, busy, profile)))

@@ -26,9 +26,6 @@ from jacaros.mas.system import System
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
 
-SWITCH_INTERVAL = 0.005
-"""Python's own switch interval in seconds, which the bare echoes of the other graphs have."""
-
 BEATS = """
 import os, struct, time
 while True:
@@ -109,7 +106,6 @@ class InProcess:
 
         loop.add_reader(pipe, beat)
         if way == "bare":
-            sys.setswitchinterval(SWITCH_INTERVAL)
             compute()
         return pings
 
