@@ -43,13 +43,11 @@ recharges(0).
   <- -+done(N + 1);
      .print("hallway: round ", N + 1, " is done").
 
-+!clean_room(Number, Room)
-  <- +cleaning(Room);  // so that it comes back here after a recharge
-     clean(Number);
++!clean_room(Number, _)
+  <- clean(Number);
      rotate(-5);
      rotate(10);
-     rotate(-5);  // a little swing, as one does
-     -cleaning(Room).
+     rotate(-5).  // a little swing, as one does
 
 // What `clean` does shows in these properties of the household; they are empty at the beginning.
 +vacuum(Thing, Room) : Thing \== "" <- .print(Room, ": vacuum the ", Thing).
@@ -82,10 +80,7 @@ recharges(0).
   <- .print("I need help: ", Text);
      .stopMAS(0, 1).  // the exit code tells that it went wrong
 
-// It was cleaning: back into that room.
-+!return : cleaning(Room) & room(_, Room, X, Y)
-  <- .print("back into the ", Room);
+// Back to the room that it was in, or on its way to; perhaps it had just arrived.
++!return : atRoom(Number) & room(Number, Room, X, Y)
+  <- .print("back to the ", Room);
      driveTo(X, Y).
-
-// It was on its way: driveTo finds the rest of the way from anywhere.
-+!return.

@@ -18,15 +18,7 @@
 +!test_room
   <- !fakes;
      !clean_room(2, kitchen);
-     !assert_did(clean(2), 1);
-     !assert_false(cleaning(_)).
-
-@knows_what_it_is_cleaning[test]
-+!test_cleaning
-  <- !fakes;
-     !!clean_room(2, kitchen);
-     .wait(1000);
-     !assert_true(cleaning(kitchen)).
+     !assert_did(clean(2), 1).
 
 @counts_a_round_in_the_hallway[test]
 +!test_round
@@ -36,22 +28,27 @@
      !assert_true(done(1));
      !assert_printed("hallway: round 1 is done").
 
-@comes_back_into_its_room_after_a_recharge[test]
+@comes_back_to_its_room_after_a_recharge[test]
 +!test_return
   <- !fakes;
-     +cleaning(bathroom);
+     +atRoom(3);
      +diagnostics("Low Battery");
      !assert_did(driveTo(1, 1), 1);
      !assert_did(operationRecharge, 1);
-     !assert_printed("back into the bathroom");
+     !assert_printed("back to the bathroom");
      !assert_did(driveTo(0, 2), 1).
 
-@stays_at_the_dock_when_it_was_between_rooms[test]
-+!test_between
+@cleans_in_its_room_though_the_battery_was_low_when_it_arrived[test]
++!test_arrival
   <- !fakes;
+     +atRoom(2);
+     !!clean_house;
+     .wait(1000);
+     !assert_did(driveTo(2, 2), 1);
      +diagnostics("Low Battery");
-     !assert_did(driveTo(_, _), 1);
-     !assert_did(driveTo(1, 1)).
+     !assert_did(driveTo(1, 1), 1);
+     !assert_did(driveTo(2, 2), 2);
+     !assert_did(clean(2), 1).
 
 @stops_after_its_rounds[test]
 +!test_end
