@@ -8,8 +8,8 @@ from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import angle_between, distance, seen_from, turns
 
 
-def check(truth: GroundTruth) -> Verdict:
-    """Judge a run that began with the robot at rest."""
+def check(truth: GroundTruth, near: float = 0.05) -> Verdict:
+    """Judge a run that began with the robot at rest, and ends at most *near* metres from there."""
     verdict = Verdict()
     path = [*truth.path(), truth.latest()]
     start, end = path[0], path[-1]
@@ -18,7 +18,7 @@ def check(truth: GroundTruth) -> Verdict:
     out = verdict.measure("metres out", max(ahead for ahead, _ in places))
     verdict.expect(out >= 1.0, "the robot was never a metre out")
     verdict.at_most("metres beside the way", max(abs(left) for _, left in places), 0.05)
-    verdict.at_most("metres from the start at the end", distance(end, start.x, start.y), 0.05)
+    verdict.at_most("metres from the start at the end", distance(end, start.x, start.y), near)
     verdict.at_most("degrees off at the end", math.degrees(angle_between(end.yaw, start.yaw)), 3.0)
 
     halves = [turn for turn in turns(path) if abs(abs(turn.angle) - math.pi) <= math.radians(10.0)]

@@ -53,7 +53,8 @@ def test_the_robot_drives_out_and_back(run_world: RunWorld, run_agents: RunAgent
     world = run_world("empty")
     agents = run_agents(EXAMPLES / "01_out_and_back/out_and_back.jcm")
     assert agents.end() == 0
-    judge(checker("01_out_and_back").check(world.close()), agents)
+    # The robot drives by time alone: a pause of one process for one period of its commands makes a way 65 mm longer.
+    judge(checker("01_out_and_back").check(world.close(), near=0.15), agents)
     assert agents.lines[:2] == ["[robot] driving out", "[robot] driving back"]
     assert world.errors == []
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
 from jacaros.artifacts.ros.lane import GUARD_TRIPPED
@@ -59,6 +60,22 @@ def test_old_odometry_that_arrives_after_a_freeze_moves_nothing() -> None:
         assert {tuple(command) for time, *command in lab.commands if time > 2.9} == {STANDSTILL}
         stop()
         moving.execution.cancel()
+
+    in_lab(body)
+
+
+def test_turns_that_come_late_make_a_motion_by_time_alone_no_longer() -> None:
+    async def body(lab: Lab) -> None:
+        lab.record()
+        artifact = await lab.make(ArtCmdVel)
+        moving = lab.begin(artifact, "move", 25)
+        for _ in range(10):
+            await lab.sleep(0.15)
+            lab.clock.busy(A_SECOND // 15)
+        await moving.done
+        drives = [time for time, *command in lab.commands if tuple(command) != STANDSTILL]
+        assert len(drives) == 26
+        assert drives[-1] - drives[0] == pytest.approx(2.5, abs=0.01)
 
     in_lab(body)
 

@@ -110,6 +110,7 @@ class Motion:
         self._ticket = Ticket(self.halt)
         self._before = STANDSTILL
         self._begun = False
+        self._due = 0.0
         self._active = 0.0
         self._blind_since: float | None = None
         self._frame = ""
@@ -186,6 +187,7 @@ class Motion:
         braking = 0.0
         blind = not self._maneuver.needs_odometry
         pauses = self._wheels.matching.pauses(always=blind)
+        self._due = self._wheels.clock.elapsed
         while not self._execution.paused:
             self._heed_gap()
             seen = blind or self._has_odometry()
@@ -201,6 +203,7 @@ class Motion:
         maneuver, odometer = self._maneuver, self._wheels.odometer
         blind = not maneuver.needs_odometry
         settled = 0
+        self._due = self._wheels.clock.elapsed
         while settled < SETTLED:
             if self._execution.paused:
                 if await self._brake():
@@ -231,8 +234,19 @@ class Motion:
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(velocity)
         self._before = velocity
-        await self._wait(period)
+        await self._wait(self._until_due(period) if seconds is None else seconds)
         self._active += period
+
+    def _until_due(self, period: float) -> float:
+        """Seconds until the next command, counted from the moment when this one was due.
+
+        So a turn that comes late makes a motion by time no longer.  A closed loop has nothing to make up for.
+        """
+        now = self._wheels.clock.elapsed
+        self._due += period
+        if self._maneuver.needs_odometry:
+            self._due = max(self._due, now)
+        return max(0.0, self._due - now)
 
     async def _wait(self, seconds: float | None) -> None:
         await self._wheels.step(self._ticket.wait(self._wheels.clock, seconds))
