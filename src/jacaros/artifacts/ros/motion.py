@@ -242,7 +242,7 @@ class Motion:
 
         So a turn that comes late makes a motion by time no longer.  A closed loop has nothing to make up for.
         """
-        now = self._wheels.clock.elapsed
+        now: float = self._wheels.clock.elapsed
         self._due += period
         if self._maneuver.needs_odometry:
             self._due = max(self._due, now)
