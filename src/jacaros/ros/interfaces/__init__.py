@@ -24,10 +24,30 @@ def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
 
 
 def installed() -> tuple[Path, ...]:
-    """Folders with the definitions of the ROS 2 packages that are installed here: ``share`` of each prefix."""
-    prefixes = [*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix]
-    shares = (Path(prefix) / "share" for prefix in dict.fromkeys(prefixes) if prefix)
-    return tuple(share for share in shares if share.is_dir())
+    """Folders with the definitions of the ROS packages that are installed here.
+
+    ``share`` of each prefix of ROS 2 (``AMENT_PREFIX_PATH``), of ROS 1 (``CMAKE_PREFIX_PATH``), of Python and of the
+    system (Debian's packages); and the workspaces of ROS 1 (``ROS_PACKAGE_PATH``).
+    """
+    prefixes = [*_listed("AMENT_PREFIX_PATH"), *_listed("CMAKE_PREFIX_PATH"), Path(sys.prefix), Path("/usr")]
+    workspaces = (root for entry in _listed("ROS_PACKAGE_PATH") for root in _package_roots(entry))
+    roots = (*(prefix / "share" for prefix in prefixes), *workspaces)
+    return tuple(root for root in dict.fromkeys(roots) if root.is_dir())
+
+
+def _listed(variable: str) -> list[Path]:
+    return [Path(each) for each in os.environ.get(variable, "").split(os.pathsep) if each]
+
+
+def _package_roots(entry: Path) -> list[Path]:
+    """The folders that hold packages: an entry is a package, or holds packages and repositories of packages."""
+    if (entry / "package.xml").is_file():
+        return [entry.parent]
+    try:
+        folders = sorted(each for each in entry.iterdir() if each.is_dir())
+    except OSError:
+        return []
+    return [entry, *(each for each in folders if not (each / "package.xml").is_file())]
 
 
 def split_service(text: str) -> tuple[str, str]:

@@ -290,14 +290,35 @@ def test_a_duration_is_not_negative(field: str) -> None:
         check_mapping(read_mapping(line), stored_interfaces())
 
 
+@pytest.mark.parametrize(
+    ("variable", "entry", "package"),
+    [
+        ("AMENT_PREFIX_PATH", ".", "share/fresh_1"),
+        ("CMAKE_PREFIX_PATH", ".", "share/fresh_2"),  # ROS 1: /opt/ros/noetic, a workspace's devel
+        ("ROS_PACKAGE_PATH", "share", "share/fresh_3"),
+        ("ROS_PACKAGE_PATH", "src", "src/repository/fresh_4"),
+        ("ROS_PACKAGE_PATH", "src/fresh_5", "src/fresh_5"),
+    ],
+)
 def test_types_of_packages_that_are_installed_are_known(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, variable: str, entry: str, package: str
 ) -> None:
-    file = tmp_path / "share" / "fresh_msgs" / "msg" / "Fresh.msg"
-    file.parent.mkdir(parents=True)
-    file.write_text("float64 value\n", encoding="utf-8")
-    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    folder = tmp_path / package
+    for kind, text in (
+        ("msg", "time at\n"),
+        ("srv", "bool on\n---\n"),
+        ("action", "byte b\n---\n---\nFresh f\n"),
+    ):
+        (folder / kind).mkdir(parents=True)
+        (folder / kind / f"Fresh.{kind}").write_text(text, encoding="utf-8")
+    (folder / "package.xml").write_text("<package/>", encoding="utf-8")
+    monkeypatch.setenv(variable, str(tmp_path / entry))
     stored_interfaces.cache_clear()
-    line = "properties: {p: {topic: t, type: fresh_msgs/msg/Fresh, fields: [value]}}"
-    check_mapping(read_mapping(line), stored_interfaces())
+    text = (
+        "properties: {p: {topic: t, type: PACKAGE/Fresh, fields: [at]}}\n"
+        "operations:\n"
+        "  s: {service: s, type: PACKAGE/Fresh, request: {on: true}}\n"
+        "  a: {action: a, type: PACKAGE/Fresh, goal: {b: 1}}\n"
+    ).replace("PACKAGE", folder.name)
+    check_mapping(read_mapping(text), stored_interfaces())
     stored_interfaces.cache_clear()
