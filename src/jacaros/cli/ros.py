@@ -113,9 +113,9 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
 def show_command(name: str, as_json: bool, **graph: Any) -> None:
     """Show NAME: a topic, service, action or node of the graph, or a type such as nav_msgs/msg/Odometry.
 
-    Tells its fields with their types and units, who is there with which quality of service, a message that is
-    just coming, and what a mapping file would say of it.
-    """  # fmt: skip
+    Shows its fields with their types, bounds, units and constants, who is there with which quality of
+    service, a message that is just coming, and what a mapping file would say of it.
+    """
     from jacaros.cli.graph import showing
     from jacaros.cli.graph.joining import Joined
     from jacaros.cli.graph.kinds import find

@@ -1,7 +1,7 @@
 """The types of message fields, read from the three notations in which client libraries tell them."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 TIME = "builtin_interfaces/msg/Time"
@@ -26,12 +26,19 @@ class FieldType:
         array: it is an array or sequence of *base*.
         length: exact length of an array, greatest length of a bounded sequence, 0 without a limit.
         fixed: *length* is exact.
+        bound: greatest number of characters of a string, or of each in an array; 0 without a limit.
     """
 
     base: str
     array: bool = False
     length: int = 0
     fixed: bool = False
+    bound: int = 0
+
+    @property
+    def element(self) -> "FieldType":
+        """The type of a single element of an array."""
+        return FieldType(self.base, bound=self.bound)
 
     @property
     def is_message(self) -> bool:
@@ -44,11 +51,12 @@ class FieldType:
         return self.base in INTEGER_RANGES or self.base in FLOATS or self.base == "bool"
 
     def __str__(self) -> str:
+        single = f"{self.base}<={self.bound}" if self.bound else self.base
         if not self.array:
-            return self.base
+            return single
         if self.fixed:
-            return f"{self.base}[{self.length}]"
-        return f"{self.base}[<={self.length}]" if self.length else f"{self.base}[]"
+            return f"{single}[{self.length}]"
+        return f"{single}[<={self.length}]" if self.length else f"{single}[]"
 
 
 _ROS1 = re.compile(r"(?P<base>[\w/]+)(?P<array>\[(?P<length>\d*)\])?")
@@ -73,23 +81,23 @@ def from_ros1(text: str) -> FieldType:
 
 _ROS2_ARRAY = re.compile(r"(?P<base>.+)\[(?P<length>\d+)\]")
 _ROS2_SEQUENCE = re.compile(r"sequence<(?P<base>.+?)(?:,\s*(?P<length>\d+))?>")
-_ROS2_STRING = re.compile(r"w?string(<\d+>)?")
+_ROS2_STRING = re.compile(r"w?string(<(?P<bound>\d+)>)?")
 _ROS2_BASES = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 
 
 def from_ros2(text: str) -> FieldType:
     """Read the notation of ROS 2's Python classes: ``sequence<double, 3>``, ``double[36]``, ``string``."""
     if match := _ROS2_SEQUENCE.fullmatch(text):
-        return FieldType(_ros2_base(match["base"]), array=True, length=int(match["length"] or 0))
+        return replace(_ros2_single(match["base"]), array=True, length=int(match["length"] or 0))
     if match := _ROS2_ARRAY.fullmatch(text):
-        return FieldType(_ros2_base(match["base"]), array=True, length=int(match["length"]), fixed=True)
-    return FieldType(_ros2_base(text))
+        return replace(_ros2_single(match["base"]), array=True, length=int(match["length"]), fixed=True)
+    return _ros2_single(text)
 
 
-def _ros2_base(text: str) -> str:
-    if _ROS2_STRING.fullmatch(text):
-        return "string"
-    return _full(_ROS2_BASES.get(text, text))
+def _ros2_single(text: str) -> FieldType:
+    if match := _ROS2_STRING.fullmatch(text):
+        return FieldType("string", bound=int(match["bound"] or 0))
+    return FieldType(_full(_ROS2_BASES.get(text, text)))
 
 
 _NAME, _ARRAY = "NAME", "ARRAY"
@@ -99,11 +107,12 @@ def from_rosbags(description: Any) -> FieldType:
     """Read the nested tuples of the ``rosbags`` typestore."""
     node, content = description
     if node.name == "BASE":
-        return FieldType({"octet": "byte"}.get(content[0], content[0]))
+        base, bound = content
+        return FieldType({"octet": "byte"}.get(base, base), bound=bound)
     if node.name == _NAME:
         return FieldType(content)
     element, length = content
-    return FieldType(from_rosbags(element).base, array=True, length=length, fixed=node.name == _ARRAY)
+    return replace(from_rosbags(element), array=True, length=length, fixed=node.name == _ARRAY)
 
 
 def _full(base: str) -> str:

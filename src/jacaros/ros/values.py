@@ -17,12 +17,12 @@ def single_value(field: FieldType, value: Any) -> bool | int | float | str:
 
     Raises:
         TypeError: another kind of value is needed.
-        ValueError: the number is out of range.
+        ValueError: the number is out of range, or the string too long.
     """
     if hasattr(value, "item") and getattr(value, "shape", None) == ():
         value = value.item()
     if field.base == "string":
-        return _text(value)
+        return _text(field, value)
     if field.base == "bool":
         if isinstance(value, bool):
             return value
@@ -34,8 +34,10 @@ def single_value(field: FieldType, value: Any) -> bool | int | float | str:
     raise TypeError(f"{written(value)} is given")
 
 
-def _text(value: Any) -> str:
+def _text(field: FieldType, value: Any) -> str:
     if isinstance(value, str):
+        if field.bound and len(value) > field.bound:
+            raise ValueError(f"a string of {len(value)} characters is given")
         return str.__str__(value)  # subclasses, such as atoms of the agents' language, become plain texts
     raise TypeError(f"{written(value)} is given")
 

@@ -218,3 +218,20 @@ def test_a_field_is_shown_with_the_constants_that_name_its_values(capsys: pytest
     ]
     at = next(number for number, line in enumerate(told) if line.startswith("  voltage "))
     assert not told[at + 1].startswith("      ")
+
+
+def test_constants_that_name_no_single_field_are_shown_after_the_fields(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    shown = told(capsys, "show", "visualization_msgs/msg/MarkerArray")
+    _, others = shown.split("\nconstants of visualization_msgs/msg/Marker\n")
+    assert others.splitlines()[:2] == ["      0 = ARROW", "      1 = CUBE"]
+    assert "      9 = TEXT_VIEW_FACING" in others  # not the value of the string `text`
+    data = json.loads(told(capsys, "show", "visualization_msgs/msg/MarkerArray", "--json"))
+    assert data["constants"]["visualization_msgs/msg/Marker"]["ARROW"] == 0
+    assert "constants of" not in told(capsys, "show", "sensor_msgs/msg/JoyFeedback")
+
+
+def test_bounds_of_strings_and_lists_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "string<=255" in told(capsys, "show", "type_description_interfaces/msg/FieldType")
+    assert "float64[<=3]" in told(capsys, "show", "shape_msgs/msg/SolidPrimitive")

@@ -16,6 +16,7 @@ from jacaros.env.values import Atom, Structure, text
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
+from jacaros.ros.values import single_value
 from jacaros.yaml_nodes import Problem
 
 Fill = Callable[[Sequence[object], float], dict[str, Any]]
@@ -201,11 +202,17 @@ def _constant(
     except (TypeError, ValueError) as error:
         raise WrongPath(f"{path} ({leaf}) cannot be {value!r}: {error}", "write another value") from None
     last = part.target.steps[-1]
-    if isinstance(last, str):
-        try:
+    try:
+        if isinstance(last, str):
             interfaces.message(owner, **{last[1:]: converted})
-        except MessageMismatch as error:
-            raise WrongPath(str(error), "write another value, or a parameter: $name") from None
+        elif not leaf.is_message:
+            single_value(leaf, converted)
+    except MessageMismatch as error:
+        raise WrongPath(str(error), "write another value, or a parameter: $name") from None
+    except (TypeError, ValueError) as error:
+        raise WrongPath(
+            f"{path} is {leaf}, but {error}", "write another value, or a parameter: $name"
+        ) from None
     return converted
 
 

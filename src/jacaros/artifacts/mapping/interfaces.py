@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
-from jacaros.ros.fields import FieldType
+from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.interfaces import installed
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.typestore import RosbagsSchema
@@ -55,6 +55,37 @@ def constants(interfaces: Interfaces, type_name: str) -> dict[str, object]:
         and "__" not in name
         and isinstance(value, bool | int | float | str | bytes)
     }
+
+
+_SMALL = ("byte", "char", "int8", "uint8")
+"""Types of fields that hold one of a few constants."""
+
+
+def constants_by_field(interfaces: Interfaces, type_name: str) -> dict[str, dict[str, object]]:
+    """The constants of a message type by the field whose values they name; those that belong to no field under ``""``.
+
+    A constant belongs to the field whose name it begins with.  If the type has a single integer field, and that is of
+    8 bits, the constants of all other names belong to it, provided that no two have the same value.
+    """
+    fields = interfaces.fields(type_name)
+    longest = sorted(fields, key=len, reverse=True)
+    found: dict[str, dict[str, object]] = {}
+    for name, value in constants(interfaces, type_name).items():
+        owners = (field for field in longest if name.startswith(f"{field.upper()}_"))
+        owner = next((field for field in owners if _can_have(fields[field], value)), "")
+        found.setdefault(owner, {})[name] = value
+    others = found.get("", {})
+    numbers = [name for name, kind in fields.items() if kind.base in INTEGER_RANGES]
+    alone = len(numbers) == 1 and numbers[0] not in found and fields[numbers[0]].base in _SMALL
+    if alone and len(set(others.values())) == len(others) > 1:
+        found[numbers[0]] = found.pop("")
+    return found
+
+
+def _can_have(field: FieldType, constant: object) -> bool:
+    if field.base in INTEGER_RANGES:
+        return isinstance(constant, int | bytes)
+    return field.base == "string" if isinstance(constant, str) else field.base in FLOATS
 
 
 def chosen(known: Mapping[str, object], field: str, prefix: str) -> dict[str, object]:

@@ -98,12 +98,13 @@ def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
             raise WrongPath(
                 f"'{path.text}': {shown or 'the message'} is {here}, and no array", f"write {shown}"
             )
-        if isinstance(step, int) and here.fixed and not -here.length <= step < here.length:
+        if isinstance(step, int) and here.length and not -here.length <= step < here.length:
+            at_most = "" if here.fixed else "at most "
             raise WrongPath(
-                f"'{path.text}': {shown} has {here.length} elements",
+                f"'{path.text}': {shown} has {at_most}{here.length} elements",
                 f"elements are {shown}[0] to {shown}[{here.length - 1}]",
             )
-        here = FieldType(here.base)
+        here = here.element
         shown = f"{shown}[{step}]"
     return here
 

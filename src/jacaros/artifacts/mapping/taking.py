@@ -227,6 +227,11 @@ def check_names(conversion: Conversion, path: str, base: str) -> None:
         ):
             cure = f"write names: {{true: {name}}}" if base == "bool" else f"write values of {base}"
             raise WrongPath(f"'names' has {value!r}, and {path} is {base}", cure)
+        low, high = INTEGER_RANGES.get(base, (-math.inf, math.inf))
+        if isinstance(value, int) and not low <= value <= high:
+            raise WrongPath(
+                f"'names' has {value}, and {path} is {base}", f"write values from {low} to {high}"
+            )
 
 
 _NAMED: dict[str, tuple[type, ...]] = {
@@ -328,7 +333,7 @@ def _named(field: FieldPart, root: FieldType, interfaces: Interfaces) -> Convert
                 f"write prefix: ... with which those of '{last}' begin, or names: {{{plain}: {name}}}",
             )
         names[plain] = Atom(name)
-    return lambda raw: names.get(value := _octet(raw), value)
+    return lambda raw: names.get(value := octet(raw), value)
 
 
 def owner_of(path: Path, root: FieldType, interfaces: Interfaces) -> tuple[str, str]:
@@ -342,7 +347,7 @@ def owner_of(path: Path, root: FieldType, interfaces: Interfaces) -> tuple[str, 
     return follow(above, root, interfaces.fields).base, last[1:]
 
 
-def _octet(raw: Any) -> Any:
+def octet(raw: Any) -> Any:
     return raw[0] if isinstance(raw, bytes) and len(raw) == 1 else raw
 
 
@@ -353,7 +358,7 @@ def _plain(path: str, single: FieldType, interfaces: Interfaces) -> Convert:
     if single.is_message:
         return _structure(path, single.base, interfaces)
     if single.base == "byte":
-        return lambda raw: int(_octet(raw))
+        return lambda raw: int(octet(raw))
     if single.base in FLOATS:
         return lambda raw: _finite(path, float(raw))
     if single.base == "bool":

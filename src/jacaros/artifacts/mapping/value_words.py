@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 
 from jacaros.artifacts.mapping.declared import Conversion, FieldPart, Source, ValuePart
-from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
+from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants, constants_by_field
 from jacaros.artifacts.mapping.message_units import unit_at
 from jacaros.artifacts.mapping.paths import Path, WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
-from jacaros.artifacts.mapping.taking import owner_of
+from jacaros.artifacts.mapping.taking import octet, owner_of
+from jacaros.env.values import text
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
@@ -52,7 +53,8 @@ def word_for_field(
         return ""
     whole = field.shares is not None or field.conversion.kind in ("count", "min", "max", "mean")
     levels = 0 if whole else field.path.lists + leaf.array
-    return "list of " * levels + word
+    lists = "list of " * levels if field.path.lists else _list_of(leaf) * levels
+    return lists + word
 
 
 def word_for_value(part: ValuePart, message: FieldType, interfaces: Interfaces) -> str:
@@ -64,7 +66,13 @@ def word_for_value(part: ValuePart, message: FieldType, interfaces: Interfaces) 
         word = _converted(part.conversion, part.target, leaf, message, interfaces)
     except (WrongPath, UnknownInterface):
         return ""
-    return "list of " * leaf.array + word
+    return _list_of(leaf) * leaf.array + word
+
+
+def _list_of(leaf: FieldType) -> str:
+    if not leaf.length:
+        return "list of "
+    return f"list ({leaf.length} elements) of " if leaf.fixed else f"list (at most {leaf.length}) of "
 
 
 def _elements(part: ValuePart, element: FieldType, interfaces: Interfaces) -> str:
@@ -89,7 +97,21 @@ def _converted(
         return "whole number"
     unit = "radians" if kind in ANGLES else unit_at(path, root, interfaces)
     unit = _UNIT_WORDS.get(unit, unit)
-    return _kind(leaf.base, conversion, "number" if kind in (*ANGLES, "mean") else "", unit)
+    word = _kind(leaf.base, conversion, "number" if kind in (*ANGLES, "mean") else "", unit)
+    limited = not kind and not unit and conversion.line is None and not leaf.is_message
+    return word + _limits(path, leaf, root, interfaces) if limited else word
+
+
+def _limits(path: Path, leaf: FieldType, root: FieldType, interfaces: Interfaces) -> str:
+    """What the definition allows: a longest string, the constants of the field, or the range of a small integer."""
+    longest = f" of at most {leaf.bound} characters" if leaf.bound else ""
+    if path.steps and isinstance(path.steps[-1], str) and path.steps[-1].startswith("."):
+        owner, last = owner_of(path, root, interfaces)
+        if named := constants_by_field(interfaces, owner).get(last):
+            values = [f"{text(octet(value), quoted=True)} = {name}" for name, value in named.items()]
+            return f"{longest} ({_listed(values)})"
+    low, high = INTEGER_RANGES.get(leaf.base, (0, 0))
+    return f" from {low} to {high}" if 0 < high < 2**16 else longest
 
 
 def _kind(base: str, conversion: Conversion, kind: str, unit: str) -> str:
@@ -127,5 +149,8 @@ def _shown_unit(conversion: Conversion, unit: str) -> str:
 
 
 def _names(names: Sequence[str]) -> str:
-    more = ", ..." if len(names) > _FEW else ""
-    return f"one of {', '.join(names[:_FEW])}{more}"
+    return f"one of {_listed(names)}"
+
+
+def _listed(words: Sequence[str]) -> str:
+    return ", ".join(words[:_FEW]) + (", ..." if len(words) > _FEW else "")

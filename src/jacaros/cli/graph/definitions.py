@@ -28,6 +28,11 @@ class Leaf:
     unit: str = ""
     owner: str = ""
 
+    @property
+    def name(self) -> str:
+        """The last field of the path."""
+        return self.path.rpartition(".")[2]
+
 
 def leaves(fields: Fields, type_name: str, path: str = "", unit: str = "") -> Iterator[Leaf]:
     """All values of a message type, in the order of its definition; raises `UnknownInterface`."""
@@ -40,6 +45,14 @@ def leaves(fields: Fields, type_name: str, path: str = "", unit: str = "") -> It
             yield Leaf(here, kind, "s")
         else:
             yield from leaves(fields, kind.base, f"{here}[0]" if kind.array else here, own)
+
+
+def messages(fields: Fields, type_name: str) -> Iterator[str]:
+    """The type itself and the types of the messages in it, times left out; raises `UnknownInterface`."""
+    yield type_name
+    for kind in fields(type_name).values():
+        if kind.is_message and not is_time(kind):
+            yield from messages(fields, kind.base)
 
 
 def is_time(kind: FieldType) -> bool:

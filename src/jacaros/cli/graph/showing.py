@@ -2,20 +2,18 @@
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-from jacaros.artifacts.mapping.interfaces import Interfaces, constants
-from jacaros.cli.graph.definitions import Leaf, is_time, leaves, parts, value_at
+from jacaros.artifacts.mapping.interfaces import Interfaces, constants_by_field
+from jacaros.cli.graph.definitions import Leaf, is_time, leaves, messages, parts, value_at
 from jacaros.cli.graph.first_mapping import lines_for
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.kinds import Kind, Thing
 from jacaros.cli.graph.listening import one_message
-from jacaros.cli.graph.values import is_named
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import RosError, UnknownInterface
-from jacaros.ros.fields import INTEGER_RANGES
 from jacaros.ros.graph import Endpoint
 from jacaros.ros.message import to_seconds
 
@@ -68,6 +66,8 @@ async def described(joined: Joined, thing: Thing) -> dict[str, Any]:
         name: [_row(joined, leaf, message) for leaf in leaves(joined.backend.fields, type_name)]
         for name, type_name in parts(thing.type_name).items()
     }
+    if others := _other_constants(joined.backend, parts(thing.type_name).values()):
+        data["constants"] = others
     if thing.kind is not Kind.TYPE:
         data["mapping"] = lines_for(joined, thing)
     return data
@@ -105,21 +105,22 @@ def _row(joined: Joined, leaf: Leaf, message: Any) -> dict[str, Any]:
         row["type"] = row["type"].rpartition("/")[2].lower()
     if leaf.unit:
         row["unit"] = leaf.unit
-    if named := _constants(joined.backend, leaf):
-        row["constants"] = named
+    if named := leaf.owner and constants_by_field(joined.backend, leaf.owner).get(leaf.name):
+        row["constants"] = _plain_constants(named)
     if message is not None:
         row["value"] = _plain(value_at(message, leaf.path), leaf)
     return row
 
 
-def _constants(types: Interfaces, leaf: Leaf) -> dict[str, Any]:
-    """The constants that name the values of a field."""
-    name = leaf.path.rpartition(".")[2]
-    if leaf.type.base not in INTEGER_RANGES or not is_named(types, leaf.owner, name, leaf.type):
-        return {}
-    known = constants(types, leaf.owner)
-    own = {each: value for each, value in known.items() if each.startswith(f"{name.upper()}_")}
-    return {each: _single(value) for each, value in (own or known).items()}
+def _other_constants(types: Interfaces, type_names: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """The constants that belong to no single field, by the message type that has them."""
+    owners = dict.fromkeys(owner for name in type_names for owner in messages(types.fields, name))
+    others = {owner: constants_by_field(types, owner).get("", {}) for owner in owners}
+    return {owner: _plain_constants(named) for owner, named in others.items() if named}
+
+
+def _plain_constants(named: Mapping[str, object]) -> dict[str, Any]:
+    return {name: _single(value) for name, value in named.items()}
 
 
 def _plain(value: Any, leaf: Leaf) -> Any:
@@ -169,6 +170,10 @@ def as_text(data: dict[str, Any]) -> Iterator[str]:
             else "message just heard"
         )
         yield from _table(rows)
+    for type_name, named in data.get("constants", {}).items():
+        yield ""
+        yield f"constants of {type_name}"
+        yield from _constant_lines(named)
     if data.get("heard") is False:
         yield ""
         yield "no message was heard; --timeout S waits longer"
@@ -210,8 +215,11 @@ def _table(rows: list[dict[str, Any]]) -> Iterator[str]:
     for row, cell in zip(rows, cells, strict=True):
         line = "  ".join(text.ljust(width) for text, width in zip(cell, widths, strict=False))
         yield f"  {line}  {cell[3]}".rstrip()
-        for name, value in row.get("constants", {}).items():
-            yield f"      {value} = {name}"
+        yield from _constant_lines(row.get("constants", {}))
+
+
+def _constant_lines(named: dict[str, Any]) -> Iterator[str]:
+    return (f"      {_plain_text(value)} = {name}" for name, value in named.items())
 
 
 def _text(row: dict[str, Any]) -> str:

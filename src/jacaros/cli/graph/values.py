@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from jacaros.artifacts.mapping.interfaces import Interfaces, constants
+from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants, constants_by_field
 from jacaros.artifacts.mapping.message_units import unit_of
 from jacaros.cli.graph.definitions import is_time
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
@@ -45,8 +45,6 @@ _LEFT = (
 a sensor is."""
 _TURNS = ("angular", "angular_velocity")
 """Vectors of a robot on wheels of which only z is not zero."""
-_SMALL = ("byte", "char", "int8", "uint8")
-"""Types of fields that hold one of a few constants."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,20 +175,15 @@ def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path:
     if kind.base in FLOATS:
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
         return Value(path, word, conversion, _UNITS.get(unit, Unit(unit, 3)))
-    if kind.base in INTEGER_RANGES and is_named(types, type_name, name, kind):
+    if kind.base in INTEGER_RANGES and _is_named(types, type_name, name):
         return Value(path, word, "as: name")
     return Value(path, word)
 
 
-def is_named(types: Interfaces, type_name: str, name: str, kind: FieldType) -> bool:
+def _is_named(types: Interfaces, type_name: str, name: str) -> bool:
     """Whether the constants of a message are names for the values of a field, each value having one."""
-    known = constants(types, type_name)
-    own = [value for constant, value in known.items() if constant.startswith(f"{name.upper()}_")]
-    if own:
-        return len(set(own)) == len(own)
-    numbers = [each for each in types.fields(type_name).values() if each.base in INTEGER_RANGES]
-    alone = len(numbers) == 1 and kind.base in _SMALL
-    return alone and len(known) > 1 and len(set(known.values())) == len(known)
+    meant = list(chosen(constants(types, type_name), name, "").values())
+    return name in constants_by_field(types, type_name) and len(set(meant)) == len(meant)
 
 
 def _with_own_names(values: list[Value]) -> list[Value]:

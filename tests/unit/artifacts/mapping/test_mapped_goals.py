@@ -161,6 +161,30 @@ operations:
 """
 
 
+BOUNDED = """
+operations:
+  say:
+    parameters: [text]
+    publish: s
+    type: type_description_interfaces/msg/FieldType
+    fields: {nested_type_name: $text}
+  form: {parameters: [sizes], publish: f, type: shape_msgs/msg/SolidPrimitive, fields: {dimensions: $sizes}}
+  buzz: {parameters: [strength], publish: b, type: sensor_msgs/msg/JoyFeedback, fields: {id: $strength}}
+"""
+
+
+def test_a_value_outside_the_range_of_its_field_fails_the_operation() -> None:
+    async def body(lab: Lab, artifact: ArtifactId) -> None:
+        assert (await lab.call(artifact, "say", 256 * "x")).reason == 'wrong_value("nested_type_name")'
+        assert (await lab.call(artifact, "form", [1, 2, 3, 4])).reason == 'wrong_value("dimensions")'
+        assert (await lab.call(artifact, "buzz", 256)).reason == 'wrong_value("id")'
+        await lab.do(artifact, "say", 255 * "x")
+        await lab.do(artifact, "form", [1, 2, 3])
+        await lab.do(artifact, "buzz", 255)
+
+    with_mapped(BOUNDED, body)
+
+
 def test_a_negative_duration_is_refused_before_anything_is_sent() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         assert (await lab.call(artifact, "mark", -3)).reason == 'wrong_value("lifetime")'

@@ -68,6 +68,21 @@ properties:
         ("sensor_msgs/msg/Image", "{path: ., as: object}", "Object: a reference to sensor_msgs/msg/Image"),
         ("geometry_msgs/msg/PoseStamped", "pose.position", "Position: Point"),
         ("tf2_msgs/msg/TFMessage", "transforms[*].child_frame_id", "ChildFrameId: list of text"),
+        (
+            "sensor_msgs/msg/JoyFeedback",
+            "type",
+            "Type: whole number (0 = TYPE_LED, 1 = TYPE_RUMBLE, 2 = TYPE_BUZZER)",
+        ),
+        ("sensor_msgs/msg/JoyFeedback", "id", "Id: whole number from 0 to 255"),
+        ("sensor_msgs/msg/JoyFeedback", "{path: id, scale: 2}", "Id: number."),
+        ("visualization_msgs/msg/Marker", "text", "Text: text."),  # TEXT_VIEW_FACING is a number
+        ("shape_msgs/msg/SolidPrimitive", "dimensions", "Dimensions: list (at most 3) of number"),
+        ("nav_msgs/msg/Odometry", "pose.covariance", "Covariance: list (36 elements) of number"),
+        (
+            "type_description_interfaces/msg/FieldType",
+            "nested_type_name",
+            "NestedTypeName: text of at most 255 characters",
+        ),
         ("made_up_msgs/msg/Thing", "data", "from topic t (made_up_msgs/msg/Thing)"),
     ],
 )

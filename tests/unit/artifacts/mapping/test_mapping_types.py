@@ -291,6 +291,29 @@ def test_a_duration_is_not_negative(field: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("type_name", "field", "why"),
+    [
+        ("sensor_msgs/Joy", "'buttons[0]': 3000000000", "it must be from -2147483648 to 2147483647"),
+        ("sensor_msgs/JoyFeedback", "id: {value: 30, scale: 0.1}", "it must be from 0 to 255"),
+        ("sensor_msgs/JoyFeedback", "type: {value: $x, names: {300: loud}}", "'names' has 300"),
+        ("shape_msgs/SolidPrimitive", "dimensions: [1, 2, 3, 4]", "but 4 elements are given"),
+        ("shape_msgs/SolidPrimitive", "'dimensions[3]': 1", "dimensions has at most 3 elements"),
+        (
+            "type_description_interfaces/msg/FieldType",
+            f"nested_type_name: {256 * 'x'}",
+            "string<=255, but a string of 256 characters is given",
+        ),
+    ],
+)
+def test_a_value_outside_the_range_of_its_field_is_refused(type_name: str, field: str, why: str) -> None:
+    line = f"operations: {{o: {{parameters: [x], publish: t, type: {type_name}, fields: {{{field}}}}}}}"
+    line = line if "$x" in line else line.replace("parameters: [x], ", "")
+    with pytest.raises(MappingError) as caught:
+        check_mapping(read_mapping(line), stored_interfaces())
+    assert why in str(caught.value)
+
+
+@pytest.mark.parametrize(
     ("variable", "entry", "package"),
     [
         ("AMENT_PREFIX_PATH", ".", "share/fresh_1"),
