@@ -16,7 +16,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, TextIO
 
 LIMIT = 8 << 20
 """Bytes that may wait for a sink."""
@@ -292,6 +292,77 @@ class Output:
             if limit is not None and now >= begun + limit:
                 return
             self._changed.wait(0.1)
+
+
+class Printed(io.TextIOBase):
+    """What stands in for a standard stream while a run lasts, for code that prints by itself.
+
+    ``print`` in project code, loggers and warnings write to `sys.stdout` and `sys.stderr` directly, where a full disk
+    would raise in the middle of an operation and a blocked reader would hold up the loop.  Here complete lines go to
+    *output*.  For all else, such as the encoding or the file descriptor, it is like the stream itself.
+
+    Args:
+        stream: the stream.
+        output: writes to it.
+    """
+
+    def __init__(self, stream: TextIO, output: Output) -> None:
+        self._stream, self._output = stream, output
+        self._lock = threading.RLock()
+        self._line = ""
+
+    def write(self, text: str) -> int:
+        """Write the lines that *text* completes; the rest waits for its end, for `flush`, or for a line of an agent.
+
+        Raises:
+            TypeError: *text* is no string.
+        """
+        if not isinstance(text, str):
+            raise TypeError(f"write() argument must be str, not {type(text).__name__}")
+        with self._lock:
+            lines, end, rest = (
+                (self._line + text).rpartition("\n") if "\n" in text else ("", "", self._line + text)
+            )
+            self._line = rest
+            if end:
+                self._output.write(lines + end)
+        return len(text)
+
+    def flush(self) -> None:
+        """Write what there is of the last line."""
+        with self._lock:
+            line, self._line = self._line, ""
+            if line:
+                self._output.write(line)
+
+    def writable(self) -> bool:
+        """Return True."""
+        return True
+
+    def close(self) -> None:
+        """Flush: the process needs the stream itself."""
+        self.flush()
+
+    def isatty(self) -> bool:
+        """Return whether the stream is a terminal."""
+        return self._stream.isatty()
+
+    def fileno(self) -> int:
+        """Return the stream's file descriptor."""
+        return self._stream.fileno()
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        """The encoding of the stream."""
+        return self._stream.encoding
+
+    @property
+    def errors(self) -> str | None:  # type: ignore[override]
+        """What becomes of characters that the encoding lacks."""
+        return self._stream.errors
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 class _Descriptor:

@@ -52,6 +52,69 @@ def test_output_that_cannot_be_written_fails_no_step(tmp_path: Path, target: str
     assert ended.stderr.count(b"warning: cannot write to standard output: ") == 1
 
 
+BELL = """
+import logging
+import sys
+from jacaros.env import Artifact, operation
+
+class Bell(Artifact):
+    @operation
+    def ring(self, times: int) -> None:
+        for number in range(times):
+            print("ring" * (1 if times < 9 else 30), number)
+        print("never ended", end="")
+
+    @operation
+    def complain(self) -> None:
+        logging.getLogger("bell").warning("a crack")
+        sys.stderr.write("and rust\\n")
+"""
+
+RING = """
+!go.
++!go
+  <- makeArtifact(bell, "Bell", [], Id);
+     focus(Id);
+     .print("before");
+     ring(TIMES);
+     complain;
+     .print("after");
+     .stopMAS(0, 7).
+-!go <- .stopMAS(0, 3).
+"""
+
+
+def ring(folder: Path, times: int, **how: object) -> "subprocess.CompletedProcess[bytes]":
+    (folder / "artifacts.py").write_text(BELL, encoding="utf-8")
+    return run(folder, RING.replace("TIMES", str(times)), **how)
+
+
+def test_what_artifacts_print_stands_between_the_lines_of_agents(tmp_path: Path) -> None:
+    ended = ring(tmp_path, 2, stdout=subprocess.PIPE)
+    assert ended.returncode == 7
+    assert ended.stdout == b"[agent] before\nring 0\nring 1\nnever ended[agent] after\n"
+    assert ended.stderr.endswith(b"a crack\nand rust\n")
+
+
+def test_an_artifact_may_print_although_nobody_reads(tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    ended = ring(tmp_path, 90_000, stdout=writer)
+    os.close(reader)
+    os.close(writer)
+    assert ended.returncode == 7
+    assert b"lines could not be written to standard output" in ended.stderr
+
+
+@pytest.mark.parametrize("target", [">/dev/full", ">&-", ">/dev/full 2>/dev/full", ">&- 2>&-"])
+def test_what_an_artifact_prints_on_a_full_disk_fails_no_operation(tmp_path: Path, target: str) -> None:
+    (tmp_path / "artifacts.py").write_text(BELL, encoding="utf-8")
+    (tmp_path / "agent.asl").write_text(RING.replace("TIMES", "2"), encoding="utf-8")
+    command = f'"{sys.executable}" -m jacaros run "{tmp_path}/agent.asl" {target}'
+    ended = subprocess.run(command, shell=True, stderr=subprocess.PIPE, timeout=60, check=False)
+    assert ended.returncode == 7
+    assert ended.stderr.count(b"warning: cannot write to standard output: ") == ("2>" not in target)
+
+
 def test_a_run_on_the_virtual_clock_ends_with_its_reader(tmp_path: Path) -> None:
     reader, writer = os.pipe()
     os.close(reader)

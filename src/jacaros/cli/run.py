@@ -220,7 +220,8 @@ def _launch(file: Path | Deployment, options: RunOptions, console: StandardConso
             console.when_gone(lambda: loop.call_soon_threadsafe(end))
 
     if not outputs.any:
-        return launch(file, options, console, begin)
+        with console.with_prints():
+            return launch(file, options, console, begin)
     # Imported here: numpy, rich and the simulator are for those who want to see something.
     from jacaros.cli.watching import Watching
 
@@ -228,7 +229,7 @@ def _launch(file: Path | Deployment, options: RunOptions, console: StandardConso
         begin(mas)
         watching.begin(mas)
 
-    with Watching(console, outputs) as watching:
+    with Watching(console, outputs) as watching, console.with_prints():
         return launch(file, options, watching, begin_watched)
 
 

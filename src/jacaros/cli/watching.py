@@ -1,5 +1,6 @@
 """Recording, replay page, ground truth and terminal view of a run."""
 
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -24,7 +25,7 @@ class Watching:
     """The console of a run that is watched; passes everything on, to the watchers too.
 
     Args:
-        console: where the lines go.
+        console: where the lines go.  The view is drawn on what the standard error output is now.
         outputs: what else is to be made of the run.
     """
 
@@ -37,6 +38,7 @@ class Watching:
             self._recorder = Recorder(record, replay is not None, self._warn, outputs.record_limit)
         self._ground_truth: GroundTruthFile | None = None
         self._view: TerminalView | None = None
+        self._terminal = sys.stderr
         self._watch: Watch | None = None
 
     def begin(self, mas: System) -> None:
@@ -52,7 +54,7 @@ class Watching:
         if self._recorder is not None:
             watchers.append(self._recorder)
         if self._outputs.view:
-            self._view = TerminalView()
+            self._view = TerminalView(stream=self._terminal)
             watchers.append(self._view)
         self._watch = watch_of(mas, watchers, world)
         self._watch.start()

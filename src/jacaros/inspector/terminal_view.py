@@ -72,16 +72,18 @@ class TerminalView:
     """Shows a run; told of it like a recorder, see `jacaros.inspector.watch.Watcher`.
 
     Args:
-        console: where to draw; standard error by default, without waiting for a reader.
+        console: where to draw; *stream* by default, without waiting for a reader.
         wall: seconds on the wall.
+        stream: the terminal; standard error by default.
     """
 
     def __init__(
         self,
         console: Console | None = None,
         wall: Callable[[], float] = time.monotonic,
+        stream: TextIO | None = None,
     ) -> None:
-        self._screen = Screen(sys.stderr) if console is None else None
+        self._screen = Screen(stream or sys.stderr) if console is None else None
         self._drawing: Mapping[str, Any] = {}
         self._open: dict[str, bool] = {}
         self._console = console if console is not None else Console(file=cast(TextIO, self._screen))

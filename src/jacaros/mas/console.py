@@ -1,10 +1,12 @@
 """Where a run writes: output of the agents goes out as ``[agent] text``, everything else to the errors."""
 
+import contextlib
+import os
 import sys
-from collections.abc import Callable
-from typing import Protocol
+from collections.abc import Callable, Iterator
+from typing import Protocol, TextIO
 
-from jacaros.output import CLOSING, PATIENCE, Output, Stream
+from jacaros.output import CLOSING, PATIENCE, Output, Printed, Stream
 
 LEVELS = ("debug", "info", "warning", "error")
 
@@ -38,17 +40,49 @@ class StandardConsole:
         errors: Stream | None = None,
         patience: float = PATIENCE,
     ) -> None:
-        self._errors = Output(errors or (lambda: sys.stderr), "standard error", None, patience)
-        self._output = Output(output or (lambda: sys.stdout), "standard output", self._warn, patience)
+        self._errors = Output(errors or (lambda: self._standard("stderr")), "standard error", None, patience)
+        self._output = Output(
+            output or (lambda: self._standard("stdout")), "standard output", self._warn, patience
+        )
         self._least = LEVELS.index(level)
+        self._printed: dict[str, Printed] = {}
+        self._streams: dict[str, TextIO | None] = {}
+
+    @contextlib.contextmanager
+    def with_prints(self) -> Iterator[None]:
+        """Take in what other code of the process prints, to write it as safely as the agents' lines and in its order.
+
+        It changes `sys.stdout` and `sys.stderr` of the whole process: only for one that is ours.
+        """
+        with open(os.devnull, "w", encoding="utf-8") as nothing:
+            for name, output in (("stdout", self._output), ("stderr", self._errors)):
+                stream = self._streams[name] = getattr(sys, name)
+                self._printed[name] = Printed(nothing if stream is None else stream, output)
+                setattr(sys, name, self._printed[name])
+            try:
+                yield
+            finally:
+                for name, printed in self._printed.items():
+                    printed.flush()
+                    if getattr(sys, name) is printed:
+                        setattr(sys, name, self._streams[name])
+                self._printed, self._streams = {}, {}
+
+    def _standard(self, name: str) -> Stream | None:
+        stream: Stream | None = self._streams[name] if name in self._streams else getattr(sys, name)
+        return stream
 
     def print(self, agent: str, text: str) -> None:
         """Write a line, so that it is complete for every reader."""
+        if (printed := self._printed.get("stdout")) is not None:
+            printed.flush()
         self._output.write(line_of(agent, text))
 
     def log(self, text: str, level: str = "info") -> None:
         """Write a line for people."""
         if LEVELS.index(level) >= self._least:
+            if (printed := self._printed.get("stderr")) is not None:
+                printed.flush()
             self._errors.write(f"{text}\n")
 
     def when_gone(self, told: Callable[[], object]) -> None:
