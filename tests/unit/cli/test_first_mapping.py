@@ -107,13 +107,14 @@ def shown(types: StoredInterfaces, type_name: str) -> str:
         (
             "odd_msgs/msg/Part",
             [
-                "- name\n      - {path: state, as: name}\n",
+                "- name\n      - {path: state, as: name}  # idle, busy\n",
                 "# there are also weights",
                 "dead_band: [0, 0, 0.02, 0.02]",
             ],
         ),
-        ("odd_msgs/msg/Modes", ["- {path: mode, as: name}\n      - other\n      - on\n"]),
+        ("odd_msgs/msg/Modes", ["- {path: mode, as: name}  # auto, manual\n      - other\n      - on\n"]),
         ("odd_msgs/msg/Alike", ["- kind\n"]),
+        ("type_description_interfaces/msg/FieldType", ["- nested_type_name  # at most 255 characters\n"]),
         ("odd_msgs/msg/Parts", ["t(Name, State, X, Y): name, state, metres, metres, one for each of parts"]),
         (
             "odd_msgs/msg/Moves",
@@ -147,7 +148,7 @@ def test_lists_are_parameters_and_frames_are_of_what_has_a_place(types: StoredIn
 
 def test_names_of_constants_are_given_and_results_are_rounded(types: StoredInterfaces) -> None:
     text = checked(types, acting(types, "t", "t", "odd_msgs/action/Sort"))
-    assert "order: {value: $order, as: name}" in text
+    assert "order: {value: $order, as: name}  # by_name, by_weight\n" in text
     assert "outputs: [{path: weight, round: 3}]" in text
     assert "t_feedback: {fields: [{path: progress, round: 3}], rate: 2}" in text
     text = checked(types, calling(types, "t", "t", "odd_msgs/srv/Weigh"))

@@ -110,7 +110,7 @@ def _key(elements: Sequence[Value]) -> Value | None:
 
 
 def _fields(values: Sequence[Value]) -> list[str]:
-    return ["fields:", *(f"  - {value.as_field}" for value in values)]
+    return ["fields:", *(f"  - {value.as_field}{value.remark}" for value in values)]
 
 
 def _calm(values: Sequence[Value]) -> list[str]:
@@ -284,14 +284,15 @@ def _filled(types: Interfaces, type_name: str, key: str) -> tuple[list[Value], l
     """The parameters that fill a message, and the lines that do it under *key*."""
     values = values_of(types, type_name)
     inputs, left = values[:MANY], [value.path for value in values[MANY:]]
-    lines = [*_headers(types, type_name), *(f"  {value.path}: {value.as_value}" for value in inputs)]
+    filled = (f"  {value.path}: {value.as_value}{value.remark}" for value in inputs)
+    lines = [*_headers(types, type_name), *filled]
     for name, kind in lists_of(types, type_name):
         if len(inputs) >= MANY or not _can_be_given(kind):
             left.append(name)
         else:
-            value, filled = _list(types, name, kind)
+            value, more = _list(types, name, kind)
             inputs = [*inputs, value]
-            lines += filled
+            lines += more
     if left:
         lines.append(f"  # left as they are: {_some(left)}")
     return inputs, [f"{key}:", *lines] if any(not line.startswith("  #") for line in lines) else []

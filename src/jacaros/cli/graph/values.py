@@ -15,6 +15,9 @@ _QUATERNION = "geometry_msgs/msg/Quaternion"
 MANY = 6
 """More values than this make no good belief."""
 
+_FEW = 8
+"""More names of constants than this make no good comment."""
+
 _CHOSEN: Mapping[str, tuple[str, ...]] = {
     "geometry_msgs/msg/PoseWithCovariance": ("pose",),
     "geometry_msgs/msg/TwistWithCovariance": ("twist",),
@@ -92,12 +95,19 @@ class Value:
         name: for agents, in lower case.
         conversion: further keys of the mapping file, such as ``as: yaw, unit: degrees``; empty for the plain value.
         unit: of the number.
+        limits: the values that the field can have, for people: names of constants, or the longest string.
     """
 
     path: str
     name: str
     conversion: str = ""
     unit: Unit = _NO_NUMBER
+    limits: str = ""
+
+    @property
+    def remark(self) -> str:
+        """A comment at the end of a line of a mapping file."""
+        return f"  # {self.limits}" if self.limits else ""
 
     @property
     def as_field(self) -> str:
@@ -176,8 +186,9 @@ def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path:
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
         return Value(path, word, conversion, _UNITS.get(unit, Unit(unit, 3)))
     if kind.base in INTEGER_RANGES and _is_named(types, type_name, name):
-        return Value(path, word, "as: name")
-    return Value(path, word)
+        names = list(chosen(constants(types, type_name), name, ""))
+        return Value(path, word, "as: name", limits=", ".join(names[:_FEW]) + ", ..." * (len(names) > _FEW))
+    return Value(path, word, limits=f"at most {kind.bound} characters" if kind.bound else "")
 
 
 def _is_named(types: Interfaces, type_name: str, name: str) -> bool:
