@@ -99,7 +99,15 @@ def orphan_policy(written: str) -> "OrphanPolicy":
     """Return what `--orphans` means; without a terminal, `ask` keeps goals and says so."""
     if written == "cancel":
         return "cancel"
-    return _ask if written == "ask" and sys.stdin.isatty() and sys.stderr.isatty() else "keep"
+    if written == "keep" or not (sys.stdin.isatty() and sys.stderr.isatty()):
+        return "keep"
+    one_by_one = asyncio.Lock()
+
+    async def ask(question: str) -> bool:
+        async with one_by_one:
+            return await _ask(question)
+
+    return ask
 
 
 async def _ask(question: str) -> bool:
