@@ -13,6 +13,8 @@ from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
 
+_SMALL = ("byte", "char", "int8", "uint8", "int16", "uint16")
+"""Types of integers whose range an ordinary value can exceed."""
 _FEW = 8
 """So many names of constants are told."""
 
@@ -64,6 +66,8 @@ def word_for_value(part: ValuePart, message: FieldType, interfaces: Interfaces) 
         if part.source is Source.ELEMENTS:
             return _elements(part, FieldType(leaf.base), interfaces)
         word = _converted(part.conversion, part.target, leaf, message, interfaces)
+        if word == "whole number" and leaf.base in _SMALL and part.conversion.line is None:
+            word += " from {} to {}".format(*INTEGER_RANGES[leaf.base])
     except (WrongPath, UnknownInterface):
         return ""
     return _list_of(leaf) * leaf.array + word
@@ -103,15 +107,14 @@ def _converted(
 
 
 def _limits(path: Path, leaf: FieldType, root: FieldType, interfaces: Interfaces) -> str:
-    """What the definition allows: a longest string, the constants of the field, or the range of a small integer."""
+    """What the definition allows: a longest string, the constants of the field."""
     longest = f" of at most {leaf.bound} characters" if leaf.bound else ""
     if path.steps and isinstance(path.steps[-1], str) and path.steps[-1].startswith("."):
         owner, last = owner_of(path, root, interfaces)
         if named := constants_by_field(interfaces, owner).get(last):
             values = [f"{text(octet(value), quoted=True)} = {name}" for name, value in named.items()]
             return f"{longest} ({_listed(values)})"
-    low, high = INTEGER_RANGES.get(leaf.base, (0, 0))
-    return f" from {low} to {high}" if 0 < high < 2**16 else longest
+    return longest
 
 
 def _kind(base: str, conversion: Conversion, kind: str, unit: str) -> str:

@@ -73,7 +73,7 @@ properties:
             "type",
             "Type: whole number (0 = TYPE_LED, 1 = TYPE_RUMBLE, 2 = TYPE_BUZZER)",
         ),
-        ("sensor_msgs/msg/JoyFeedback", "id", "Id: whole number from 0 to 255"),
+        ("sensor_msgs/msg/JoyFeedback", "id", "Id: whole number."),
         ("sensor_msgs/msg/JoyFeedback", "{path: id, scale: 2}", "Id: number."),
         ("visualization_msgs/msg/Marker", "text", "Text: text."),  # TEXT_VIEW_FACING is a number
         ("shape_msgs/msg/SolidPrimitive", "dimensions", "Dimensions: list (at most 3) of number"),
@@ -126,6 +126,20 @@ operations:
     )
     assert told(text, "left") == "feedback of go. DistanceRemaining: number in metres."
     assert "NumberOfRecoveries: whole number" in told(text, "all")
+
+
+def test_parameters_have_the_range_of_their_fields() -> None:
+    text = """
+operations:
+  buzz:
+    parameters: [id, strength, type]
+    publish: buzz
+    type: sensor_msgs/msg/JoyFeedback
+    fields: {id: $id, intensity: $strength, type: {value: $type, as: name}}
+"""
+    assert "buzz(id: whole number from 0 to 255, strength: number, type: one of led, rumble, buzzer)" in str(
+        manual(text)
+    )
 
 
 def test_parameters_of_operations_are_told() -> None:
