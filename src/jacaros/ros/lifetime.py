@@ -117,6 +117,9 @@ class Lifetime:
 
         def remove() -> None:
             if hook in self._hooks:
+                if self.state is State.LEAVING:
+                    # The zero of its owner was perhaps refused, and the thread that stops the robots may come too late.
+                    self._run([hook])
                 self._hooks.remove(hook)
 
         return remove
@@ -191,11 +194,14 @@ class Lifetime:
         self.left()
 
     def _run_hooks(self) -> None:
+        self._run(list(self._hooks))
+
+    def _run(self, hooks: list[Callable[[], None]]) -> None:
         this = threading.get_ident()
         outermost = this not in self._hooking
         self._hooking.add(this)
         try:
-            for hook in list(self._hooks):
+            for hook in hooks:
                 try:
                     hook()
                 except Exception as problem:  # the next hook may stop another robot

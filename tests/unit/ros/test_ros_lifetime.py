@@ -318,23 +318,73 @@ def test_an_exception_in_the_middle_of_stopping_does_not_block_the_end() -> None
     assert steps > 5
 
 
+@pytest.mark.usefixtures("process")
+def test_a_robot_stops_although_its_artifact_is_disposed_while_a_thread_stops_the_robots() -> None:
+    """The loop disposes the artifact after each of that thread's steps in turn."""
+    steps, overtaken = 0, True
+    while overtaken:
+        steps += 1
+        overtaken, sent = _dispose_after(steps)
+        assert len(sent) > 1
+        assert sent[-1] == 0.0, f"disposed after {steps} steps"
+    assert steps > 5
+
+
+def _dispose_after(steps: int) -> tuple[bool, list[float]]:
+    """Stop a robot, dispose of its artifact in another thread after *steps* of that; see `_after`, and what was sent."""
+    sent: list[float] = []
+    open_publisher = True
+    lifetime = Lifetime(print, threaded=True)
+
+    def publish(velocity: float) -> None:
+        if open_publisher:
+            lifetime.send(sent.append, velocity)
+
+    def dispose() -> None:
+        nonlocal open_publisher
+        publish(0.0)
+        remove()
+        open_publisher = False
+
+    def dispose_on_the_loop() -> None:
+        loop = threading.Thread(target=dispose)
+        loop.start()
+        loop.join()
+
+    remove = lifetime.add(lambda: publish(0.0))
+    publish(0.3)
+    overtaken = _after(steps, lifetime.stop, dispose_on_the_loop)
+    lifetime.leave_now()
+    return overtaken, sent
+
+
 def _interrupt_after(steps: int, call: Callable[[], None]) -> bool:
     """Whether *call* was still under way after *steps* events of a trace, where it is interrupted."""
+
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    try:
+        return _after(steps, call, interrupt)
+    except KeyboardInterrupt:
+        return True
+
+
+def _after(steps: int, call: Callable[[], None], intervene: Callable[[], None]) -> bool:
+    """Whether *call* was still under way after *steps* events of a trace, when *intervene* is called."""
     seen = 0
 
     def trace(frame: FrameType, event: str, argument: object) -> Any:
         nonlocal seen
         seen += 1
         if seen == steps:
-            raise KeyboardInterrupt
+            intervene()
         return trace
 
     before = sys.gettrace()
     sys.settrace(trace)
     try:
         call()
-    except KeyboardInterrupt:
-        return True
     finally:
         sys.settrace(before)
-    return False
+    return seen >= steps
