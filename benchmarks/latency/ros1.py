@@ -1,5 +1,6 @@
 """Bare rospy: the pings (`ros1.py ping [--busy]`), and the echo to compare with (`ros1.py echo [--busy]`)."""
 
+import os
 import sys
 import threading
 import time
@@ -28,7 +29,8 @@ def echo(busy: bool) -> None:
 
 
 def ping(busy: bool) -> None:
-    """Measure both ways."""
+    """Measure both ways, unless the benchmark that started this ends before."""
+    parent = os.getppid()
     rospy.init_node("pinger")
     publishers = {
         "agent": rospy.Publisher("/odom", Odometry, queue_size=10),
@@ -52,12 +54,19 @@ def ping(busy: bool) -> None:
         rospy.Subscriber("/bare/cmd_vel", Twist, returned, "bare", queue_size=10),
     ]
     while not all(p.get_num_connections() for p in (*publishers.values(), *replies)):
-        time.sleep(0.1)
+        pause(0.1, parent)
     while not pings.over:
         with lock:
             pings.next()
-        time.sleep(PERIOD)
+        pause(PERIOD, parent)
     print(pings.report("ros1"))
+
+
+def pause(seconds: float, parent: int) -> None:
+    """Wait, but end when a signal has ended the node (rospy leaves the program running), or *parent* has died."""
+    time.sleep(seconds)
+    if rospy.is_shutdown() or os.getppid() != parent:
+        sys.exit("interrupted")
 
 
 if __name__ == "__main__":
