@@ -63,6 +63,10 @@ class Peer(ActionCommands, GraphCommands):
     async def close(self) -> None:
         await self._backend.close()
 
+    def debug(self) -> None:
+        """Have asyncio refuse whatever touches the loop in another thread."""
+        asyncio.get_running_loop().set_debug(True)
+
     def log(self) -> list[str]:
         return self._lines
 

@@ -169,6 +169,22 @@ def test_closing_a_client_ends_its_calls(graph: Any, pair: Pair, topic: str) -> 
         left.end_call(topic)
 
 
+@pytest.mark.parametrize("asked", [False, True])
+def test_closing_a_node_ends_its_calls_on_the_loop(graph: Any, topic: str, asked: bool) -> None:
+    """Before the server has got the request, and after that."""
+    server, node = graph.peer(f"silent_server_{asked}"), graph.peer(f"closing_caller_{asked}")
+    server.serve(topic, "never")
+    graph.wait_until(lambda: node.ready(topic), "the service is found")
+    node.debug()
+    node.begin_call(topic, topic, {"a": 1, "b": 1})
+    if asked:
+        graph.wait_until(server.most_calls_at_once, "the server is asked")
+    node.close()
+    graph.wait_until(lambda: node.call_over(topic), "the caller has an answer", patience=10.0)
+    with pytest.raises(CallFailed):
+        node.end_call(topic)
+
+
 def test_an_unknown_service_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
     left, right = pair
     with pytest.raises(UnknownInterface, match="no_srvs/srv/Nothing"):

@@ -167,11 +167,11 @@ class Ros2Client(AttemptingClient):
             raise ServiceUnavailable(f"nobody offers service {self.name}")
         if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
+            if self._closed:
+                raise CallFailed(f"the client of service {self.name} was closed during the call")
             if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
                 raise CallFailed(mismatch)
             self._acquainted = True
-        if self._closed:
-            raise CallFailed(f"the client of service {self.name} was closed during the call")
         answer = self._pending.new()
 
         def finished(future: Any) -> None:
