@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from presence import is_wanted, ros2_environment
@@ -210,3 +211,24 @@ async def test(backend, publisher, hear):
     await other.close()
 """,
     )
+
+
+class _Answering(dict[Any, Any]):
+    """Calls of which each is answered, on the executor's thread, at the moment at which the loop forgets it."""
+
+    def pop(self, call: Any, *default: Any) -> Any:
+        super().pop(call, None)
+        return super().pop(call, *default)
+
+    def popitem(self) -> Any:
+        self.clear()
+        return super().popitem()
+
+
+def test_a_call_may_be_answered_while_it_is_forgotten() -> None:
+    from jacaros.ros.backends.ros2_goals import Ros2GoalWire
+
+    wire = Ros2GoalWire.__new__(Ros2GoalWire)
+    wire._calls = _Answering({"first": None, "second": None})
+    wire._forget_calls()
+    assert not wire._calls
