@@ -46,6 +46,7 @@ class RunGuard:
         Raises:
             UsageError: no guard was ready in time.
         """
+        self._backend.add_exit_hook(self._leaving)
         try:
             async with asyncio.timeout(STARTING):
                 await self._connect()
@@ -69,12 +70,16 @@ class RunGuard:
             with suppress(OSError):
                 await heartbeat.connect(self._path)
                 self._heartbeat = heartbeat
-                self._backend.add_exit_hook(heartbeat.leaving)
-                await heartbeat.ready.wait()
+                await heartbeat.wait_until_ready()
                 return
-            if self._process is None or self._process.poll() is not None:
-                self._launch()
+            with suppress(OSError):
+                if self._process is None or self._process.poll() is not None:
+                    self._launch()
             await asyncio.sleep(RETRY)
+
+    def _leaving(self) -> None:
+        if self._heartbeat is not None:
+            self._heartbeat.leaving()
 
     def _launch(self) -> None:
         name = self._backend.node_name.rpartition("/")[2]

@@ -66,13 +66,13 @@ class Heartbeat:
         guarded: what the process drives.
         node: absolute name of its node.
         simulated_time: whether messages carry the time of a simulator.
-        on_lost: called once when the guard is gone.
+        on_lost: called once when a guard that was ready is gone.
     """
 
     def __init__(
         self, guarded: Guarded, node: str, simulated_time: bool, on_lost: Callable[[], None]
     ) -> None:
-        self.ready = asyncio.Event()
+        self._ready: asyncio.Future[None] | None = None
         self._guarded, self._node, self._simulated_time = guarded, node, simulated_time
         self._on_lost = on_lost
         self._changed = False
@@ -86,11 +86,21 @@ class Heartbeat:
         Raises:
             OSError: no guard listens there.
         """
+        self._ready = asyncio.get_running_loop().create_future()
         reader, self._writer = await asyncio.open_unix_connection(path)
         self._guarded.on_change = self._note_change
         self._describe()
         self._beat()
         self._reading = asyncio.ensure_future(self._read(reader))
+
+    async def wait_until_ready(self) -> None:
+        """Wait until the guard can stop all that was named to it.
+
+        Raises:
+            OSError: it is gone before.
+        """
+        assert self._ready is not None
+        await self._ready
 
     async def close(self) -> None:
         """Say goodbye: the robot has been stopped, and the guard need not do it."""
@@ -141,8 +151,8 @@ class Heartbeat:
         with suppress(OSError):
             while text := await reader.readline():
                 message = json.loads(text)
-                if message.get("ready"):
-                    self.ready.set()
+                if message.get("ready") and self._ready is not None and not self._ready.done():
+                    self._ready.set_result(None)
                 if message.get("tripped"):
                     self._guarded.interrupt()
                     self._send(line(permit=True))
@@ -152,7 +162,10 @@ class Heartbeat:
         if self._writer is not None:
             self._writer.transport.abort()
             self._end()
-            self._on_lost()
+            if self._ready is not None and not self._ready.done():
+                self._ready.set_exception(ConnectionError("the guard is gone"))
+            else:
+                self._on_lost()
 
     def _end(self) -> None:
         self._writer = None

@@ -155,7 +155,7 @@ def in_lab(folder: Path, body: Callable[[Lab], Awaitable[None]]) -> Lab:
         guarding = asyncio.ensure_future(lab.guard.run())
         lab.guarded.add_topic("/cmd_vel", TWIST)
         await lab.connected()
-        await lab.heartbeat.ready.wait()
+        await lab.heartbeat.wait_until_ready()
         await body(lab)
         await guarding
         await base.close()
@@ -185,6 +185,22 @@ def test_a_guard_sends_zero_until_the_agents_return_and_ends_with_them(tmp_path:
         "/robot: the guard has released the robot",
     ]
     assert not (tmp_path / "s").exists()
+
+
+def test_a_guard_that_dies_before_it_is_ready_is_no_guard_that_was_lost(tmp_path: Path) -> None:
+    async def dying(_reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        writer.close()
+
+    async def main() -> None:
+        lost: list[bool] = []
+        async with await asyncio.start_unix_server(dying, tmp_path / "s"):
+            heartbeat = Heartbeat(Guarded(), "/robot", False, lambda: lost.append(True))
+            await heartbeat.connect(tmp_path / "s")
+            with pytest.raises(ConnectionError):
+                await heartbeat.wait_until_ready()
+        assert lost == []
+
+    asyncio.run(main())
 
 
 def test_a_loop_that_is_stuck_trips_the_guard_and_its_motions_are_interrupted(tmp_path: Path) -> None:
