@@ -175,7 +175,7 @@ def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotatio
     held = agent.held_percepts.get((symbol, *row) if row else symbol)
     if held is None:
         return False
-    return _OBSERVABLE_PROPERTY in (held[0] if held.__class__ is list else held)
+    return _OBSERVABLE_PROPERTY in (held[0][0] if held.__class__ is list else held)
 
 
 def _remove_first(

@@ -5,15 +5,19 @@ from typing import Any
 from jacaros.bdi import rescue, unkeyed_percepts
 from jacaros.bdi.act import Percept
 from jacaros.bdi.belief_base import Row, Table, parts, take_away
+from jacaros.bdi.belief_base import literal as belief_literal
 from jacaros.bdi.belief_update import external_change, insert, look_again
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Event
+from jacaros.bdi.rules import OpenFact
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
 from jacaros.errors import InternalError
 from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import Functor, Term
 
 Annotations = tuple[Term, ...]
+Holder = tuple[Annotations, Any]
+"""The annotations of a property among several with the same values, and the entry of its belief in the table."""
 
 
 def take_percepts(agent: Circumstance) -> None:
@@ -164,38 +168,53 @@ def _take_unkeyed(agent: Circumstance, percept: Percept, symbol: Functor, row: R
 def _take_percept(
     agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations
 ) -> bool:
-    """Add a percept whose literal may be held already; several properties may have the same values.
+    """Add a percept whose literal may be held already, by the agent or for other properties with the same values.
 
     False when the base has no room for it.
     """
+    known = agent.held_percepts.get(literal)
+    if known is not None:
+        return _believe_apart(agent, symbol, row, literal, annotations, known)
     refusals = agent.beliefs.refusals
     insert(agent, symbol, row, annotations)
     if agent.beliefs.refusals != refusals:
         return False
-    held_by = agent.held_percepts.get(literal)
-    if held_by.__class__ is list:
-        held_by.append(annotations)
-    else:
-        agent.held_percepts[literal] = annotations if held_by is None else [held_by, annotations]
+    agent.held_percepts[literal] = annotations
+    return True
+
+
+def _believe_apart(
+    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations, known: Any
+) -> bool:
+    """Believe a property beside others with the same values: a belief of its own, with its own annotations.
+
+    False when the base has no room for it.
+    """
+    belief = OpenFact(belief_literal(symbol, row), annotations)
+    if agent.beliefs[symbol].add(belief, annotations) is None:
+        return False
+    holders: list[Holder] = known if known.__class__ is list else [(known, row)]
+    holders.append((annotations, belief))
+    agent.held_percepts[literal] = holders
     return True
 
 
 def _forget_percept(
     agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations, known: Any
 ) -> bool:
-    """Take away what a percept alone accounts for: another property may have the same values.
+    """Give up the belief of one property; others may have the same values.
 
     False when the belief is not held any more.
     """
-    held_by: list[Annotations] = known if known.__class__ is list else [] if known is None else [known]
-    if annotations in held_by:
-        held_by.remove(annotations)
-    if held_by:
-        agent.held_percepts[literal] = held_by
+    holders: list[Holder] = known if known.__class__ is list else [] if known is None else [(known, row)]
+    # Of two properties of one artifact the annotations are equal, too: either may go.
+    place = next((i for i, holder in enumerate(holders) if holder[0] == annotations), None)
+    entry = row if place is None else holders.pop(place)[1]
+    if holders:
+        agent.held_percepts[literal] = holders
     table = agent.beliefs[symbol]
-    held = table.get(row)
+    held = table.get(entry)
     if held is None:
         return False
-    others = {a for annotations_ in held_by for a in annotations_}
-    take_away(table, row, held, tuple(a for a in annotations if a not in others))
+    take_away(table, entry, held, annotations)
     return True

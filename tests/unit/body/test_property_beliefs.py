@@ -148,3 +148,52 @@ def test_beliefs_go_before_the_belief_that_the_artifact_is_focused(lines: Lines)
     """
     expected = ["+shown", "+focusing b", "-shown", "-focusing b"]
     assert lines(main=program) == [f"[main] {each}" for each in expected]
+
+
+TWO_BOXES = """
+!start.
++!start
+  <- makeArtifact(left, "Box", ["1"], L);
+     makeArtifact(right, "Box", ["1"], R);
+     focus(L); focus(R);
+     !go.
+"""
+
+
+def test_two_artifacts_with_equal_values_are_two_beliefs_with_their_own_annotations(lines: Lines) -> None:
+    program = """
+of(Box) :- shown(1)[artifact_name(Box)].
++!go : .count(shown(_), 2) & .findall(B, shown(1)[artifact_name(B)], Bs) & .findall(B, of(B), Same)
+  <- .print(Bs); .print(Same);
+     for (shown(1)[artifact_name(Box)]) { show("2")[artifact_name(Box)] };
+     .wait(1);
+     .findall(V, shown(V), Vs);
+     .print(Vs).
+"""
+    assert lines(one=TWO_BOXES + program) == ["[one] [right,left]", "[one] [right,left]", "[one] [2,2]"]
+
+
+def test_a_belief_in_one_of_two_equal_properties_goes_alone(lines: Lines) -> None:
+    program = """
++!go
+  <- show("2")[artifact_name(left)];
+     .wait(1);
+     .findall(b(V, Box), shown(V)[artifact_name(Box)], First);
+     show("1")[artifact_name(left)];
+     .wait(1);
+     .findall(b(V, Box), shown(V)[artifact_name(Box)], Again);
+     lookupArtifact(right, R);
+     disposeArtifact(R);
+     .wait(1);
+     .findall(b(V, Box), shown(V)[artifact_name(Box)], Last);
+     .print(First, " ", Again, " ", Last).
+"""
+    assert lines(one=TWO_BOXES + program) == ["[one] [b(2,left),b(1,right)] [b(1,left),b(1,right)] [b(1,left)]"]
+
+
+def test_a_clone_believes_in_two_equal_properties(lines: Lines) -> None:
+    program = """
++!go <- .clone(two); .send(two, achieve, tell).
++!tell : .count(shown(1), N) <- .print(N).
+"""
+    assert lines(one=TWO_BOXES + program) == ["[two] 2"]
