@@ -188,7 +188,9 @@ def test_a_belief_in_one_of_two_equal_properties_goes_alone(lines: Lines) -> Non
      .findall(b(V, Box), shown(V)[artifact_name(Box)], Last);
      .print(First, " ", Again, " ", Last).
 """
-    assert lines(one=TWO_BOXES + program) == ["[one] [b(2,left),b(1,right)] [b(1,left),b(1,right)] [b(1,left)]"]
+    assert lines(one=TWO_BOXES + program) == [
+        "[one] [b(2,left),b(1,right)] [b(1,left),b(1,right)] [b(1,left)]"
+    ]
 
 
 def test_a_clone_believes_in_two_equal_properties(lines: Lines) -> None:

@@ -237,8 +237,7 @@ class Program:
         if name in self.agents:
             ask = self.agents[name].answers
             beliefs = [(each, a) for each in NAMES for a in ask(f"{each}(V)[artifact_name(A)]")]
-            # A belief is believed once, whatever number of equal properties there are.
-            assert sorted((a["A"], each, a["V"]) for each, a in beliefs) == sorted(set(wanted)), self.told()
+            assert sorted((a["A"], each, a["V"]) for each, a in beliefs) == sorted(wanted), self.told()
             focused = [a["A"] for a in ask("focusing(_, A, _, _, _, _)")]
         else:
             session = self.sessions[name]
