@@ -150,7 +150,13 @@ class BodyParser(TermParser):
             return [statement]
         if kind == "(" and not self._brackets_hold_formula():
             return self._group()
-        step = self._step()
+        if kind == "{":
+            term = self.expression()
+            if isinstance(term, nodes.BodyTerm):
+                return list(term.body.steps)
+            step = self._formula_step(term)
+        else:
+            step = self._step()
         return [] if step is None else [step]
 
     def _group(self) -> list[nodes.Step]:
@@ -315,8 +321,7 @@ class BodyParser(TermParser):
         return self._no_step(term)
 
     def _no_step(self, term: nodes.Term) -> NoReturn:
-        hint = "group steps with round brackets" if isinstance(term, nodes.BodyTerm) else None
-        self.fail("not-a-step", "this is a term and no step of a body", term.span, hint)
+        self.fail("not-a-step", "this is a term and no step of a body", term.span)
 
     def _condition_as_action(self, term: nodes.Not | nodes.And | nodes.Or) -> nodes.ExternalAction:
         """A bare condition is an action of that name in the language; people mean a test."""

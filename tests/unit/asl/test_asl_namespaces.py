@@ -48,9 +48,9 @@ def test_keywords_stay_in_the_default_namespace():
     assert belief_texts(block("percept. source(x).")) == ["percept", "source(x)"]
 
 
-def test_a_namespace_directive_holds_for_the_rest_of_the_file_only():
-    files = {"part.asl": "a. { namespace(n) } b."}
-    assert belief_texts('{ include("part.asl") } c.', files) == ["a", "n::b", "c"]
+@pytest.mark.parametrize("kind", ["", ", local", ", global"])
+def test_a_namespace_directive_without_a_block_puts_nothing_into_the_namespace(kind: str) -> None:
+    assert belief_texts(f"{{ namespace(n{kind}) }} b. c.") == ["b", "c"]
 
 
 def test_a_block_ends_its_namespace_and_blocks_can_be_nested():
@@ -59,7 +59,7 @@ def test_a_block_ends_its_namespace_and_blocks_can_be_nested():
 
 
 def test_a_local_namespace_cannot_be_named_from_outside():
-    files = {"part.asl": "{ namespace(private, local) } a. +!g : private::a <- b."}
+    files = {"part.asl": "{ namespace(private, local) } private::a. +!g : private::a <- b."}
     read = program('{ include("part.asl") } private::c.', files)
     inside, outside = read.beliefs
     assert isinstance(inside, nodes.Literal)

@@ -141,7 +141,6 @@ def test_carets_stand_under_the_mistake_also_behind_tabs():
         ),
         ("+!g <- while x { b }.", 1, "'(' and the condition of 'while' is expected, not 'x'", None),
         ("+!g <- a; ; b.", 1, "there is no step between the two ';'", None),
-        ("+!g <- { a; b }.", 1, "this is a term and no step of a body", "group steps with round brackets"),
         ("+!g <- X = foo + 1.", 1, "'+' needs numbers", "a belief gives its value through a variable"),
         ('+!g <- X = "a" + "b".', 1, "'+' needs numbers", "strings and lists are joined by .concat"),
         ("+!g <- X = math.flor(1) + 1.", 1, "'math.flor' with 1 arguments is not a function", "did you mean"),

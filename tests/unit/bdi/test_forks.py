@@ -49,3 +49,15 @@ def test_a_loop_around_a_fork_goes_on_in_the_branch_that_goes_on() -> None:
         +!s <- for (.member(X, [1,2,3])) { (.print(a, X) ||| .wait(50)); .print(round(X)) }; .print(end).
         """
     ) == ["a1", "round(1)", "a2", "round(2)", "a3", "round(3)", "end"]
+
+
+def test_a_body_in_curly_brackets_is_a_step_and_a_branch() -> None:
+    program = """
+!go.
++!go
+  <- { .wait(200); .print("first") } |&| { .wait(100); .print("second") };
+     { .print("third"); { .print("fourth") } };
+     X = { .print("never") };
+     { .print("fifth") }.
+"""
+    assert printed(program) == ["second", "first", "third", "fourth", "fifth"]

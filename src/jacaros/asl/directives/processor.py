@@ -71,7 +71,7 @@ class DirectiveProcessor:
         if name == "include":
             section.extend(self._include(parser, directive))
         elif name == "namespace":
-            parser.namespaces.current = self._namespace(parser, directive)
+            self._declare_namespace(parser, directive)
         elif name == "register_function":
             function = self._function(parser, directive)
             if function is not None:
@@ -200,6 +200,18 @@ class DirectiveProcessor:
 
     # namespaces and functions
 
+    def _declare_namespace(self, parser: ProgramParser, directive: nodes.Literal) -> None:
+        """Declare a namespace local or global; without a block, nothing is put into it."""
+        before = len(self._diagnostics)
+        self._namespace(parser, directive)
+        if len(directive.arguments) == 1 and directive.span is not None and len(self._diagnostics) == before:
+            parser.warn(
+                "wrong-directive",
+                "without a block this directive has no effect",
+                directive.span,
+                "{ begin namespace(...) } clauses { end }",
+            )
+
     def _namespace(self, parser: ProgramParser, directive: nodes.Literal) -> str | None:
         """The namespace that the directive puts in force."""
         arguments = directive.arguments
@@ -213,13 +225,15 @@ class DirectiveProcessor:
                 "wrong-directive",
                 "'namespace' needs an atom, and local or global if need be",
                 directive.span,
-                "as in { namespace(robot) } or { begin namespace(robot, local) }",
+                "as in { begin namespace(robot) } or { namespace(robot, local) }",
             )
             return parser.namespaces.current
         name = names[0]
         if names[1:] == ["local"] and name not in parser.namespaces.local:
             # A name nobody can write, so that the namespace cannot be reached from outside.
             parser.namespaces.local[name] = f"{name}#{next(self._names.local_namespaces)}"
+        elif names[1:] == ["global"]:
+            parser.namespaces.local.pop(name, None)
         return parser.namespaces.resolve(name)
 
     def _function(self, parser: ProgramParser, directive: nodes.Literal) -> nodes.RegisteredFunction | None:
