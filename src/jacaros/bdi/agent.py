@@ -470,9 +470,11 @@ class Agent(Circumstance):
         self.messages += 1
         return message_id(self.messages, self.name)
 
-    def test_for(self, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]) -> None:
+    def test_for(
+        self, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...]
+    ) -> None:
         """Answer a question by a plan for its test goal; whatever fails is answered with false."""
-        AnswerByPlan(self, message, symbol, arguments).begin()
+        AnswerByPlan(self, message, symbol, arguments, annotations).begin()
 
 
 def _no_goal(term: Term) -> str:

@@ -1,6 +1,7 @@
 """Questions of other agents that a plan for a test goal answers."""
 
 from jacaros.asl import nodes
+from jacaros.bdi.belief_base import without_sources
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import Frame
 from jacaros.bdi.speech_act import SpeechAct
@@ -8,18 +9,29 @@ from jacaros.bdi.speech_acts import answer
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.substitution import resolve
-from jacaros.terms.values import BY_SELF, Functor, Term, atom, functor
+from jacaros.terms.values import BY_SELF, Annotated, Functor, Term, atom, functor
 
 _ANSWER = trigger("+", "", functor("answer", 0, namespace="jacaros"))
 
 
 class AnswerByPlan:
-    """A question from another agent that a plan ``+?q`` of this one answers."""
+    """A question from another agent that a plan ``+?q`` of this one answers.
+
+    Args:
+        agent: who answers.
+        message: the question.
+        symbol, arguments, annotations: the test goal; the asker is a source of it.
+    """
 
     def __init__(
-        self, agent: Circumstance, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...]
+        self,
+        agent: Circumstance,
+        message: SpeechAct,
+        symbol: Functor,
+        arguments: tuple[Term, ...],
+        annotations: tuple[Term, ...],
     ) -> None:
-        self.agent, self.message = agent, message
+        self.agent, self.message, self.annotations = agent, message, annotations
         self.goal = (trigger("+", "?", symbol), *arguments)
 
     def begin(self) -> None:
@@ -29,12 +41,12 @@ class AnswerByPlan:
         intention.on_failed = self.failed
         frame: Frame = [self._answered, (_ANSWER,), BY_SELF, agent.trail.serial, _answer_plan()]
         intention.frames.append(frame)
-        agent.post((self.goal, intention, BY_SELF, None))
+        agent.post((self.goal, intention, self.annotations, None))
 
     def _answered(self, agent: Circumstance, frame: Frame) -> None:
         symbol = self.goal[0].functor
-        term = (symbol, *self.goal[1:]) if len(self.goal) > 1 else symbol
-        answer(agent, self.message, resolve(term))
+        term: Term = (symbol, *self.goal[1:]) if len(self.goal) > 1 else symbol
+        answer(agent, self.message, without_sources(resolve(Annotated(term, self.annotations))))
         frame[0] = None
 
     def failed(self, _reason: object) -> None:

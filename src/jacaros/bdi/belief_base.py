@@ -391,13 +391,26 @@ def with_source(annotations: tuple[Term, ...]) -> tuple[Term, ...]:
     return annotations if has_source(annotations) else annotation_set((*annotations, *BY_SELF))
 
 
+def is_source(annotation: Term) -> bool:
+    """Whether an annotation is ``source(Name)``."""
+    inner = bare(annotation)
+    return inner.__class__ is tuple and inner[0] is SOURCE
+
+
 def has_source(annotations: tuple[Term, ...]) -> bool:
     """Whether a source is among the annotations."""
-    for annotation in annotations:
-        inner = bare(annotation)
-        if inner.__class__ is tuple and inner[0] is SOURCE:
+    for annotation in annotations:  # noqa: SIM110 - twice as fast as `any`
+        if is_source(annotation):
             return True
     return False
+
+
+def without_sources(term: Term) -> Term:
+    """The literal without its sources."""
+    if term.__class__ is not Annotated:
+        return term
+    kept = tuple(a for a in term.annotations if not is_source(a))
+    return Annotated(term.term, kept, term.tail) if kept or term.tail is not None else term.term
 
 
 def take_away(table: Table, entry: Any, held: tuple[Term, ...], annotations: tuple[Term, ...]) -> bool:

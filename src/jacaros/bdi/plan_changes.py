@@ -4,6 +4,7 @@ from jacaros.asl import nodes
 from jacaros.asl.labels import shape
 from jacaros.asl.loader import parse_plans
 from jacaros.bdi import belief_update, urgency
+from jacaros.bdi.belief_base import is_source
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.edge_signals import AWAKING, SLEEPING
 from jacaros.bdi.functions import known_names
@@ -16,7 +17,20 @@ from jacaros.compiler.reflection import Reflection
 from jacaros.terms.plans import PLAN, RULE, TRIGGERS, is_body
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
-from jacaros.terms.values import SELF, String, Term, atom, functor, functor_of, is_list, list_items
+from jacaros.terms.values import (
+    SELF,
+    Annotated,
+    String,
+    Term,
+    annotations_of,
+    arguments_of,
+    atom,
+    bare,
+    functor,
+    functor_of,
+    is_list,
+    list_items,
+)
 
 ERROR = functor("error", 1)
 
@@ -123,18 +137,24 @@ def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
 
 
 def change_plans(agent: Circumstance, operator: str, term: Term) -> bool:
-    """``+{plan}``, ``-{plan}``, ``+{rule}`` …; False when the operand is neither a plan nor a rule."""
-    term = resolve(term)
+    """``+{plan}``, ``-{plan}``, ``+{rule}`` …; False when the operand is neither a plan nor a rule.
+
+    Annotations of the operand, such as sources, are given to the rule, and their sources to the plan.
+    """
+    annotated = resolve(term)
+    term = bare(annotated)
     if term.__class__ is not tuple:
         return False
     if term[0] is PLAN:
-        if operator in ("-", "--"):
-            remove_plan(agent, term)
-        else:
-            add_plan(agent, term, SELF, first=operator != "+>")
+        for source in [arguments_of(a)[0] for a in annotations_of(annotated) if is_source(a)] or [SELF]:
+            if operator in ("-", "--"):
+                remove_plan(agent, term, source)
+            else:
+                add_plan(agent, term, source, first=operator != "+>")
         return True
     if term[0] is RULE:
-        change_rule(agent, operator, term)
+        head, annotations = term[1], annotations_of(annotated)
+        change_rule(agent, operator, (RULE, Annotated(head, annotations) if annotations else head, term[2]))
         return True
     if term[0] in TRIGGERS or is_body(term):
         raise Failure((ERROR, atom("body_var_with_op")))
@@ -143,7 +163,7 @@ def change_plans(agent: Circumstance, operator: str, term: Term) -> bool:
 
 def change_rule(agent: Circumstance, operator: str, term: Term) -> None:
     """Add or remove a rule given as a term."""
-    node = Reflection(shared=False).rule(term)
+    node = Reflection(shared=False).rule(resolve(term))
     head = functor_of(lower(node.head, fresh_names()))
     assert head is not None
     table = agent.beliefs[head]

@@ -3,12 +3,12 @@
 from typing import Any
 
 from jacaros.asl.errors import AslError
-from jacaros.asl.loader import parse_plans
 from jacaros.bdi import belief_update, rescue
-from jacaros.bdi.belief_base import parts
+from jacaros.bdi.belief_base import is_source, parts
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
 from jacaros.bdi.meta_events import post_new_goal
+from jacaros.bdi.plan_terms import relevant_plans
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import fresh_names, lower_plan
 from jacaros.compiler.searching import run
@@ -16,7 +16,7 @@ from jacaros.compiler.triggers import ACHIEVED, trigger
 from jacaros.compiler.unit import Select
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
-from jacaros.terms.plans import PLAN, TRIGGERS, body_steps, step_parts
+from jacaros.terms.plans import PLAN
 from jacaros.terms.substitution import is_flat, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
@@ -28,7 +28,6 @@ from jacaros.terms.values import (
     SOURCE_SELF,
     Annotated,
     Functor,
-    String,
     Term,
     Var,
     annotations_of,
@@ -115,7 +114,7 @@ def from_sender(content: Term, sender: str) -> Term:
     others: list[Term] = []
     sources: list[Term] = []
     for annotation in annotations_of(content):
-        (sources if _is_source(annotation) else others).append(annotation)
+        (sources if is_source(annotation) else others).append(annotation)
     source: Term = (SOURCE, atom(sender))
     if sources and sources != [SOURCE_SELF]:
         source = Annotated(source, annotation_set(tuple(sources)))
@@ -138,11 +137,6 @@ class _Sources(dict[str, tuple[Term, ...]]):
 
 
 _ONLY_FROM = _Sources()
-
-
-def _is_source(term: Term) -> bool:
-    inner = bare(term)
-    return inner.__class__ is tuple and inner[0] is SOURCE
 
 
 def _contents(content: Term) -> list[Term]:
@@ -216,11 +210,11 @@ def _ask_one(agent: Circumstance, message: SpeechAct) -> None:
     if found is not None:
         answer(agent, message, found)
         return
-    symbol, arguments, _ = parts(message.content)
+    symbol, arguments, annotations = literal_from(message.content, message.sender)
     if symbol is None or agent.selects[trigger("+", "?", symbol)] is None:
         answer(agent, message, None)
         return
-    agent.test_for(message, symbol, arguments)  # type: ignore[attr-defined]
+    agent.test_for(message, symbol, arguments, annotations)  # type: ignore[attr-defined]
 
 
 def _first_belief(agent: Circumstance, query: Term) -> Term | None:
@@ -252,12 +246,13 @@ def _ask_all(agent: Circumstance, message: SpeechAct) -> None:
     answer(agent, message, make_list(found))
 
 
-def answer(agent: Circumstance, question: SpeechAct, content: Term | None) -> None:
+def answer(
+    agent: Circumstance, question: SpeechAct, content: Term | None, performative: str = "tell"
+) -> None:
     """Send the answer to a question; None is the answer that there is none."""
-    performative = "untell" if content is None else "tell"
     agent.architecture.send(
         SpeechAct(
-            performative,
+            "untell" if content is None else performative,
             agent.name if question.sender != "self" else "self",
             question.sender if question.sender != "self" else agent.name,
             question.content if content is None else rename(content),
@@ -271,35 +266,14 @@ def answer(agent: Circumstance, question: SpeechAct, content: Term | None) -> No
 
 
 def _ask_how(agent: Circumstance, message: SpeechAct) -> None:
-    wanted = _trigger_of(message.content)
-    if wanted is None:
+    """Answer with the plans; they are told, so that whoever does not wait for the answer takes them in."""
+    plans = relevant_plans(agent, message.content)
+    if plans is None:
         _refuse(agent, message)
         answer(agent, message, None)
         return
-    plans = [lower_plan(p.node, fresh_names()) for p in agent.library.relevant(wanted)]
-    answer(agent, message, make_list(plans))
-
-
-def _trigger_of(content: Term) -> Any:
-    content = deref(content)
-    if content.__class__ is String:
-        from_text = parse_plans(f"{content}.")
-        plan = from_text[0] if from_text else None
-        if plan is None:
-            return None
-        literal = lower_plan(plan, fresh_names())[2]
-        return _trigger_of(literal)
-    if content.__class__ is tuple and content[0] in TRIGGERS:
-        operator = deref(content[1]).name
-        symbol = parts(content[2])[0]
-        return None if symbol is None else trigger(operator[0], operator[1:], symbol)
-    steps = list(body_steps(content))
-    if len(steps) == 1:
-        operator, operands = step_parts(steps[0])
-        symbol = parts(operands[0])[0]
-        if operator in ("+", "-") and symbol is not None:
-            return trigger(operator, "", symbol)
-    return None
+    terms = make_list([lower_plan(plan.node, fresh_names()) for plan in plans])
+    answer(agent, message, terms, "tellHow")
 
 
 def _tell_how(agent: Circumstance, message: SpeechAct) -> None:

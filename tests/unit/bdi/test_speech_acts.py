@@ -4,6 +4,7 @@ import pytest
 from recording_host import RecordingHost, believed, mind
 
 from jacaros.asl.loader import parse_term
+from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.compiler.lowering import lower_value
 from jacaros.terms.substitution import is_flat
@@ -157,3 +158,97 @@ def test_an_answer_that_nobody_waits_for_any_more_is_thrown_away() -> None:
 def test_an_answer_that_is_not_waited_for_becomes_a_belief() -> None:
     asking = "+!ask <- .send(self, askOne, late(X)); .wait(1000); ?late(Y)[source(S)]; .print(Y, S)."
     assert after(LATE + asking).printed == ["3self"]
+
+
+def test_a_plan_that_answers_a_question_sees_who_asks() -> None:
+    program = """
++?limit(X)[source(ann)] <- X = 100.
++?limit(X)[source(self)] <- X = 0.
++?limit(X)[urgent] <- X = 10.
+"""
+    host = after(program, message("askOne", "limit(_)"), message("askOne", "limit(_)[urgent]"))
+    assert [text(sent.content) for sent in host.sent] == ["limit(100)", "limit(100)[urgent]"]
+
+
+def test_plans_that_are_asked_for_are_told_and_taken_in() -> None:
+    host = after("+!goto(X) <- .print(going, X). +!goto(a) <- .print(a).", message("askHow", "{+!goto(b)}"))
+    [answer] = host.sent
+    assert (answer.performative, answer.in_reply_to) == ("tellHow", "m1")
+    asker = mind("")
+    asker.agent.receive(answer)
+    asker.agent.receive(message("achieve", "goto(7)"))
+    asker.run()
+    assert asker.printed == ["going7"]
+    assert len(asker.agent.library.plans) == 1
+
+
+def test_a_restricted_agent_takes_in_no_plans_that_it_asked_for() -> None:
+    host = after("+!goto(X) <- .print(X).", message("askHow", "{+!goto(_)}"))
+    asker = mind("", options=Options(plans_from_others=False))
+    asker.agent.receive(host.sent[0])
+    asker.run()
+    assert asker.agent.library.plans == []
+
+
+@pytest.mark.parametrize("receivers", ["[]", "Nobody"])
+def test_a_message_to_nobody_is_sent_to_nobody(receivers: str) -> None:
+    host = mind(
+        f"!g. +!g <- Nobody = []; .send({receivers}, tell, p); .send({receivers}, askOne, p, A); .print(A)."
+    )
+    host.run()
+    assert (host.sent, host.printed) == ([], ["[]"])
+
+
+def test_a_rule_held_by_a_variable_is_added_with_its_sources() -> None:
+    program = """
+r(X) :- X > 1.
+!go.
++!go
+  <- .relevant_rules(_, [R]);
+     +R[source(bob)];
+     .count(r(2), N);
+     .findall(S, r(2)[source(S)], L);
+     -R[source(bob)];
+     .count(r(2), M);
+     .print(N, L, M).
+"""
+    host = mind(program)
+    host.run()
+    assert host.printed == ["2[bob,self]1"]
+
+
+def test_a_plan_held_by_a_variable_is_added_for_its_sources() -> None:
+    program = """
+!go.
++!go
+  <- P = {+!h <- .print(h)};
+     +P[source(bob)];
+     .relevant_plans({+!h}, _, [Label]);
+     .print(Label);
+     !h;
+     -P[source(bob)];
+     !h.
+-!go[error(E)] <- .print(E).
+"""
+    host = mind(program)
+    host.run()
+    assert host.printed[1:] == ["h", "no_relevant"]
+    assert host.printed[0].endswith("[source(bob)]")
+
+
+def test_relevant_plans_unify_with_the_event() -> None:
+    program = """
+!go.
++!g(1) <- .print(one).
++!g(2)[source(bob)] <- .print(two).
++!g(X)[critical] <- .print(X).
++!g(X) : X > 2 <- .print(X).
++!go
+  <- .relevant_plans({+!g(2)}, L); .length(L, N);
+     .relevant_plans({+!g(2)[source(ann)]}, M); .length(M, O);
+     .relevant_plans({+!g(_)[critical]}, P); .length(P, Q);
+     .print(N, O, Q).
+"""
+    host = mind(program)
+    host.run()
+    assert host.printed == ["214"]

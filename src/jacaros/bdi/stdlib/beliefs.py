@@ -4,11 +4,10 @@ from collections.abc import Iterator
 
 from jacaros.asl import nodes
 from jacaros.bdi import belief_update
-from jacaros.bdi.belief_base import parts
+from jacaros.bdi.belief_base import parts, without_sources
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.rules import Rule
-from jacaros.bdi.stdlib.terms import without_sources
 from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.terms.order import compare
@@ -16,7 +15,7 @@ from jacaros.terms.plans import RULE
 from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo, unify, unify_annotations
-from jacaros.terms.values import FALSE, TRUE, Term, bare, functor_of, make_list
+from jacaros.terms.values import FALSE, TRUE, Term, Var, bare, functor_of, make_list
 
 
 @internal_action(".abolish", arity=1)
@@ -72,24 +71,28 @@ def list_rules(ctx: Context) -> None:
 def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
     """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the base.
 
+    With *P* unbound these are all rules.
+
     Raises:
         WrongArguments: *P* is no literal.
     """
     symbol, _, annotations = parts(pattern)
-    if symbol is None:
+    if symbol is None and bare(pattern).__class__ is not Var:
         raise WrongArguments(f"a literal is expected, not {text(pattern)}")
+    beliefs = ctx.agent.beliefs
     found = []
-    for entry, held in ctx.agent.beliefs[symbol].entries():
-        if not isinstance(entry, Rule):
-            continue
-        rule = lower(nodes.RuleTerm(entry.node), fresh_names())
-        mark = len(ctx.trail)
-        fits = unify(bare(pattern), bare(rule[1]), ctx.trail) and unify_annotations(
-            annotations, None, held, None, ctx.trail
-        )
-        undo(ctx.trail, mark)
-        if fits:
-            found.append((rule[0], without_sources(rule[1]), rule[2]))
+    for table in beliefs.values() if symbol is None else (beliefs[symbol],):
+        for entry, held in table.entries():
+            if not isinstance(entry, Rule):
+                continue
+            rule = lower(nodes.RuleTerm(entry.node), fresh_names())
+            mark = len(ctx.trail)
+            fits = unify(bare(pattern), bare(rule[1]), ctx.trail) and unify_annotations(
+                annotations, None, held, None, ctx.trail
+            )
+            undo(ctx.trail, mark)
+            if fits:
+                found.append((rule[0], without_sources(rule[1]), rule[2]))
     return ctx.unify(target, make_list(found))
 
 

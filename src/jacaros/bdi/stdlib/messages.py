@@ -10,6 +10,7 @@ from jacaros.bdi.waiting import Waiting
 from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
+    NIL,
     PLAIN,
     Functor,
     String,
@@ -116,7 +117,9 @@ def _sender_to_some(act: str) -> Any:
 
 def _known_name(term: Term | None) -> str | None:
     """The name that a term of the program is, if it is one."""
-    return None if term is None or bare(term).__class__ not in (String, Functor) else _name(term, "")
+    if term is None or is_list(term) or bare(term).__class__ not in (String, Functor):
+        return None
+    return _name(term, "")
 
 
 def _receivers(receiver: Term) -> list[str]:
@@ -188,7 +191,8 @@ class _Question:
 def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Any:
     """``.send(To, Performative, Content [, Answer [, Timeout]])``: a message; with an answer, a synchronous question.
 
-    *To* is a name or a list of names; *Timeout* is in milliseconds, and the answer is ``timeout`` then.
+    *To* is a name or a list of names, which may be empty; *Timeout* is in milliseconds, and the answer is ``timeout``
+    then.
 
     Raises:
         ActionError: ``receiver_not_found``.
@@ -206,6 +210,10 @@ def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest:
 def _ask(
     ctx: Context, receivers: list[str], act: str, content: Term, rest: tuple[Term, ...], many: bool
 ) -> Any:
+    if not receivers:
+        if not ctx.unify(rest[0], NIL):
+            raise ActionError("the answer does not fit", (ERROR, atom("ask_failed")))
+        return None
     waiting = ctx.suspend("ask")
     question = _Question(ctx, waiting, rest[0], receivers, many)
     waiting.on_drop = question.forget

@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 
 from jacaros.asl.errors import AslError
+from jacaros.bdi import plan_terms
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import ActionError, WrongArguments, internal_action
-from jacaros.bdi.plan_terms import plan_term
-from jacaros.bdi.stdlib.waiting import trigger_of
 from jacaros.compiler.plan import Plan
 from jacaros.compiler.reflection import NotAPlan
 from jacaros.terms.text import plan_text, text
@@ -20,7 +19,7 @@ def _source(term: Term) -> Term:
 
 def _term(ctx: Context, plan: Plan) -> Term:
     """A plan as a term, with its label and what is known of it."""
-    return plan_term(ctx.agent, plan)
+    return plan_terms.plan_term(ctx.agent, plan)
 
 
 @internal_action(".add_plan", arity=(1, 3))
@@ -53,20 +52,15 @@ def plan_label(ctx: Context, target: Term, label: Term) -> Iterator[None]:
 
 
 def _relevant(ctx: Context, event: Term) -> list[Plan]:
-    found = trigger_of(event)
-    if found is None:
+    plans = plan_terms.relevant_plans(ctx.agent, event)
+    if plans is None:
         raise WrongArguments(f"an event such as {{+!g}} is expected, not {text(event)}")
-    if found[0] is None:
-        operator = found[2]
-        return [
-            p for p in ctx.agent.library.plans if p.node.trigger.operator + p.node.trigger.kind == operator
-        ]
-    return list(ctx.agent.library.relevant(found[0]))
+    return plans
 
 
 @internal_action(".relevant_plans", arity=(2, 3))
 def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None) -> bool:
-    """``.relevant_plans({T}, Ps [,Labels])``: the plans for an event, in the order in which they are tried."""
+    """``.relevant_plans({T}, Ps [,Labels])``: the plans whose triggers unify with an event, in their order."""
     plans = _relevant(ctx, event)
     if not ctx.unify(target, make_list([_term(ctx, p) for p in plans])):
         return False

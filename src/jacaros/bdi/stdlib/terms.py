@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from jacaros.bdi.belief_base import is_source, without_sources
 from jacaros.bdi.context import Context
 from jacaros.bdi.intention import STEP
 from jacaros.bdi.internal_action import internal_action
@@ -82,21 +83,8 @@ def annotated(term: Term, annotations: tuple[Term, ...]) -> Term:
 
 def told_by(term: Term, source: Term) -> Term:
     """The literal as heard from *source*: its own sources become annotations of the new one."""
-    sources = tuple(a for a in annotations_of(term) if _is_source(a))
+    sources = tuple(a for a in annotations_of(term) if is_source(a))
     return annotated(without_sources(term), (annotated((SOURCE, source), sources),))
-
-
-def _is_source(annotation: Term) -> bool:
-    symbol = functor_of(annotation)
-    return symbol is not None and symbol.name == SOURCE.name
-
-
-def without_sources(term: Term) -> Term:
-    """The literal without its sources."""
-    if not isinstance(term, Annotated):
-        return term
-    kept = tuple(a for a in term.annotations if not _is_source(a))
-    return Annotated(term.term, kept, term.tail) if kept or term.tail is not None else term.term
 
 
 def _without_source(term: Term) -> Term:

@@ -3,42 +3,19 @@
 import re
 from typing import Any
 
-from jacaros.asl.loader import parse_trigger
 from jacaros.bdi.belief_base import parts
 from jacaros.bdi.context import Context
 from jacaros.bdi.event_waits import EventWait
 from jacaros.bdi.internal_action import WrongArguments, internal_action
+from jacaros.bdi.plan_terms import trigger_of
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.literals import own_annotations
-from jacaros.compiler.lowering import fresh_names, lower_trigger
-from jacaros.compiler.triggers import Trigger, trigger
-from jacaros.terms.plans import TRIGGERS, body_steps, is_body, step_parts, trigger_parts
+from jacaros.compiler.triggers import Trigger
 from jacaros.terms.substitution import rename
 from jacaros.terms.text import text
-from jacaros.terms.values import String, Term, atom, deref, functor
+from jacaros.terms.values import String, Term, atom, functor
 
 ERROR = functor("error", 1)
-
-
-def trigger_of(term: Term) -> tuple[Trigger | None, Term, str] | None:
-    """Trigger object (None when its literal is a variable), literal and operator of a trigger term, or None."""
-    term = deref(term)
-    if term.__class__ is String:
-        term = lower_trigger(parse_trigger(str(term)), fresh_names())
-    if term.__class__ is tuple and term[0] in TRIGGERS:
-        operator, literal = trigger_parts(term)
-    elif is_body(term):
-        steps = list(body_steps(term))
-        if len(steps) != 1:
-            return None
-        operator, operands = step_parts(steps[0])
-        if operator not in ("+", "-"):
-            return None
-        literal = operands[0]
-    else:
-        return None
-    symbol = parts(literal)[0]
-    return (None if symbol is None else trigger(operator[0], operator[1:], symbol)), literal, operator
 
 
 class _Wait:
