@@ -58,6 +58,11 @@ def messages(size: int) -> Workload:
     return Workload(f"messages, {size:,} agents", agents, 20_000, lambda n, k: n, k=size)
 
 
+def stamps(size: int) -> Workload:
+    """Beliefs that get *size* annotations one after the other, 20,000 in all."""
+    return single(f"beliefs with {size:,} annotations", "stamps", 20_000 // size, lambda n, k: n * k, k=size)
+
+
 TO_10_000 = (1, 10, 100, 1_000, 10_000)
 CURVES = (
     Curve(
@@ -75,6 +80,10 @@ CURVES = (
     Curve(
         "messages", "A message to one of many agents", "message", "agents", TO_10_000,
         (1, 10, 100), messages, lambda size: 2_000,
+    ),
+    Curve(
+        "annotations", "An annotation added to a belief", "annotation", "annotations", (1, 10, 100, 1_000),
+        (), stamps, lambda size: 0,
     ),
 )  # fmt: skip
 

@@ -134,6 +134,10 @@ WORKLOADS = (
     single("100 plans", "plans", 50_000, lambda n, k: 3 * n + 5, sizes={"agentspeak": 10_000}),
     single("annotations", "annotations", 10_000, lambda n, k: 3 * n + 8, sizes={"agentspeak": 1_000}),
     single(
+        "1000 annotations of a belief", "stamps", 10, lambda n, k: n * k, k=1000, unit="annotation", goal=None, faster=None,
+        lacks={"agentspeak": ".range with three arguments"},
+    ),
+    single(
         "namespaces", "namespaces", 50_000, lambda n, k: 3 * n + 8,
         lacks={"agentspeak": "namespaces"}, sizes={"jason": 5_000},
     ),

@@ -81,7 +81,8 @@ def _ratio(peer: dict[str, Any]) -> float:
 
 def scaling(curves: list[dict[str, Any]]) -> Figure:
     """What a unit costs among more and more of its kind."""
-    figure, panels = pyplot.subplots(2, 2, figsize=(7.5, 6), layout="constrained")
+    lines = -(-len(curves) // 2)
+    figure, panels = pyplot.subplots(lines, 2, figsize=(7.5, 3 * lines), layout="constrained")
     for axes, curve in zip(panels.flat, curves, strict=False):
         _curve(axes, curve)
     figure.supylabel("cost in empty calls of three arguments (logarithmic)", fontsize=9)

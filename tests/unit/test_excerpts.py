@@ -1,6 +1,5 @@
 """What messages show of files: escaped, cut, and no more messages than can be read."""
 
-import sys
 from collections.abc import Callable
 
 import pytest
@@ -74,28 +73,13 @@ def test_messages_about_one_line_grow_with_the_file_not_with_its_square() -> Non
         "+!g{0} <- a b.\n",
     ],
 )
-def test_the_work_of_a_check_is_in_proportion_to_the_program(line: str) -> None:
+def test_the_work_of_a_check_is_in_proportion_to_the_program(
+    line: str, calls_of: Callable[[Callable[[], object]], int]
+) -> None:
     def work(lines: int) -> int:
-        return _calls(lambda: _checked("".join(line.format(number) for number in range(lines))))
+        return calls_of(lambda: _checked("".join(line.format(number) for number in range(lines))))
 
     assert work(1600) < 8 * 1.5 * work(200)
-
-
-def _calls(function: Callable[[], object]) -> int:
-    """The number of Python functions that are called: not a time, which depends on the machine."""
-    count = 0
-
-    def note(_frame: object, event: str, _argument: object) -> None:
-        nonlocal count
-        count += event == "call"
-
-    before = sys.getprofile()
-    sys.setprofile(note)
-    try:
-        function()
-    finally:
-        sys.setprofile(before)
-    return count
 
 
 def _checked(text: str) -> None:

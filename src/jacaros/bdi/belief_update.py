@@ -13,7 +13,7 @@ from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.outcomes import Failure
 from jacaros.compiler.searching import unify_rows
 from jacaros.compiler.triggers import ADDED, DELETED, Trigger
-from jacaros.terms.order import annotation_set
+from jacaros.terms.order import merge_annotations
 from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
 from jacaros.terms.unifier import undo, unify_annotations
 from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, atom, bare, functor
@@ -131,10 +131,8 @@ def insert(
 
 def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
     """Add what is new to the annotations of a belief."""
-    new = tuple(a for a in annotations if a not in held)
-    if not new:
-        return None
-    return new if table.set(entry, annotation_set(held + new)) else None
+    merged, new = merge_annotations(held, annotations)
+    return new if new and table.set(entry, merged) else None
 
 
 def _insert_aside(

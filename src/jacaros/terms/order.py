@@ -4,6 +4,7 @@ It never looks at addresses, so that a run repeated with the same seed sorts ali
 """
 
 import itertools
+from bisect import bisect_left
 from collections.abc import Iterable
 from functools import cmp_to_key
 from typing import Any
@@ -207,6 +208,23 @@ def annotation_set(annotations: tuple[Term, ...]) -> tuple[Term, ...]:
         if not result or compare(result[-1], annotation) != 0:
             result.append(annotation)
     return tuple(result)
+
+
+def merge_annotations(
+    held: tuple[Term, ...], added: tuple[Term, ...]
+) -> tuple[tuple[Term, ...], tuple[Term, ...]]:
+    """Put *added* into the sorted annotations *held*: all of them, and those that are new.
+
+    Each is placed by bisection: a belief with many annotations must not be sorted again for one more.
+    """
+    merged = list(held)
+    new = []
+    for annotation in added:
+        place = bisect_left(merged, SortKey(annotation), key=SortKey)
+        if place == len(merged) or compare(merged[place], annotation) != 0:
+            merged.insert(place, annotation)
+            new.append(annotation)
+    return tuple(merged), tuple(new)
 
 
 def less(left: Term, right: Term) -> bool:

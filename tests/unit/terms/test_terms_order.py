@@ -3,10 +3,11 @@ from collections.abc import Callable
 import pytest
 from drawn_terms import any_plans, build
 from hypothesis import given
+from hypothesis import strategies as st
 
 from jacaros.terms.arithmetic import ADD
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.order import at_most, compare, less, sorted_terms
+from jacaros.terms.order import annotation_set, at_most, compare, less, merge_annotations, sorted_terms
 from jacaros.terms.substitution import equal
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, Reference, String, Term, Var, atom, functor, make_list, structure
@@ -122,3 +123,24 @@ def test_opaque_objects_are_in_the_order_of_their_numbers() -> None:
 def test_long_lists_are_compared_without_recursion() -> None:
     items = [float(n) for n in range(50_000)]
     assert compare(make_list(items), make_list([*items, 1.0])) < 0
+
+
+@given(st.lists(any_plans, max_size=6), st.lists(any_plans, max_size=3))
+def test_merged_annotations_are_those_of_one_set(held: list[object], added: list[object]) -> None:
+    scope: dict[str, Var] = {}
+    before = annotation_set(tuple(build(plan, scope) for plan in held))
+    more = tuple(build(plan, scope) for plan in added)
+    merged, new = merge_annotations(before, more)
+    assert merged == annotation_set(before + more)
+    assert annotation_set(before + new) == merged
+    assert len(merged) == len(before) + len(new)
+
+
+def test_one_more_annotation_is_compared_with_few_of_the_others(
+    calls_of: Callable[[Callable[[], object]], int],
+) -> None:
+    def work(held: int) -> int:
+        before = tuple(structure("time", float(number)) for number in range(held))
+        return calls_of(lambda: merge_annotations(before, (structure("time", held / 2 + 0.5),)))
+
+    assert work(4096) < 3 * work(16)
