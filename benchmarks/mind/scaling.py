@@ -63,6 +63,11 @@ def stamps(size: int) -> Workload:
     return single(f"beliefs with {size:,} annotations", "stamps", 20_000 // size, lambda n, k: n * k, k=size)
 
 
+def forks(size: int) -> Workload:
+    """Loops that fork *size* times, 20,000 forks in all."""
+    return single(f"loops of {size:,} forks", "forks", 20_000 // size, lambda n, k: n * k, k=size)
+
+
 TO_10_000 = (1, 10, 100, 1_000, 10_000)
 CURVES = (
     Curve(
@@ -85,6 +90,7 @@ CURVES = (
         "annotations", "An annotation added to a belief", "annotation", "annotations", (1, 10, 100, 1_000),
         (), stamps, lambda size: 0,
     ),
+    Curve("forks", "A fork in a loop", "fork", "rounds of the loop", TO_10_000, (), forks, lambda size: 0),
 )  # fmt: skip
 
 

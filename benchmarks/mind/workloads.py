@@ -138,6 +138,10 @@ WORKLOADS = (
         lacks={"agentspeak": ".range with three arguments"},
     ),
     single(
+        "forks", "forks", 10, lambda n, k: n * k, k=1000, unit="fork", goal=None, faster=None, faster_jason=1,
+        lacks={"agentspeak": "|&|"},
+    ),
+    single(
         "namespaces", "namespaces", 50_000, lambda n, k: 3 * n + 8,
         lacks={"agentspeak": "namespaces"}, sizes={"jason": 5_000},
     ),

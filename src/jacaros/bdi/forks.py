@@ -8,10 +8,13 @@ from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.intention import GOAL, STEP, Frame, Intention
+from jacaros.compiler.function import FIRST_SLOT
 from jacaros.compiler.outcomes import SUSPENDED
 from jacaros.compiler.searching import Remaining
-from jacaros.terms.substitution import ATOMIC, rename
-from jacaros.terms.values import Annotated, Term, Var
+from jacaros.terms.substitution import HOLDERS, rename
+from jacaros.terms.values import Var
+
+_HOLDERS = HOLDERS | {Var}
 
 
 class Fork:
@@ -59,20 +62,17 @@ def copied(frames: list[Frame]) -> list[Frame]:
     copies = []
     for frame in frames:
         copy = list(frame)
-        copy[GOAL] = (frame[GOAL][0], *(_renamed(a, names) for a in frame[GOAL][1:]))
-        copy[5:] = [_renamed(value, names) for value in frame[5:]]
+        goal = frame[GOAL]
+        if len(goal) > 1:
+            copy[GOAL] = (goal[0], *(rename(a, names) if a.__class__ in _HOLDERS else a for a in goal[1:]))
+        for slot in range(FIRST_SLOT, len(copy)):
+            value = copy[slot]
+            if value.__class__ in _HOLDERS:
+                copy[slot] = rename(value, names)
+            elif value.__class__ is Remaining:
+                copy[slot] = value.copy()
         copies.append(copy)
     return copies
-
-
-def _renamed(value: Term, names: dict[Var, Var]) -> Term:
-    if isinstance(value, Remaining):
-        return value.copy()
-    return (
-        rename(value, names)
-        if value.__class__ in (tuple, Var, Annotated) and value.__class__ not in ATOMIC
-        else value
-    )
 
 
 def join(agent: Circumstance, frame: Frame) -> Any:
@@ -103,6 +103,8 @@ def branch_failed(agent: Circumstance, intention: Intention) -> bool:
 
 def _drop_branches(agent: Circumstance, point: Fork, survivor: Intention) -> None:
     """The other branches of a fork are over, with all that they forked themselves."""
+    if not point.open:
+        return
     point.open.clear()
     for other in list(agent.alive.values()):
         if other is not survivor and any(fork_point is point for fork_point, _ in other.forks):

@@ -1,6 +1,7 @@
 """Searches that generated code makes among facts and rules."""
 
 from collections.abc import Generator, Iterator
+from operator import length_hint
 from typing import Any, NoReturn
 
 from jacaros.terms.substitution import resolve
@@ -160,25 +161,27 @@ def still_held(table: Any, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term,
 
 
 class Remaining:
-    """The answers of a ``for`` that are still to come: searched for one by one, and plain data when asked for.
+    """The answers of a ``for`` that are still to come: searched for one by one until the intention is copied."""
 
-    Whoever copies or stores an intention takes `items`; the search is over then.
-    """
+    __slots__ = ("_answers", "_found")
 
-    __slots__ = ("_search",)
-
-    def __init__(self, search: Iterator[tuple[Term, ...]]) -> None:
-        self._search = search
+    def __init__(
+        self, answers: Iterator[tuple[Term, ...]], found: list[tuple[Term, ...]] | None = None
+    ) -> None:
+        self._answers, self._found = answers, found
 
     def __iter__(self) -> Iterator[tuple[Term, ...]]:
-        return self._search
-
-    def items(self) -> list[tuple[Term, ...]]:
-        """All answers to come, with the values of the variables that the loop binds."""
-        found = [tuple(resolve(value) for value in answer) for answer in self._search]
-        self._search = iter(found)
-        return found
+        return self._answers
 
     def copy(self) -> "Remaining":
-        """The same answers, for a copy of the intention."""
-        return Remaining(iter(self.items()))
+        """The same answers, for a copy of the intention.
+
+        The first copy ends the search.  From then on all copies share one list, each with its own place in it.
+        """
+        found = self._found
+        if found is None:
+            found = self._found = [tuple(map(resolve, answer)) for answer in self._answers]
+            self._answers = iter(found)
+        other = iter(found)
+        other.__setstate__(len(found) - length_hint(self._answers))  # type: ignore[attr-defined]
+        return Remaining(other, found)

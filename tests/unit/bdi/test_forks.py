@@ -1,5 +1,7 @@
 """Forks: all branches, the first branch, failure and dropping."""
 
+from collections.abc import Callable
+
 from recording_host import printed
 
 
@@ -61,3 +63,14 @@ def test_a_body_in_curly_brackets_is_a_step_and_a_branch() -> None:
      { .print("fifth") }.
 """
     assert printed(program) == ["second", "first", "third", "fourth", "fifth"]
+
+
+def test_branches_share_the_answers_of_the_loop_around_them(
+    calls_of: Callable[[Callable[[], object]], int],
+) -> None:
+    def work(rounds: int) -> int:
+        program = f"!s. +!s <- for (.range(I, 1, {rounds})) {{ X = I |&| Y = I }}; .print(end)."
+        return calls_of(lambda: printed(program))
+
+    least = work(1)
+    assert work(400) - least < 5 * (work(100) - least)
