@@ -16,6 +16,7 @@ OF_FILES = {
     "not-imported",
     "too-many",
     "no-effect",
+    "plan-too-large",
     "unknown-artifact-type",
     "unknown-message-type",
     "unknown-operation",

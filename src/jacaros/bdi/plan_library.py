@@ -9,6 +9,7 @@ from jacaros.bdi.program_plans import (
     ProgramSelects,
     concerns,
     has_goal_condition,
+    look_at_large_plans,
     made,
     relevant,
 )
@@ -37,6 +38,8 @@ class PlanLibrary:
         self.program = program
         if program.report is None:
             program.report = report
+            for _, fault in look_at_large_plans(program.plans, program.actions):
+                report(f"{fault}; it is left out")
         self.actions: Mapping[str, ActionInfo] = program.actions
         self.report = report
         self.plans: list[Plan] = program.plans

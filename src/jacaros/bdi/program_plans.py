@@ -1,13 +1,17 @@
 """The plans of one program, made and compiled once for all agents that run it."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Any
 
 from jacaros.asl import nodes
+from jacaros.asl.walk import walk
 from jacaros.compiler.function import ActionInfo
 from jacaros.compiler.plan import Plan, label_of, with_subplans
 from jacaros.compiler.triggers import Trigger
+from jacaros.compiler.triggers import trigger as trigger_of_kind
 from jacaros.compiler.unit import Select, compile_select
+from jacaros.terms.values import functor
 
 
 class ProgramPlans:
@@ -111,8 +115,59 @@ def made(
         return None
     try:
         select, sources[trigger] = compile_select(trigger, plans, actions)
-    except (SyntaxError, RecursionError) as fault:
-        # Python's limits for one function; a program meets them with formulae of some hundred operators.
-        report(f"the plans for {trigger!r} are too large to be compiled: {fault}")
-        return None
+    except TOO_LARGE:
+        small = [plan for plan in plans if not _told(plan, actions, report)]
+        if len(small) == len(plans) and not any(plan.searched for plan in plans):
+            report(f"the plans for {trigger!r} are too large together to be compiled")
+            return None
+        return made(trigger, small, actions, sources, report)
     return select
+
+
+def _told(plan: Plan, actions: Mapping[str, ActionInfo], report: Callable[[str], None]) -> bool:
+    """Report a plan that has to be left out, once."""
+    if plan.fault is None and too_large(plan, actions):
+        report(f"{plan.fault}; it is left out")
+    return plan.fault is not None
+
+
+TOO_LARGE = (SyntaxError, RecursionError, MemoryError)
+"""What Python says of code that is beyond its limits for one function."""
+_LARGE = 100
+"""Parts of a plan from which on it is compiled at the start, to see whether it can be."""
+
+
+def look_at_large_plans(
+    plans: Sequence[Plan], actions: Mapping[str, ActionInfo]
+) -> Iterator[tuple[Plan, str]]:
+    """The plans that are too large to be compiled, each with what is to be said of it."""
+    for plan in plans:
+        if sum(1 for _ in islice(walk(plan.node), _LARGE)) == _LARGE and too_large(plan, actions):
+            yield plan, plan.fault or ""
+
+
+def too_large(plan: Plan, actions: Mapping[str, ActionInfo]) -> bool:
+    """Whether a plan cannot be compiled.  A context that cannot be is searched, which takes longer."""
+    for searched in (False, True):
+        plan.searched = plan.searched or searched
+        try:
+            compile_select(_trigger_of(plan), [plan], actions)
+        except TOO_LARGE as fault:
+            why = str(fault)
+        else:
+            return False
+    plan.fault = f"the plan {plan_name(plan)} is too large to be compiled ({why})"
+    return True
+
+
+def _trigger_of(plan: Plan) -> Trigger:
+    head = plan.node.trigger
+    return trigger_of_kind(head.operator, head.kind, plan.trigger_functor() or functor("plan", 0))
+
+
+def plan_name(plan: Plan) -> str:
+    """The trigger of a plan and its place, for people."""
+    head, span = plan.node.trigger, plan.node.span
+    symbol = plan.trigger_functor()
+    name = f"{head.operator}{head.kind}{'_' if symbol is None else repr(symbol)}"
+    return name if span is None else f"{name} ({span.file.name}:{span.line})"

@@ -13,6 +13,7 @@ Predicates with rules are searched by generators.  Two ways of running them:
 """
 
 from collections.abc import Callable
+from typing import Any, cast
 
 from jacaros.asl import nodes
 from jacaros.compiler.answers import loop_binding, loop_over_answers, undoing
@@ -23,9 +24,11 @@ from jacaros.compiler.internal_actions import internal_action
 from jacaros.compiler.matching import MAX_DEPTH, Then, match
 from jacaros.compiler.queries import TRUTHS, literal, query
 from jacaros.compiler.relations import BINDING_NOTHING, comparison, relation
-from jacaros.compiler.variables import names_in
+from jacaros.compiler.variables import names_in, operands
 
 _MAX_LOOPS = 12
+_FEW = 24
+"""So many formulae of a chain are written inside each other."""
 
 
 def condition(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
@@ -42,7 +45,33 @@ def condition(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
 
 
 def _and(fn: FunctionBuilder, node: nodes.And, then: Then) -> None:
-    condition(fn, node.left, lambda: condition(fn, node.right, then))
+    formulae = operands(node)
+    size = _FEW
+    while len(formulae) > size:
+        size *= _FEW
+    size //= _FEW
+    # A long chain is cut into functions, else writing it would need a level of Python's stack for each formula.
+    _all(fn, [_joined(formulae[i : i + size]) for i in range(0, len(formulae), size)], then)
+
+
+def _all(fn: FunctionBuilder, formulae: list[nodes.Node], then: Then) -> None:
+    if not formulae:
+        then()
+        return
+    if len(formulae) > 1 and (fn.writer.depth > MAX_DEPTH or fn.writer.loops > _MAX_LOOPS):
+        in_own_function(fn, _joined(formulae), then)
+        return
+    first, *others = formulae
+    write = in_own_function if isinstance(first, nodes.And) else condition
+    write(fn, first, lambda: _all(fn, others, then))
+
+
+def _joined(formulae: list[Any]) -> nodes.Node:
+    joined: Any
+    joined, *others = reversed(formulae)
+    for formula in others:
+        joined = nodes.And(formula, joined, span=formula.span)
+    return cast("nodes.Node", joined)
 
 
 def _or(fn: FunctionBuilder, node: nodes.Or, then: Then) -> None:
@@ -123,7 +152,7 @@ def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
     inner.at(node)
     with inner.writer.block(f"def {name}(agent, t, d{''.join(f', v_{c}' for c in captured)}):"):
         if isinstance(node, nodes.Or):
-            for side in (node.left, node.right):
+            for side in operands(node):
                 with inner.branch():
                     condition(inner, side, lambda: _yield(inner, results))
         else:
@@ -228,8 +257,8 @@ def _dynamic_collect(fn: FunctionBuilder, node: nodes.InternalAction, then: Then
 # --- which code is written for which formula ---------------------------------------------------------------
 
 
-def _dynamic(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
-    """A formula that is known only at run time."""
+def searched(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
+    """A formula that is known only at run time, or too large to be compiled."""
     formula = build(fn, node)
     loop_binding(fn, f"agent.solve_formula({formula}, t)", names_in(node), then)
 
@@ -247,15 +276,15 @@ _WRITERS: dict[type, Callable[..., None]] = {
     nodes.Relation: relation,
     nodes.Literal: literal,
     nodes.InternalAction: _internal_action,
-    nodes.Variable: _dynamic,
-    Constant: _dynamic,
-    nodes.FunctionCall: _dynamic,
-    nodes.Number: _dynamic,
-    nodes.String: _dynamic,
-    nodes.ListTerm: _dynamic,
-    nodes.Arithmetic: _dynamic,
-    nodes.PlanTerm: _dynamic,
-    nodes.TriggerTerm: _dynamic,
-    nodes.RuleTerm: _dynamic,
-    nodes.BodyTerm: _dynamic,
+    nodes.Variable: searched,
+    Constant: searched,
+    nodes.FunctionCall: searched,
+    nodes.Number: searched,
+    nodes.String: searched,
+    nodes.ListTerm: searched,
+    nodes.Arithmetic: searched,
+    nodes.PlanTerm: searched,
+    nodes.TriggerTerm: searched,
+    nodes.RuleTerm: searched,
+    nodes.BodyTerm: searched,
 }

@@ -126,6 +126,11 @@ def _match_structure(
 
 def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str], then: Then) -> None:
     """Match patterns with values, one inside the other."""
+    bound = 0
+    while bound < len(patterns) and _only_binds(fn, patterns[bound]):
+        match(fn, patterns[bound], values[bound], _nothing)
+        bound += 1
+    patterns, values = patterns[bound:], values[bound:]
     if not patterns:
         then()
         return
@@ -133,6 +138,15 @@ def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str]
         _match_together(fn, patterns, values, then)
         return
     match(fn, patterns[0], values[0], lambda: match_all(fn, patterns[1:], values[1:], then))
+
+
+def _only_binds(fn: FunctionBuilder, pattern: nodes.Node) -> bool:
+    """Whether any value matches: a variable that is met for the first time."""
+    return isinstance(pattern, nodes.Variable) and _is_plain(pattern) and fn.values.get(pattern.name) is None
+
+
+def _nothing() -> None:
+    pass
 
 
 def _match_together(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str], then: Then) -> None:

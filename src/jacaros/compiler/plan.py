@@ -39,6 +39,8 @@ class Plan:
         first: the first step function, None for an empty body; set when the plan is compiled.
         steps: what is known of each step function, by its name.
         scope: the plan that this one is a sub-plan of, or None.
+        fault: why it cannot be compiled, once that has been seen.
+        searched: its context is too large to be compiled, and searched as a term.
         replaceable: nothing is left to do once its last formula has called a goal: it has neither goal condition nor
             sub-plans.
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
@@ -49,12 +51,14 @@ class Plan:
     __slots__ = (
         "annotations",
         "atomic",
+        "fault",
         "first",
         "goal_condition",
         "label",
         "node",
         "replaceable",
         "scope",
+        "searched",
         "size",
         "slots",
         "steps",
@@ -75,6 +79,8 @@ class Plan:
         self.first: Callable[[Any, list[Any]], Any] | None = None
         self.steps: dict[str, StepInfo] = {}
         self.scope: Plan | None = None
+        self.searched = False
+        self.fault: str | None = None
         self.goal_condition: Callable[[Any, list[Any]], bool] | None = None
         self.subplans: list[Plan] = []
         self.subselects: dict[Trigger, Any] = {}

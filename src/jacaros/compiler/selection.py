@@ -11,7 +11,7 @@ from jacaros.compiler.annotations import first_match, patterns_in_order
 from jacaros.compiler.bodies import body_compiler
 from jacaros.compiler.body_compiler import BodyCompiler
 from jacaros.compiler.building import annotation_parts, functor_of_literal, tuple_of
-from jacaros.compiler.conditions import condition
+from jacaros.compiler.conditions import condition, searched
 from jacaros.compiler.function import Frame, FunctionBuilder, Unit
 from jacaros.compiler.matching import match_all, settle_fresh
 from jacaros.compiler.plan import Plan
@@ -180,7 +180,8 @@ class SelectCompiler:
             self._frame(fn, plan)
         else:
             fn.at(plan.node.context)
-            condition(fn, plan.node.context, lambda: self._frame(fn, plan))
+            write = searched if plan.searched else condition
+            write(fn, plan.node.context, lambda: self._frame(fn, plan))
 
     def _frame(self, fn: FunctionBuilder, plan: Plan) -> None:
         """The innermost point: the plan is applicable, its frame is made and given back."""

@@ -4,22 +4,12 @@ from collections.abc import Iterator
 from typing import TypeVar
 
 from jacaros.asl import nodes
+from jacaros.asl.walk import walk
 
 
 def variables_in(node: object) -> Iterator[nodes.Variable]:
     """All occurrences of variables, in order, those of nested plans and bodies included."""
-    if isinstance(node, nodes.Variable):
-        yield node
-        if isinstance(node.namespace, nodes.Variable):
-            yield node.namespace
-        if node.annotations is not None:
-            yield from variables_in(node.annotations)
-    elif isinstance(node, nodes.Node):
-        for part in node.parts():
-            yield from variables_in(part)
-    elif isinstance(node, tuple):
-        for item in node:
-            yield from variables_in(item)
+    return nodes_in(nodes.Variable, node)
 
 
 def names_in(*parts: object) -> list[str]:
@@ -46,12 +36,19 @@ Kind = TypeVar("Kind", bound=nodes.Node)
 
 
 def nodes_in(kind: type[Kind], node: object) -> Iterator[Kind]:
-    """All nodes of a kind in a piece of syntax."""
-    if isinstance(node, kind):
-        yield node
-    if isinstance(node, nodes.Node):
-        for part in node.parts():
-            yield from nodes_in(kind, part)
-    elif isinstance(node, tuple):
-        for item in node:
-            yield from nodes_in(kind, item)
+    """All nodes of a kind in a piece of syntax, in order."""
+    return (part for part in walk(node) if isinstance(part, kind))
+
+
+def operands(node: nodes.And | nodes.Or) -> list[nodes.Node]:
+    """The formulae that a chain of the same operator joins, from left to right."""
+    kind = type(node)
+    found: list[nodes.Node] = []
+    stack: list[nodes.Node] = [node]
+    while stack:
+        node_ = stack.pop()
+        if isinstance(node_, kind):
+            stack += (node_.right, node_.left)
+        else:
+            found.append(node_)
+    return found

@@ -344,12 +344,25 @@ def _check_program(
     known = KnownActions(code.actions, code.hint, code.is_unseen)
     whole = _with_additions(program, agent)
     own = [*diagnostics, *check(whole, known, errors)]
+    if not errors:
+        own += _of_size(whole, code)
     for source in sources:
         own += Suppressions(source).unknown
     if agent is not None and agent.agent_class is not None:
         own = [each for each in own if each.code != NEVER_SELECTED]
     findings.diagnostics += [_located(each, agent) for each in own if _concerns_author(each, path)]
     return None if errors else whole
+
+
+def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
+    """Plans that are left out because Python does not compile them."""
+    from jacaros.bdi.program_plans import ProgramPlans, look_at_large_plans  # here: see `_of_artifacts`
+
+    plans = ProgramPlans(program.plans, code.actions)
+    for plan, fault in look_at_large_plans(plans.plans, plans.actions):
+        yield Diagnostic(
+            "error", fault, plan.node.span, "write several plans, or rules for parts of it", "plan-too-large"
+        )
 
 
 def _concerns_author(diagnostic: Diagnostic, path: Path) -> bool:

@@ -1,6 +1,7 @@
 """Plans made once for all agents of a program: shared while untouched, each agent's own when it changes them."""
 
-from recording_host import RecordingHost
+import pytest
+from recording_host import RecordingHost, mind, printed
 
 from jacaros.asl.loader import load_program, parse_literals
 from jacaros.bdi.agent import Agent
@@ -90,3 +91,34 @@ def test_a_plan_under_way_keeps_its_place_when_its_kind_is_compiled_again() -> N
     adopt(first, "slow")
     adopt(second, "slow")
     assert first.printed == second.printed == ["test_goal_failed in line 6"]
+
+
+@pytest.mark.parametrize("size", [30, 125, 1500])
+def test_a_context_may_be_a_chain_of_any_length(size: int) -> None:
+    beliefs = " ".join(f"ok({i})." for i in range(size - 1))
+    conjunction = " & ".join(f"ok(X{i}) & X{i} == {i}" for i in range(size))
+    disjunction = " | ".join(f"no({i})" for i in range(size))
+    program = f"""
+{beliefs}
+!go.
++!go <- !both; +ok({size - 1}); !both; !either; +no({size - 1}); !either.
++!both : {conjunction} <- .print("all, ", X0, " to ", X{size - 1}).
++!both <- .print("not all").
++!either : {disjunction} <- .print("one").
++!either <- .print("none").
+"""
+    assert printed(program) == ["not all", f"all, 0 to {size - 1}", "none", "one"]
+
+
+def test_a_context_that_is_nested_deeply_is_searched() -> None:
+    context = "".join("(ok & (no(X) | " for _ in range(70)) + "ok & Y = 3" + "))" * 70
+    assert printed(f"!go. ok. +!go : {context} <- .print(Y). +!go <- .print(none).") == ["3"]
+
+
+def test_a_plan_that_cannot_be_compiled_leaves_the_others_alone() -> None:
+    deep = "[" * 140 + "X" + "]" * 140
+    host = mind(f"!go. +!go <- +bumper(left). +bumper({deep}) <- .print(X). +bumper(X) <- .print(stop).")
+    host.run()
+    assert host.printed == ["stop"]
+    [(level, told)] = host.logged
+    assert (level, told.startswith("the plan +bumper/1 (tester.asl:1) is too large")) == ("error", True)

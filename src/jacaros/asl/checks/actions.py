@@ -146,9 +146,10 @@ def unknown_performatives(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Performatives that are nearly those of the language; any other word may be one of the program's own."""
     places = {".send": 1, ".broadcast": 0}
     for node in found:
-        if not isinstance(node, nodes.InternalAction) or len(node.arguments) <= places.get(node.name, 99):
+        place = places.get(node.name) if isinstance(node, nodes.InternalAction) else None
+        if not isinstance(node, nodes.InternalAction) or place is None or len(node.arguments) <= place:
             continue
-        word = node.arguments[places[node.name]]
+        word = node.arguments[place]
         if not isinstance(word, nodes.Literal) or word.arguments or word.functor in _PERFORMATIVES:
             continue
         meant = [each for each in _PERFORMATIVES if is_slip_of(word.functor.lower(), each.lower())]
