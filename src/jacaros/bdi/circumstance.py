@@ -23,6 +23,7 @@ from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.waiting import Waiting
 from jacaros.compiler.triggers import Trigger
 from jacaros.terms.substitution import rename
+from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import Term, functor
 
@@ -242,6 +243,10 @@ class Circumstance:
         self.plans_made = len(plans.plans)
         self.bodies: dict[int, tuple[Term, Any]] = {}
         self.intentions_made = 0
+
+    def warn_of_operand(self, what: str, value: Term) -> None:
+        """Take note of an operand that is no number."""
+        self.architecture.log("warning", f"{what} is no number: {text(value)}")
 
     def new_intention(self, cause: Any = None) -> Intention:
         """An intention with a number of its own; it is not in any queue yet."""

@@ -17,7 +17,7 @@ from jacaros.bdi.intention import Intention
 from jacaros.bdi.sensing import look_around
 from jacaros.bdi.urgency import handle_urgent_event
 from jacaros.errors import InternalError
-from jacaros.terms.arithmetic import AGENT
+from jacaros.terms.arithmetic import RUNNING
 
 
 def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for speed
@@ -35,8 +35,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     if agent.crowd:
         agent.let_in()
     # Calls inside terms are evaluated for this agent meanwhile.
-    before = AGENT.value
-    AGENT.value = agent.call_own
+    before = RUNNING.set(agent)
     agent.running = True
     try:
         begun = fuel
@@ -89,7 +88,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         return not agent.stopped and (fuel <= 0 or _has_work(agent))
     finally:
         agent.running = False
-        AGENT.value = before
+        RUNNING.reset(before)
 
 
 def _has_work(agent: Circumstance) -> bool:

@@ -8,7 +8,7 @@ from jacaros.asl.functions import FunctionNames
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
 from jacaros.compiler.searching import run
-from jacaros.terms.arithmetic import AGENT, ArithmeticFault, settle
+from jacaros.terms.arithmetic import RUNNING, ArithmeticFault, settle
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
@@ -93,9 +93,8 @@ def _symbol(function: RegisteredFunction) -> Functor:
 @contextmanager
 def evaluating(agent: Circumstance) -> Iterator[None]:
     """While it is open, calls inside terms are evaluated for this agent."""
-    before = AGENT.value
-    AGENT.value = lambda term: call_own(agent, term)
+    before = RUNNING.set(agent)
     try:
         yield
     finally:
-        AGENT.value = before
+        RUNNING.reset(before)

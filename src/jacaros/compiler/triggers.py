@@ -47,5 +47,5 @@ def trigger(operator: str, kind: str, functor: Functor) -> Trigger:
     key = (operator, kind, functor)
     found = _triggers.get(key)
     if found is None:
-        found = _triggers[key] = Trigger(operator, kind, functor)
+        found = _triggers.setdefault(key, Trigger(operator, kind, functor))  # as functors
     return found

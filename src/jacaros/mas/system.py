@@ -30,9 +30,6 @@ from jacaros.mas.scheduler import Scheduler
 from jacaros.mas.service_directory import NAME as DIRECTORY_NAME
 from jacaros.mas.service_directory import ServiceDirectory
 from jacaros.project_modules import ProjectModules
-from jacaros.terms import arithmetic
-from jacaros.terms.text import text
-from jacaros.terms.values import Term
 
 if TYPE_CHECKING:
     from jacaros.env.environment import Environment
@@ -150,9 +147,6 @@ class System:
             raise self._error
         return code
 
-    def _warn_of_operand(self, what: str, value: Term) -> None:
-        self.console.log(f"warning: {what} is no number: {text(value)}", "warning")
-
     @property
     def environment(self) -> "Environment | None":
         """Workspaces and artifacts; None while nobody has needed them."""
@@ -167,7 +161,6 @@ class System:
             JacarosError: the project cannot be started; the text tells what is wrong.
         """
         self._ended = asyncio.get_running_loop().create_future()
-        arithmetic.warn = self._warn_of_operand
         for diagnostic in self.deployment.ignored:
             self.console.log(diagnostic.render(), "warning")
         population = self.population

@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Callable
+from contextvars import ContextVar
+from typing import Protocol
 
 from jacaros.terms.values import (
     ARITHMETIC,
@@ -86,28 +88,30 @@ AFFIRM = functor("+", 1, kind=ARITHMETIC)
 Evaluator = Callable[..., Term]
 functions: dict[str, Evaluator] = {}
 """Arithmetic functions by name; they are given the evaluated arguments and return a number, or None when the
-arguments are not known yet.  Functions that need an agent are known to `AGENT`."""
+arguments are not known yet.  Functions that need an agent are known to the one that is `RUNNING`."""
 
 
-class AgentCalls:
-    """Functions that need an agent.
+class Caller(Protocol):
+    """The agent for which terms are evaluated."""
 
-    Attributes:
-        value: gives the value of a call, or None while it has none; replaced by the agent that is running.
-    """
+    @property
+    def call_own(self) -> Callable[[Term], Term]:
+        """Gives the value of a call of a function that needs an agent, or None while it has none."""
 
-    __slots__ = ("value",)
-
-    def __init__(self) -> None:
-        self.value: Callable[[Term], Term] = lambda term: None
+    def warn_of_operand(self, what: str, value: Term) -> None:
+        """Take note of an operand that is no number: what it is for, and its value."""
 
 
-AGENT = AgentCalls()
-"""An object, for it is changed at every turn of an agent: a module takes ten times as long for that."""
+RUNNING: ContextVar[Caller | None] = ContextVar("RUNNING", default=None)
+"""The agent whose turn it is; systems on other loops and in other threads have theirs."""
 
-warn: Callable[[str, Term], None] = lambda what, value: None  # noqa: E731 - replaced by whoever runs agents
-"""Told of operands that are no numbers, by what they are for and their value; the result is not a number then, as in
-Jason."""
+
+def warn(what: str, value: Term) -> None:
+    """Warn of an operand that is no number, by what it is for and its value; the result is not a number then, as in
+    Jason."""
+    agent = RUNNING.get()
+    if agent is not None:
+        agent.warn_of_operand(what, value)
 
 
 def settle(term: Term) -> Term:
@@ -193,7 +197,11 @@ def _number(operand: Term, term: Term) -> float:
 def call(term: Term) -> Term:
     """Evaluate a function call; the call itself comes back while arguments are unknown."""
     function = functions.get(term[0].name)
-    value = AGENT.value(term) if function is None else function(*term[1:])
+    if function is not None:
+        value = function(*term[1:])
+    else:
+        agent = RUNNING.get()
+        value = None if agent is None else agent.call_own(term)
     return term if value is None else value
 
 

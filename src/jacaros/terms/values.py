@@ -60,7 +60,8 @@ def functor(
     key = (name, arity, negated, namespace, kind)
     found = _functors.get(key)
     if found is None:
-        found = _functors[key] = Functor(*key)
+        # At once: another thread may be making it, and there must be one object only.
+        found = _functors.setdefault(key, Functor(*key))
     return found
 
 

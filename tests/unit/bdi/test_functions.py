@@ -1,5 +1,8 @@
 """Arithmetic functions that need the agent: registered rules, counts, the clock, chance."""
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 from recording_host import mind
 
@@ -85,3 +88,29 @@ def test_a_plan_as_a_term_may_hold_a_function_that_has_no_value_yet() -> None:
         +!h(X) <- .print(my.sum(X, 1)).
     """
     assert printed(SUM + program) == ["found", "seen", "2"]
+
+
+def test_agents_in_two_threads_evaluate_their_own_functions() -> None:
+    both = threading.Barrier(2, timeout=30)
+
+    def run(number: int) -> list[str]:
+        host = mind(f"""
+{{ register_function("my.f", 1, "f") }}
+f(_, {number}).
+!go.
++!go <- T = [my.f(Z)]; .print(meet); Z = 1; .nth(0, T, W); .print(W); !add("a"); .print(meet).
++!add(Y) <- X = Y + 1; .print(X).
+""")
+
+        def show(line: str) -> None:
+            host.printed.append(line)
+            if line == "meet":
+                both.wait()
+
+        host.print = show  # type: ignore[method-assign]
+        host.run()
+        return [*host.printed, *(line for _, line in host.logged)]
+
+    with ThreadPoolExecutor() as pool:
+        found = list(pool.map(run, (1, 2)))
+    assert found == [["meet", n, "NaN", "meet", """an operand of '+' is no number: "a\""""] for n in "12"]

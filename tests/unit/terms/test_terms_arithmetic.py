@@ -4,8 +4,7 @@ from collections.abc import Iterator
 import pytest
 
 import jacaros.terms.functions  # noqa: F401 - the functions of the language
-from jacaros.terms import arithmetic
-from jacaros.terms.arithmetic import ADD, ArithmeticFault, binary, functions, negate, settle
+from jacaros.terms.arithmetic import ADD, RUNNING, ArithmeticFault, binary, functions, negate, settle
 from jacaros.terms.collections import MapValue, SetValue
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
@@ -15,13 +14,25 @@ from jacaros.terms.values import ARITHMETIC, FUNCTION, String, Term, Var, atom, 
 INFINITY = math.inf
 
 
+class Listener:
+    """An agent that keeps what it is warned of."""
+
+    def __init__(self) -> None:
+        self.told: list[str] = []
+
+    def call_own(self, term: Term) -> Term:
+        return None
+
+    def warn_of_operand(self, what: str, value: Term) -> None:
+        self.told.append(f"{what} is no number: {text(value)}")
+
+
 @pytest.fixture
 def warnings() -> Iterator[list[str]]:
-    told: list[str] = []
-    before = arithmetic.warn
-    arithmetic.warn = lambda what, value: told.append(f"{what} is no number: {text(value)}")
-    yield told
-    arithmetic.warn = before
+    listener = Listener()
+    before = RUNNING.set(listener)
+    yield listener.told
+    RUNNING.reset(before)
 
 
 @pytest.mark.parametrize(
