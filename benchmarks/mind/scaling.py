@@ -68,6 +68,11 @@ def forks(size: int) -> Workload:
     return single(f"loops of {size:,} forks", "forks", 20_000 // size, lambda n, k: n * k, k=size)
 
 
+def conditions(size: int) -> Workload:
+    """Conditions that come true while *size* others are awaited."""
+    return single(f"waits beside {size:,} others", "waits", 5_000, lambda n, k: n, k=size)
+
+
 TO_10_000 = (1, 10, 100, 1_000, 10_000)
 CURVES = (
     Curve(
@@ -89,6 +94,10 @@ CURVES = (
     Curve(
         "annotations", "An annotation added to a belief", "annotation", "annotations", (1, 10, 100, 1_000),
         (), stamps, lambda size: 0,
+    ),
+    Curve(
+        "conditions", "A wait for a condition, while others are awaited", "wait", "awaited conditions", TO_10_000,
+        (), conditions, lambda size: 0,
     ),
     Curve("forks", "A fork in a loop", "fork", "rounds of the loop", TO_10_000, (), forks, lambda size: 0),
 )  # fmt: skip

@@ -138,6 +138,10 @@ WORKLOADS = (
         lacks={"agentspeak": ".range with three arguments"},
     ),
     single(
+        "waits for conditions", "waits", 5_000, lambda n, k: n, k=100, unit="wait", goal=None, faster=None,
+        lacks={"agentspeak": "conditions in .wait"}, sizes={"jason": 1_000},
+    ),
+    single(
         "forks", "forks", 10, lambda n, k: n * k, k=1000, unit="fork", goal=None, faster=None, faster_jason=1,
         lacks={"agentspeak": "|&|"},
     ),

@@ -4,7 +4,7 @@ import itertools
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from jacaros.bdi.rules import OpenFact, Search, Searches
+from jacaros.bdi.rules import OpenFact, Rule, Search, Searches
 from jacaros.bdi.search_budget import SearchBudget
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import ATOMIC, equal, is_key, resolve
@@ -122,6 +122,10 @@ class Table:
             if isinstance(entry, OpenFact) and equal(entry.literal, literal(self.functor, row)):
                 return entry
         return None
+
+    def holds_facts_only(self) -> bool:
+        """Whether nothing but a change of this table changes its answers: it has no rules."""
+        return self.plain or not any(isinstance(entry, Rule) for entry in (*self.rows, *self.late))
 
     def get(self, row: Any) -> tuple[Term, ...] | None:
         """The annotations of a row, None when it is not held."""

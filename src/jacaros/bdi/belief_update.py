@@ -76,8 +76,7 @@ def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations
 def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool) -> Any:
     if new is None:
         return None
-    if agent.condition_waits:
-        agent.do_soon(look_again)
+    note_change(agent, symbol, row)
     return _raise(agent, (ADDED[symbol], *row), new, apart)
 
 
@@ -104,6 +103,12 @@ def _apart(goal: tuple[Any, ...]) -> tuple[Any, ...]:
     """An event for another intention, which shares no variables with this one."""
     names: dict[Var, Var] = {}
     return (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
+
+
+def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
+    """A belief changed: the agent looks again at the awaited conditions that ask for such beliefs."""
+    if agent.condition_waits and agent.condition_waits.changed(symbol, row):
+        agent.do_soon(look_again)
 
 
 def look_again() -> None:
@@ -155,8 +160,7 @@ def delete_belief(
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
     if removed is None:
         return None
-    if agent.condition_waits:
-        agent.do_soon(look_again)
+    note_change(agent, symbol, removed)
     return _raise(agent, (DELETED[symbol], *removed), annotations, apart)
 
 
@@ -323,8 +327,7 @@ def external_change(
     kind = (ADDED if operator == "+" else DELETED)[symbol]
     if agent.selects[kind] is not None or agent.event_waits or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
-    if agent.condition_waits:
-        agent.do_soon(look_again)
+    note_change(agent, symbol, row)
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:
@@ -368,4 +371,7 @@ def _is_flat(row: Row) -> bool:
 
 def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
     """Add a rule at run time; rules raise no events."""
+    if agent.condition_waits:
+        agent.condition_waits.depend_on_rules(head)
+        agent.do_soon(look_again)
     agent.beliefs[head].add(rule, rule.head_annotations(), last)

@@ -10,6 +10,7 @@ from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.belief_base import BeliefBase
 from jacaros.bdi.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
 from jacaros.bdi.budget import budgets
+from jacaros.bdi.condition_waits import ConditionWaits
 from jacaros.bdi.event import EVENT_GOAL, EVENT_INTENTION, Event, event_literal
 from jacaros.bdi.event_waits import EventWaits
 from jacaros.bdi.intention import Intention
@@ -62,7 +63,7 @@ class Circumstance:
         suspended_events: goal events whose goal was suspended before it became an intention.
         delayed_events: timers of the events that ``.at`` is to post.
         event_waits: those who wait for an event.
-        condition_waits: waits for a condition; the last item has `resume`, `fail` and `ended`.
+        condition_waits: those who wait for a condition.
         pending_acts: external actions under way, by number.
         pending_asks: questions whose answer is awaited, by message id.
         abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
@@ -76,8 +77,8 @@ class Circumstance:
         subplans: whether plans have plans of their own.
         special: whether any of `meta`, `goal_conditions` and `subplans` is true.
         called: something may want to be looked at besides `events` and `intentions`: `inbox`, `percepts`, `tasks`,
-            `condition_waits`, a suspension, or because the agent is `special` or `urgent`.  Whoever adds to one of them
-            sets it.
+            restless `condition_waits`, a suspension, or because the agent is `special` or `urgent`.  Whoever adds to one of
+            them sets it.
         outer_frame: frame of the plan whose sub-plans are being tried.
         context: the view of itself that it gives to internal actions.
         namespace_properties: properties that programs give to namespaces.
@@ -211,7 +212,7 @@ class Circumstance:
         self.suspended_events: list[Event] = []
         self.delayed_events: dict[Timer, None] = {}
         self.event_waits = EventWaits()
-        self.condition_waits: list[tuple[Any, Any]] = []
+        self.condition_waits = ConditionWaits()
         self.pending_acts: dict[int, Waiting] = {}
         self.pending_asks: dict[str, Any] = {}
         self.abandoned_asks: set[str | None] = set()

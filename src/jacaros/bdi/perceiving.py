@@ -25,10 +25,14 @@ def take_percepts(agent: Circumstance) -> None:
     beliefs, holders, selects = agent.beliefs, agent.held_percepts, agent.selects
     post = agent.events.append if _has_plain_queue(agent) else agent.post
     watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
-    noticed = agent.percepts
+    noticed, waits = agent.percepts, agent.condition_waits
     while noticed:
         percepts = noticed.popleft()
         try:
+            if waits:
+                for percept in percepts:
+                    symbol, row, _, _ = percept.taken or _taken(percept)
+                    waits.changed(symbol, row)
             if len(percepts) == 2 and not watched:
                 # What is usual, for many agents many times a second: one property has another value.
                 old, new = percepts
@@ -58,7 +62,7 @@ def take_percepts(agent: Circumstance) -> None:
             raise
         except Exception as fault:
             rescue.passed_over(agent, "what was perceived", fault)
-    if agent.condition_waits:
+    if waits.due or waits.restless:
         agent.do_soon(look_again)
 
 

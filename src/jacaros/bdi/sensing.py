@@ -11,9 +11,11 @@ from jacaros.terms.unifier import undo
 
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts, ends of waits, one message."""
+    waits = agent.condition_waits
     if (
         agent.tasks
-        or agent.condition_waits
+        or waits.due
+        or waits.restless
         or (agent.urgency is not None and agent.inbox)
         or agent.options.percept_interval != 1
     ):
@@ -25,7 +27,8 @@ def look_around(agent: Circumstance, cycle: int) -> None:
             agent.inbox
             or agent.percepts
             or agent.tasks
-            or agent.condition_waits
+            or waits.due
+            or waits.restless
             or agent.special
             or agent.urgent
         )
@@ -35,6 +38,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         take_percepts(agent)
         if agent.tasks:
             _do_tasks(agent)
+            _check_conditions(agent)
     waiting = len(agent.inbox)
     agent.called = waiting > 1 or agent.special or agent.urgent
     if waiting:
@@ -54,8 +58,7 @@ def housekeeping(agent: Circumstance, looks: bool = True) -> None:
     if agent.percepts and looks:
         take_percepts(agent)
     _do_tasks(agent)
-    if agent.condition_waits:
-        _check_conditions(agent)
+    _check_conditions(agent)
 
 
 def _do_tasks(agent: Circumstance) -> None:
@@ -72,21 +75,24 @@ def _do_tasks(agent: Circumstance) -> None:
 
 def _check_conditions(agent: Circumstance) -> None:
     """Resume the intentions whose awaited condition holds now."""
-    for entry in list(agent.condition_waits):
-        holds, waiting = entry
+    waits = agent.condition_waits
+    if not (waits.due or waits.restless):
+        return
+    for wait in waits.take_due():
+        waiting = wait.waiting
         if waiting.ended:
-            agent.condition_waits.remove(entry)
+            waits.remove(wait)
             continue
         try:
-            held = holds()
+            held = wait.holds()
         except InternalError:
             raise
         except Exception as fault:
             undo(agent.trail, 0)
-            agent.condition_waits.remove(entry)
+            waits.remove(wait)
             waiting.fail(rescue.told(fault))
         else:
             if held:
-                agent.condition_waits.remove(entry)
+                waits.remove(wait)
                 waiting.resume()
     _do_tasks(agent)

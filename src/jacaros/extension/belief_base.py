@@ -226,6 +226,10 @@ class AskingTable(Table):
             return super().remove(row)
         return self._tables.ask_remove(self, row)
 
+    def holds_facts_only(self) -> bool:
+        """The class may keep and look up beliefs when it likes."""
+        return False
+
     def put(self, row: Row, annotations: Annotations, last: bool) -> None:
         """Keep a row, without asking."""
         if self.get(row) is None:

@@ -147,7 +147,10 @@ class Storm:
         assert len(ended) == len(set(ended))
         assert sorted(self.agent.pending_acts) == sorted(self.under_way())
         agent = self.agent
-        waits = [*agent.pending_acts.values(), *(entry[1].waiting for entry in agent.condition_waits)]
+        waits = [
+            *agent.pending_acts.values(),
+            *(each.waiting.waiting for each in agent.condition_waits.values()),
+        ]
         waits += [each.waiting.waiting for held in agent.event_waits.values() for each in held.values()]
         assert not any(waiting.intention.dropped for waiting in waits)
         ready = [intention for intention in agent.intentions if not intention.dropped]

@@ -4,6 +4,7 @@ import re
 from typing import Any
 
 from jacaros.bdi.belief_base import parts
+from jacaros.bdi.condition_waits import ConditionWait, asked_by
 from jacaros.bdi.context import Context
 from jacaros.bdi.event_waits import EventWait
 from jacaros.bdi.internal_action import WrongArguments, internal_action
@@ -73,7 +74,7 @@ class _Wait:
         if isinstance(self.entry, EventWait):
             agent.event_waits.remove(self.entry)
         elif self.entry is not None:
-            agent.condition_waits[:] = [each for each in agent.condition_waits if each is not self.entry]
+            agent.condition_waits.remove(self.entry)
 
 
 @internal_action(".wait", arity=(1, 3), suspends=True)
@@ -111,9 +112,10 @@ def _wait_for_condition(ctx: Context, formula: Term, limit: Term, elapsed: Term)
             return True
         return False
 
-    waited.entry = (holds, waited)
-    ctx.agent.condition_waits.append(waited.entry)
-    ctx.agent.called = True
+    agent = ctx.agent
+    waited.entry = ConditionWait(holds, waited, asked_by(formula, agent.beliefs))
+    agent.condition_waits.add(waited.entry)
+    agent.called = True
     if limit is not None:
         waited.limit(limit, fails=True)
     return waited.waiting

@@ -7,6 +7,7 @@ from typing import Any
 from jacaros.asl.loader import parse_term
 from jacaros.bdi import goals
 from jacaros.bdi.agent import Agent
+from jacaros.bdi.condition_waits import ConditionWait, asked_by
 from jacaros.bdi.lost_goals import loss_of
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.watched import WatchedGoal
@@ -144,8 +145,8 @@ class _Awaited:
         self._formula = formula
         self._term, self._names = question(formula)
         self._found: dict[str, Any] = {}
-        self._entry = (self._holds, self)
-        mind.condition_waits.append(self._entry)
+        self._entry = ConditionWait(self._holds, self, asked_by(self._term, mind.beliefs))
+        mind.condition_waits.add(self._entry)
         mind.called = True
         mind.architecture.ready()
 
@@ -174,8 +175,7 @@ class _Awaited:
             self.future.set_exception(UsageError(f"{self._formula} cannot be evaluated: {message}"))
 
     def forget(self) -> None:
-        waits = self._mind.condition_waits
-        waits[:] = [entry for entry in waits if entry is not self._entry]
+        self._mind.condition_waits.remove(self._entry)
 
 
 class Goal(PursuedGoal):
@@ -207,7 +207,7 @@ class Goal(PursuedGoal):
         """
         self._awaited = True
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        dropped = (lambda: self.state == "dropped", _Ends(future))
+        dropped = ConditionWait(lambda: self.state == "dropped", _Ends(future), None)
         if not self._watched.ended and self._agent_ended():
             await asyncio.sleep(0)  # a run that has ended says so one turn later
             self._waits.check()
@@ -215,14 +215,13 @@ class Goal(PursuedGoal):
                 raise AgentEnded(f"{self._not_achieved()}: agent {self._mind.name} has ended")
         elif not self._watched.ended:
             self._waiting.append(future)
-            self._mind.condition_waits.append(dropped)
+            self._mind.condition_waits.add(dropped)
             self._mind.called = True
             self._mind.architecture.ready()
             try:
                 await self._waits.wait(future, self._not_achieved, timeout, self._mind.name)
             finally:
-                waits = self._mind.condition_waits
-                waits[:] = [entry for entry in waits if entry is not dropped]
+                self._mind.condition_waits.remove(dropped)
         if not self.achieved:
             raise self._failure()
 
