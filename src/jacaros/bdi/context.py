@@ -40,7 +40,7 @@ class Context:
 
     @property
     def intention(self) -> Intention | None:
-        """The intention whose step this is; None in contexts of plans."""
+        """The intention whose step this is, or in a context the one that the plan would belong to; None for a new one."""
         current: Intention | None = self.agent.current
         return current
 

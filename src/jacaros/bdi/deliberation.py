@@ -25,11 +25,13 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
             if intention is not None:
                 if intention.dropped:
                     continue
+                agent.current = intention  # contexts may ask for it
                 if push(agent, intention, goal, annotations):
                     if intention.suspended is None:
                         agent.intentions.append(intention)
                     else:
                         intention.parked = True
+                agent.current = None
                 return None
             if agent.special or agent.option_filter.rows:
                 if _external(agent, event):
@@ -95,6 +97,7 @@ def event_of(agent: Circumstance, intention: Intention) -> Event | None:
 
 
 def _pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
+    agent.current = None
     rescue.passed_over(agent, "an event", fault)
     intention = event[EVENT_INTENTION]
     if intention is not None:

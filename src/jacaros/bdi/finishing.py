@@ -29,8 +29,8 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         else:
             frames.pop()
         if agent.meta and trigger.kind:
-            if not trigger.failing:
-                meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved")
+            why = "recovered" if trigger.failing else ""
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved", why=why)
             meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
         if agent.atomic is intention and not intention.is_atomic():
             agent.atomic_over = True

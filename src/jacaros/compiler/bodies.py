@@ -64,6 +64,11 @@ def _test(compiler: BodyCompiler, step: nodes.Test, name: str, next_name: str) -
     with fn.writer.block(head(name)):
         fn.line("t = agent.trail")
         fn.load(compiler.frame, names_in(step))
+        if isinstance(formula, nodes.Variable):
+            wanted = build(fn, formula)
+            fn.line(
+                f"if bare({wanted}).__class__ is Var: agent.test_goal_from({wanted})  # raises the failure"
+            )
         bound = compiler.success(fn, formula, next_name)
         if isinstance(formula, nodes.Literal) and _is_fixed(formula):
             _test_goal(compiler, fn, formula, next_name)

@@ -23,7 +23,10 @@ from jacaros.terms.values import (
 
 
 def deconstruct(left: Term, right: Term, trail: Trail) -> bool:
-    """The relation ``=..``: a literal and the list ``[namespace, functor, arguments, annotations]``."""
+    """The relation ``=..``: a literal and the list ``[namespace, functor, arguments, annotations]``.
+
+    The namespace may be left out of a list that is given.
+    """
     term = resolve(left)
     if term.__class__ is Var:
         return _construct(term, [resolve(i) for i in list_items(right)], trail)
@@ -38,6 +41,8 @@ def deconstruct(left: Term, right: Term, trail: Trail) -> bool:
         return False
     name = functor(symbol.name, 0, symbol.negated)
     parts = [atom(symbol.namespace or "default"), name, make_list(arguments), make_list(annotations_of(term))]
+    if len(list(list_items(right))) == len(parts) - 1:
+        del parts[0]
     return unify(make_list(parts), right, trail)
 
 

@@ -45,7 +45,7 @@ from jacaros.terms.negation import qualify
 from jacaros.terms.order import annotation_set, at_most, less
 from jacaros.terms.substitution import ATOMIC, equal, free_variables, rename, resolve
 from jacaros.terms.unifier import Trail, undo, unify, unify_annotations
-from jacaros.terms.values import BY_SELF, CONS, Annotated, Functor, String, Var, deref, make_list
+from jacaros.terms.values import BY_SELF, CONS, Annotated, Functor, String, Var, bare, deref, make_list
 
 NESTED = 100
 """So many generators may be nested: each is a level of Python's stack, of which a thousand are allowed."""
@@ -77,6 +77,7 @@ _FUNCTIONS = (
     deconstruct,
     deconstruct_in,
     deeper,
+    bare,
     deref,
     divide,
     equal,

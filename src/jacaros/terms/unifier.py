@@ -268,7 +268,7 @@ def _absorbed(
     mark = len(trail)
     tail = deref(right_tail)
     if tail.__class__ is Var:
-        bind(tail, make_list(left, Var()), trail)
+        bind(tail, make_list(left), trail)
         if _unify_tail(left_tail, right, trail):
             yield
     undo(trail, mark)

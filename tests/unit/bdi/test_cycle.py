@@ -69,6 +69,7 @@ def test_an_observer_hears_of_every_change_of_a_goal() -> None:
         "executing",
         "failed",
         "executing",
+        "achieved",
         "finished",
     ]
 
@@ -169,7 +170,15 @@ def test_goal_state_events_keep_their_order_and_tell_the_reason() -> None:
         -!h.
         ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
         """
-    ) == ["pending ", "executing ", "failed ia_failed", "executing has_failure_plan", "finished ", "end"]
+    ) == [
+        "pending ",
+        "executing ",
+        "failed ia_failed",
+        "executing has_failure_plan",
+        "achieved ",
+        "finished ",
+        "end",
+    ]
 
 
 def test_goals_of_a_dropped_intention_are_no_desires() -> None:
@@ -267,3 +276,32 @@ def test_dropping_all_intentions_gives_up_the_planned_events() -> None:
         +!later <- .print(later).
         """
     ) == ["now", "later", "end"]
+
+
+def test_a_context_may_ask_for_the_intention_of_its_event() -> None:
+    program = """
+!a. !b.
++!a <- .wait(10); !c.
++!b <- .wait(10); .wait(10); +e.
++!c : .intention(I, S, _, current) <- .print(I, S).
++!c <- .print("no intention").
++e : .intention(I, _, _, current) <- .print(I).
++!new : .intention(_, _, _, current) <- .print("the last one").
++!new <- .print("a new one").
+!!new.
+"""
+    assert sorted(printed(program.replace("!!new", "!new"))) == ["1running", "2", "a new one"]
+
+
+def test_a_test_of_a_variable_without_a_value_fails() -> None:
+    program = "b(1). !go. +!go <- ?X; .print(X). -!go[error(E)] <- .print(E)."
+    assert printed(program) == ["body_var_without_value"]
+    assert printed("b(1). !go. +!go <- X = b(Y); ?X; .print(Y).") == ["1"]
+
+
+def test_a_literal_can_be_taken_apart_without_its_namespace() -> None:
+    program = """
+!go.
++!go <- n::a(1)[x] =.. [F, T, A]; a =.. [G, [], []]; .print(F, T, A, G); L = [b, [2], [y]]; b(2)[y] =.. L.
+"""
+    assert printed(program) == ["a[1][x]a"]

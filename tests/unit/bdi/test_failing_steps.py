@@ -59,7 +59,9 @@ def test_an_observer_hears_why_a_goal_failed() -> None:
     assert [(goal, why) for state, goal, why in heard if state == "failed"] == [
         ("!b", "internal_action, no way (tester.asl:1)\nstep: .fail(...)")
     ]
-    assert not any(why for state, goal, why in heard if state != "failed")
+    assert [(state, goal, why) for state, goal, why in heard if why and state != "failed"] == [
+        ("achieved", "!b", "recovered")
+    ]
 
 
 def test_a_wait_for_a_failure_event_sees_it_though_nothing_else_runs() -> None:
