@@ -5,7 +5,7 @@ define operations then, and an architecture may carry out actions itself.
 """
 
 import inspect
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
 from jacaros.asl import nodes
@@ -17,6 +17,7 @@ from jacaros.body.actions import keys
 from jacaros.clock import VirtualClock
 from jacaros.env.environment import Environment
 from jacaros.env.errors import UnknownArtifactType
+from jacaros.mas.agent_classes import is_own_architecture
 from jacaros.mas.deployment import AgentSpec, Deployment
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     FindType = Callable[[str], type[Artifact]]
 
 _MAKES: Final = "makeArtifact"
+_USES: Final = frozenset({"use_artifact", "create_artifact"})
+"""Goals with the same arguments, of the library of plans for artifacts."""
 _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWorkspaces", "mountWorkspace"})
 """Actions that bring artifacts of other systems in."""
 
@@ -56,7 +59,7 @@ def check_actions(
         find_type: finds the project's artifact types.
     """
     found = [(agent, list(_steps(program))) for agent, program in programs]
-    makes = [step for _, steps in found for step in steps if _name(step) == _MAKES]
+    makes = [make for _, program in programs for make in _makes(program)]
     warnings = list(_unknown_types(makes, find_type))
     try:
         if any(_is_open(program) for _, program in programs):
@@ -64,25 +67,56 @@ def check_actions(
         offered = _Offered(_types(deployment, makes, find_type))
     except _NotCertain:
         return warnings
-    if any(_name(step) in _OPEN_WORLD for _, steps in found for step in steps):
+    if any(step.functor in _OPEN_WORLD for _, steps in found for step in steps):
         return warnings
     for agent, steps in found:
-        if not (agent.architecture_classes or agent.agent_class):
+        if not (any(map(is_own_architecture, agent.architecture_classes)) or agent.agent_class):
             warnings += filter(None, map(offered.blame, steps))
     return warnings
 
 
 def _steps(program: nodes.Program) -> Iterator[nodes.Literal]:
     """The actions in the plans of a program."""
-    for node in walk(*clauses_of(program)):
+    return _actions(*clauses_of(program))
+
+
+def _actions(*roots: object) -> Iterator[nodes.Literal]:
+    for node in walk(*roots):
         if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
             yield node.action
 
 
+def _makes(program: nodes.Program) -> Iterator[nodes.Literal]:
+    """The steps ``makeArtifact(Name,Type,...)`` of a program, and its goals for plans of a library that make artifacts."""
+    library = [plan for plan in program.plans if _is_of_library(plan)]
+    offered = _goals(plan.trigger.literal for plan in library)
+    own = [plan for plan in program.plans if not _is_of_library(plan)]
+    posted = [*program.goals, *(node.goal for node in walk(*own) if isinstance(node, nodes.Achieve))]
+    yield from (action for action in _actions(*own) if action.functor == _MAKES)
+    wanted = [goal for goal in posted if isinstance(goal, nodes.Literal) and goal.functor in _USES]
+    yield from (goal for goal in wanted if (goal.functor, len(goal.arguments)) in offered)
+    used = _goals(posted)
+    for plan in library:
+        head = plan.trigger.literal
+        if isinstance(head, nodes.Literal) and (head.functor, len(head.arguments)) in used:
+            goals = (node.goal for node in walk(plan.body) if isinstance(node, nodes.Achieve))
+            for goal in goals:
+                # A variable is a parameter of the plan: the type is named where the goal is posted.
+                if isinstance(goal, nodes.Literal) and goal.functor in _USES and _type_of(goal) is not None:
+                    yield goal
+
+
+def _goals(literals: Iterable[object]) -> set[tuple[str, int]]:
+    return {(each.functor, len(each.arguments)) for each in literals if isinstance(each, nodes.Literal)}
+
+
+def _is_of_library(plan: nodes.Plan) -> bool:
+    return plan.span is not None and plan.span.file.name.startswith("$")
+
+
 def artifact_types(program: nodes.Program) -> list[str]:
     """The types of artifacts that a program makes, as far as they are written in it."""
-    makes = [step for step in _steps(program) if _name(step) == _MAKES]
-    return [name for step in makes if (name := _type_of(step)) is not None]
+    return [name for make in _makes(program) if (name := _type_of(make)) is not None]
 
 
 def _is_open(program: nodes.Program) -> bool:
@@ -95,12 +129,8 @@ def _is_open(program: nodes.Program) -> bool:
     return False
 
 
-def _name(action: nodes.Literal) -> str:
-    return action.functor
-
-
 def _type_of(action: nodes.Literal) -> str | None:
-    """The type that ``makeArtifact(Name,Type,...)`` names; None when it is worked out at run time."""
+    """The type that ``makeArtifact(Name,Type,...)``, or such a goal, names; None when it is worked out at run time."""
     if len(action.arguments) < 2:
         return None
     wanted = action.arguments[1]

@@ -26,6 +26,11 @@ _DEFAULTS = frozenset(
 )
 
 
+def is_own_architecture(written: str) -> bool:
+    """Whether an ``agentArchClass`` is the project's own, not one of another system whose work is built in here."""
+    return written not in _DEFAULTS and not written.startswith(_KNOWN_ARCHITECTURES)
+
+
 class AgentClasses:
     """Makes the hosts and minds of a run's agents, those of the project's own classes among them.
 
@@ -145,7 +150,7 @@ class AgentClasses:
             found = [
                 self._object(spec, written, architecture_object, "AgentArch")
                 for written in reversed(spec.architecture_classes)
-                if not written.startswith(_KNOWN_ARCHITECTURES)
+                if is_own_architecture(written)
             ]
         except (ProjectError, NotImported):
             raise

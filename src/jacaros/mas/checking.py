@@ -186,8 +186,27 @@ def _check_lone_program(path: Path, findings: Findings) -> None:
     program = _check_program(path, (path.parent,), findings)
     if program is not None:
         lone = Deployment(path.stem, path.parent)
-        agent = AgentSpec(path.stem, path)
-        findings.diagnostics += _of_beliefs(lone, [(agent, program)], (path.parent,), findings.unseen)
+        programs = [(AgentSpec(path.stem, path), program)]
+        folders = (path.parent,)
+        findings.diagnostics += _of_beliefs(lone, programs, folders, findings.unseen)
+        _check_lone_artifacts(lone, programs, folders, findings)
+
+
+def _check_lone_artifacts(
+    lone: Deployment,
+    programs: list[tuple[AgentSpec, nodes.Program]],
+    folders: tuple[Path, ...],
+    findings: Findings,
+) -> None:
+    """Check the artifacts that a lone program makes: without any, its actions may be anybody's."""
+    for mapping in _mapping_files(lone, programs, folders):
+        _check_mapping(mapping, findings)
+    from jacaros.mas.action_check import artifact_types  # here: see `_of_artifacts`
+
+    if any(map(artifact_types, (program for _, program in programs))):
+        told = _of_artifacts(lone, programs, folders, findings.unseen)
+        # A run may add artifacts by --mapping: an operation that is like none of the known ones may be theirs.
+        findings.diagnostics += [each for each in told if each.code != "unknown-operation" or each.hint]
 
 
 def _of_artifacts(

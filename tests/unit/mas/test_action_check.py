@@ -159,3 +159,68 @@ def test_a_comment_in_the_project_file_switches_a_warning_off(folder: Path) -> N
         "focus: lab.c }", "focus: lab.c  roles: boss in o.g } // jacaros: ignore no-effect"
     )
     assert check(folder, "!go.\n+!go <- inc.", project) == []
+
+
+@pytest.mark.parametrize(
+    "architecture", ["", " agentArchClass jaca.CAgentArch", " agentArchClass c4jason.CAgentArch"]
+)
+def test_operations_are_checked_in_a_project_for_jaca(folder: Path, architecture: str) -> None:
+    program = '!go.\n+!go <- makeArtifact("c", "Counter", [], Id); focus(Id); inc; hop.'
+    (folder / "a.asl").write_text(program, encoding="utf-8")
+    project = folder / "p.mas2j"
+    project.write_text(
+        f"MAS p {{ environment: jaca.CartagoEnvironment agents: a{architecture}; }}", encoding="utf-8"
+    )
+    assert [each.message for each in check_files([project]).diagnostics] == [
+        "no artifact of the project offers hop/0"
+    ]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        'makeArtifact("c", "Counter", [], Id); focus(Id)',
+        '!use_artifact("c", "Counter")',
+        '!use_artifact("c", "Counter", [5])',
+    ],
+)
+def test_operations_are_checked_in_a_lone_program(folder: Path, make: str) -> None:
+    lone = folder / "lone.asl"
+    lone.write_text(
+        f'{{ include("$jacaros/artifacts.asl") }}\n!go.\n+!go <- {make}; inc; inc(1, 2); incc; offered_by_a_mapping.',
+        encoding="utf-8",
+    )
+    assert [(each.message, each.hint) for each in check_files([lone]).diagnostics] == [
+        ("no artifact of the project offers inc/2", "there is inc/0, inc/1"),
+        ("no artifact of the project offers incc/0", "did you mean inc?"),
+    ]
+
+
+def test_plans_of_the_library_make_the_artifacts_that_are_asked_for(folder: Path) -> None:
+    lone = folder / "lone.asl"
+    lone.write_text(
+        '{ include("$jacaros/artifacts.asl") }\n!go.\n+!go <- !create_cmd_vel; move(3); moove(3).',
+        encoding="utf-8",
+    )
+    assert [each.message for each in check_files([lone]).diagnostics] == [
+        "no artifact of the project offers moove/1"
+    ]
+
+
+def test_actions_of_a_lone_program_without_artifacts_may_be_anybodys(folder: Path) -> None:
+    lone = folder / "lone.asl"
+    lone.write_text("!go.\n+!go <- hop.", encoding="utf-8")
+    assert check_files([lone]).diagnostics == []
+
+
+def test_a_mapping_file_that_a_goal_names_is_checked(folder: Path) -> None:
+    (folder / "robot.yaml").write_text(
+        "properties:\n  pose:\n    topic: odom\n    type: nav_msgs/msg/Odometry\n    rat: 2\n",
+        encoding="utf-8",
+    )
+    lone = folder / "lone.asl"
+    lone.write_text(
+        '{ include("$jacaros/artifacts.asl") }\n!go.\n+!go <- !use_artifact("r", "robot.yaml").',
+        encoding="utf-8",
+    )
+    assert "wrong-mapping" in {each.code for each in check_files([folder]).diagnostics}
