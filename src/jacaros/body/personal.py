@@ -97,5 +97,5 @@ class AgentSessionArtifact(Artifact):
 
 def _refuse(artifact: Artifact, owner: str) -> NoReturn:
     """Fail: the owner's own actions do not come here."""
-    caller = artifact.caller or "nobody"
+    caller = str(artifact.caller or "nobody")
     artifact.fail(f"{artifact.name} obeys {owner} only", "security_exception", caller, artifact.name)

@@ -309,14 +309,16 @@ class Artifact:
         return self._steps.current("asking for the current operation", changes=False)
 
     @property
-    def caller(self) -> str | None:
-        """The agent on whose behalf the operation in progress runs.
+    def caller(self) -> Atom | None:
+        """The agent on whose behalf the operation in progress runs, an atom as agents know their names.
 
         Through links it is the agent at the beginning of the chain, in ``init`` the creator, in internal
         operations None.
         """
         holder = self._steps.turns.holder
-        return holder.request.agent if holder is not None and self._steps.inside() else None
+        if holder is None or holder.request.agent is None or not self._steps.inside():
+            return None
+        return Atom(holder.request.agent)
 
     def commit(self) -> None:
         """Publish what the step has changed so far; from here on it cannot be undone."""

@@ -40,6 +40,10 @@ class Box(Artifact):
     def show(self, what: str):
         self.update_property("shown", self._made(what))
 
+    @operation
+    def claim(self):
+        self.update_property("shown", self.caller)
+
     @operation(name="isIt")
     def is_it(self, thing: object, yes: Out):
         yes.set(thing is self.rude)
@@ -199,3 +203,12 @@ def test_a_clone_believes_in_two_equal_properties(lines: Lines) -> None:
 +!tell : .count(shown(1), N) <- .print(N).
 """
     assert lines(one=TWO_BOXES + program) == ["[two] 2"]
+
+
+def test_the_name_of_a_caller_is_the_atom_that_agents_know(lines: Lines) -> None:
+    program = """
+!go.
++!go <- makeArtifact("b", "Box", ["0"], Id); focus(Id); claim.
++shown(W) : .my_name(W) <- .print("mine").
+"""
+    assert lines(one=program) == ["[one] mine"]

@@ -279,3 +279,10 @@ def test_an_alias_with_a_parameter_is_what_it_stands_for() -> None:
     assert received(several[int], [1, 2.0]) == [1, 2]
     with pytest.raises(Unsuitable):
         received(several[int], ["one"])
+
+
+@pytest.mark.parametrize("argument", [Atom("kitchen"), "kitchen"])
+def test_a_text_is_a_text_however_it_was_written(argument: str) -> None:
+    got = received(str, argument)
+    assert (got, type(got)) == ("kitchen", str)
+    assert type(received(Atom | str, Atom("kitchen"))) is Atom

@@ -103,6 +103,13 @@ def _real(argument: object) -> object:
     raise Unsuitable
 
 
+def _text(argument: object) -> object:
+    """A text; an atom is given as one, so that what is shown does not depend on how its caller wrote it."""
+    if not isinstance(argument, str):
+        raise Unsuitable
+    return str(argument) if type(argument) is not str else argument
+
+
 def _choice(choices: tuple[object, ...]) -> Kind:
     def accept(argument: object) -> object:
         for choice in choices:
@@ -269,7 +276,6 @@ class _Word(NamedTuple):
 
 
 _WORDS = (
-    _Word(str, "a text"),
     _Word(bool, "true or false"),
     _Word(Atom, "an atom"),
     _Word(Structure, "a structure"),
@@ -281,6 +287,7 @@ _SIMPLE: dict[Any, Kind] = {
     Any: ANYTHING,
     int: Kind("an integer", _integer),
     float: Kind("a number", _real),
+    str: Kind("a text", _text),
     type(None): Kind("nothing", _takes_none),
     None: Kind("nothing", _takes_none),
     **{each.kind: instance_of(each.kind, each.expected) for each in _WORDS},
