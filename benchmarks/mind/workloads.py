@@ -138,6 +138,14 @@ WORKLOADS = (
         lacks={"agentspeak": ".range with three arguments"},
     ),
     single(
+        "beliefs in a queue", "queue", 5_000, lambda n, k: 3 * n, unit="step", goal=None, faster=None, faster_jason=1,
+        lacks={"agentspeak": "+>"},
+    ),
+    single(
+        "open beliefs", "open_beliefs", 2_000, lambda n, k: 3 * n, unit="step", goal=None, faster=None, faster_jason=1,
+        lacks={"agentspeak": ".range with three arguments"},
+    ),
+    single(
         "waits for conditions", "waits", 5_000, lambda n, k: n, k=100, unit="wait", goal=None, faster=None,
         lacks={"agentspeak": "conditions in .wait"}, sizes={"jason": 1_000},
     ),

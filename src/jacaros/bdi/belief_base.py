@@ -4,10 +4,11 @@ import itertools
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from jacaros.bdi.rules import OpenFact, Rule, Search, Searches
+from jacaros.bdi.mixed_beliefs import FEW, Late, Mixed, discard, key_of
+from jacaros.bdi.rules import OpenFact, Search, Searches
 from jacaros.bdi.search_budget import SearchBudget
 from jacaros.terms.order import annotation_set
-from jacaros.terms.substitution import ATOMIC, equal, is_key, resolve
+from jacaros.terms.substitution import ATOMIC, equal, free_variables, is_key, resolve
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import (
     BY_SELF,
@@ -31,7 +32,6 @@ Index = dict[Any, Any]
 _ONE = ((),)
 _NONE: tuple[Row, ...] = ()
 _NOTHING: tuple[Item, ...] = ()
-_FEW = 8
 
 
 class Table:
@@ -41,6 +41,7 @@ class Table:
         rows: annotations by row; newest last.  Keys that are no tuples are rules and beliefs with variables.
         late: those added behind all others, in order.
         others: how many of `rows` are rules and beliefs with variables.
+        unwritten: how many of `rows` and `late` are beliefs with variables that are not in the program.
         plain: holds only facts without variables, in `rows` alone: compiled queries may read it directly.
         searches: generator functions for a table that is not plain, by pattern of use.
         deep: those that need no Python recursion.
@@ -49,6 +50,7 @@ class Table:
     __slots__ = (
         "_base",
         "_indexes",
+        "_mixed",
         "_parted",
         "deep",
         "functor",
@@ -57,17 +59,20 @@ class Table:
         "plain",
         "rows",
         "searches",
+        "unwritten",
     )
 
     def __init__(self, functor: Functor, base: "BeliefBase | None" = None) -> None:
         self.functor = functor
         self.rows: dict[Any, tuple[Term, ...]] = {}
-        self.late: dict[Any, tuple[Term, ...]] = {}
+        self.late = Late()
         self.others = 0
+        self.unwritten = 0
         self.plain = True
         self.searches: Searches | None = None
         self.deep: Searches | None = None
         self._indexes: dict[tuple[int, ...], Index] = {}
+        self._mixed: Mixed | None = None
         self._base = base
         self._parted = 0
 
@@ -110,22 +115,23 @@ class Table:
         index: Index = {}
         for row in self.rows:
             if row.__class__ is tuple:
-                _put(index, _key(row, positions), row)
+                _put(index, key_of(row, positions), row)
         self._indexes[positions] = index
         return index
 
     def aside(self, row: Row) -> "OpenFact | None":
         """The ground belief with these arguments among those that are no keys."""
-        if self.plain:
+        if self.plain or free_variables(row):
             return None
-        for entry in (*self.rows, *self.late):
-            if isinstance(entry, OpenFact) and equal(entry.literal, literal(self.functor, row)):
+        wanted = literal(self.functor, row)
+        for entry, _ in self.candidates(row):
+            if isinstance(entry, OpenFact) and equal(entry.literal, wanted):
                 return entry
         return None
 
     def holds_facts_only(self) -> bool:
-        """Whether nothing but a change of this table changes its answers: it has no rules."""
-        return self.plain or not any(isinstance(entry, Rule) for entry in (*self.rows, *self.late))
+        """Whether nothing but a change of this table changes its answers.  False may be wrong."""
+        return self.others + self.late.others == self.unwritten
 
     def get(self, row: Any) -> tuple[Term, ...] | None:
         """The annotations of a row, None when it is not held."""
@@ -142,26 +148,41 @@ class Table:
 
         Gives the annotations back, None when the base refuses: those of projects may.
         """
-        if last:
-            self.late[row] = annotations
-            self._changed()
-            return annotations
         if self._base is not None and self._base.searching:
             self._part(self._base.searching)
+        if last:
+            self.late.put(row, annotations)
+            self._note(row, 1)
+            return annotations
         self.rows[row] = annotations
         if row.__class__ is not tuple:
             self.others += 1
-            self._changed()
+            if self._mixed is not None:
+                self._mixed.add(row)
+            self._note(row, 1)
             return annotations
         if self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before):
             self._changed()  # no rule answers before the newest fact
         if self._indexes:
             self._add_to_indexes(row)
+        if self._mixed is not None:
+            self._mixed.add(row)
         return annotations
+
+    def _note(self, entry: Any, change: int) -> None:
+        """A rule, a belief with variables, or an entry of `late` came (*change* is 1) or went (-1)."""
+        if entry.__class__ is tuple:
+            if len(self.late) - self.late.others > (change > 0):
+                return  # searches take the general way as long as there are facts in `late`
+        elif entry.node is None:
+            self.unwritten += change
+            if self.unwritten > (change > 0):
+                return  # the same for beliefs with variables that are not in the program
+        self._changed()
 
     def _add_to_indexes(self, row: Row) -> None:
         for positions, index in self._indexes.items():
-            _put(index, row[positions[0]] if len(positions) == 1 else _key(row, positions), row)
+            _put(index, row[positions[0]] if len(positions) == 1 else key_of(row, positions), row)
 
     def begin(self, row: Row, annotations: tuple[Term, ...]) -> bool:
         """Put in a row of numbers, strings and atoms while nobody searches; False when it is held already.
@@ -185,7 +206,7 @@ class Table:
         rows = self.rows
         if rows.get(row) is not annotations:
             return False
-        if self.late or self._indexes:
+        if self.late or self._indexes or self.others:
             self.remove(row)
             return True
         last, value = rows.popitem()
@@ -213,24 +234,26 @@ class Table:
 
     def remove(self, row: Any) -> bool:
         """Take out a row, rule or open belief that is held; False when the base refuses."""
-        if row in self.late:
-            del self.late[row]
-            self._changed()
-            return True
         if self._base is not None and self._base.searching:
             self._part(self._base.searching)
-        _discard(self.rows, row)
+        if row in self.late:
+            self.late.take(row)
+            self._note(row, -1)
+            return True
+        discard(self.rows, row)
+        if self._mixed is not None:
+            self._mixed.remove(row)
         if row.__class__ is not tuple:
             self.others -= 1
-            self._changed()
+            self._note(row, -1)
             return True
         for positions, index in self._indexes.items():
-            key = _key(row, positions)
+            key = key_of(row, positions)
             bucket = index[key]
             if bucket.__class__ is tuple or len(bucket) == 1:
                 del index[key]
             else:
-                _discard(bucket, row)
+                discard(bucket, row)
         return True
 
     def _changed(self) -> None:
@@ -238,29 +261,36 @@ class Table:
         self.plain = not self.others and not self.late
         self.searches = None if self.plain else Searches(self)
         self.deep = None if self.plain else Searches(self, deep=True)
+        if not self.others:
+            self._mixed = None
 
     def _part(self, serial: int) -> None:
         """An internal action in a condition changes beliefs: what the search is reading stays as it is."""
         if self._parted != serial:
             self._parted = serial
-            self.rows = dict(self.rows)
-            self._indexes = {}
+            self.rows, self.late = dict(self.rows), Late(self.late)
+            self._indexes, self._mixed = {}, None
 
     def around(self) -> tuple[list[Any], list[Any]] | None:
         """The rules and beliefs with variables that answer before all facts, and those behind all facts.
 
-        None when they are mixed.
+        None when they are mixed, or when there is a belief with variables that no function can be written for.
         """
+        if self.unwritten or len(self.late) > self.late.others:
+            return None
+        sides = self._sides()
+        return None if sides is None else (sides[0], [*sides[1], *self.late])
+
+    def _sides(self) -> tuple[list[Any], list[Any]] | None:
+        """What `around` tells, of `rows` alone."""
         before = list(itertools.islice(reversed(self.rows), self.others))
         while before and before[-1].__class__ is tuple:
             before.pop()
         after = list(itertools.islice(self.rows, self.others - len(before)))
-        if any(entry.__class__ is tuple for entry in (*before, *after, *self.late)):
+        if any(entry.__class__ is tuple for entry in (*before, *after)):
             return None
         after.reverse()
-        if self.others == len(self.rows):
-            before, after = [], before
-        return before, [*after, *self.late]
+        return ([], before) if self.others == len(self.rows) else (before, after)
 
     def entries(self) -> list[tuple[Any, tuple[Term, ...]]]:
         """All entries with their annotations, in the order in which they answer."""
@@ -279,15 +309,28 @@ class Table:
         helps."""
         if self.plain:
             return self._rows_for(arguments)
-        around = self.around()
-        if around is None:
+        if len(self) < FEW:
             return self.entries()
-        before, after = around
-        return [
-            *((entry, self.rows[entry]) for entry in before),
-            *(item for item in self._rows_for(arguments) if item[0].__class__ is tuple),
-            *((entry, self.rows[entry] if entry in self.rows else self.late[entry]) for entry in after),
-        ]
+        places, keys = _known(arguments)
+        return itertools.chain(self._newest_first(arguments, places, keys), self.late.like(places, keys))
+
+    def _newest_first(self, arguments: Row, places: list[int], keys: list[Term]) -> Iterable[Item]:
+        """The entries of `rows` that may unify with the arguments."""
+        held = self.rows
+        if not keys:
+            return reversed(held.items())
+        if not self.others:
+            return self._rows_for(arguments)
+        facts = (row for row in self._rows_with(places, keys, len(arguments)) if row.__class__ is tuple)
+        entries: Iterator[Any]
+        sides = self._sides() if self._mixed is None and self.others < FEW else None
+        if sides is not None:
+            entries = itertools.chain(sides[0], facts, sides[1])
+        else:
+            if self._mixed is None:
+                self._mixed = Mixed(held, self.functor.arity)
+            entries = self._mixed.like(places, keys, facts)
+        return ((entry, held[entry]) for entry in entries)
 
     def _rows_for(self, arguments: Row) -> Iterable[Item]:
         """The rows that may unify with the arguments, with their annotations; perhaps others too."""
@@ -296,28 +339,38 @@ class Table:
 
     def rows_like(self, arguments: Row) -> Iterable[Row]:
         """The rows that may unify with the arguments, newest first, until something changes."""
-        places: list[int] = []
-        keys: list[Term] = []
-        for place, argument in enumerate(arguments):
-            if argument.__class__ not in ATOMIC:
-                argument = deref(argument)
-                if argument.__class__ is Var:
-                    continue
-                argument = resolve(argument)
-                if not is_key(argument):
-                    continue
-            places.append(place)
-            keys.append(argument)
-        if len(keys) == len(arguments):
+        places, keys = _known(arguments)
+        return self._rows_with(places, keys, len(arguments))
+
+    def _rows_with(self, places: list[int], keys: list[Term], arity: int) -> Iterable[Row]:
+        """The rows that may have *keys* at *places*, newest first."""
+        if len(keys) == arity:
             row = tuple(keys)
             return (row,) if row in self.rows else _NONE
-        if not keys or len(self.rows) < _FEW:
+        if not keys or len(self.rows) < FEW:
             newest_first: Iterator[Row] = reversed(self.rows)
             return newest_first
         return self.find(tuple(places), keys[0] if len(keys) == 1 else tuple(keys))
 
     def __len__(self) -> int:
         return len(self.rows) + len(self.late)
+
+
+def _known(arguments: Row) -> tuple[list[int], list[Term]]:
+    """The places of the arguments that can be looked up, and their values."""
+    places: list[int] = []
+    keys: list[Term] = []
+    for place, argument in enumerate(arguments):
+        if argument.__class__ not in ATOMIC:
+            argument = deref(argument)
+            if argument.__class__ is Var:
+                continue
+            argument = resolve(argument)
+            if not is_key(argument):
+                continue
+        places.append(place)
+        keys.append(argument)
+    return places, keys
 
 
 def _put(index: Index, key: Any, row: Row) -> None:
@@ -329,19 +382,6 @@ def _put(index: Index, key: Any, row: Row) -> None:
         index[key] = {bucket: None, row: None}
     else:
         bucket[row] = None
-
-
-def _discard(rows: dict[Any, Any], row: Any) -> None:
-    """Take a key out of a dictionary that is read backwards: at its end no gaps are left, which would have to be passed
-    over at every reading."""
-    last, value = rows.popitem()
-    if last is not row and last != row:
-        rows[last] = value
-        del rows[row]
-
-
-def _key(row: Row, positions: tuple[int, ...]) -> Any:
-    return row[positions[0]] if len(positions) == 1 else tuple(row[i] for i in positions)
 
 
 class BeliefBase(dict[Functor, Table]):

@@ -97,6 +97,10 @@ class ConditionWaits(dict[int, ConditionWait]):
             else:
                 for held in by_values.values():
                     self.due.update(held)
+        return self.want_a_look()
+
+    def want_a_look(self) -> bool:
+        """Whether there are waits to look at."""
         return bool(self.due or self.restless)
 
     def depend_on_rules(self, symbol: Functor) -> None:

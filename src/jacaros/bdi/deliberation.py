@@ -265,6 +265,6 @@ def is_alone(agent: Circumstance) -> bool:
         or agent.inbox
         or agent.tasks
         or agent.percepts
-        or agent.condition_waits.restless
+        or (agent.condition_waits and agent.condition_waits.restless)
         or agent.goal_conditions
     )

@@ -62,7 +62,7 @@ def take_percepts(agent: Circumstance) -> None:
             raise
         except Exception as fault:
             rescue.passed_over(agent, "what was perceived", fault)
-    if waits.due or waits.restless:
+    if waits and waits.want_a_look():
         agent.do_soon(look_again)
 
 

@@ -192,7 +192,7 @@ class Searches(dict[int, Search]):
             arguments: list[Term] = [Var() for _ in range(arity)]
             for place, value in zip(places, given, strict=True):
                 arguments[place] = value
-            found = solve(agent, predicate, tuple(arguments), trail)
+            found = solve(agent, predicate, tuple(arguments), trail, lasting=deep)
             return found if deep else run(found, agent.rule_depth)
 
         return search

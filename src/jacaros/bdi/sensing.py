@@ -11,11 +11,9 @@ from jacaros.terms.unifier import undo
 
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts, ends of waits, one message."""
-    waits = agent.condition_waits
     if (
         agent.tasks
-        or waits.due
-        or waits.restless
+        or (agent.condition_waits and agent.condition_waits.want_a_look())
         or (agent.urgency is not None and agent.inbox)
         or agent.options.percept_interval != 1
     ):
@@ -27,8 +25,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
             agent.inbox
             or agent.percepts
             or agent.tasks
-            or waits.due
-            or waits.restless
+            or agent.condition_waits.want_a_look()
             or agent.special
             or agent.urgent
         )
@@ -76,8 +73,6 @@ def _do_tasks(agent: Circumstance) -> None:
 def _check_conditions(agent: Circumstance) -> None:
     """Resume the intentions whose awaited condition holds now."""
     waits = agent.condition_waits
-    if not (waits.due or waits.restless):
-        return
     for wait in waits.take_due():
         waiting = wait.waiting
         if waiting.ended:

@@ -82,9 +82,13 @@ def exists(answers: Iterator[Any], trail: Trail) -> bool:
     return False
 
 
-def solve(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
-    """Answers of a predicate in the order of its base: facts by unification, rules by their functions."""
-    for entry, _ in list(table.candidates(arguments)):
+def solve(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail, lasting: bool = True) -> Answers:
+    """Answers of a predicate in the order of its base: facts by unification, rules by their functions.
+
+    *lasting* ones stay when beliefs change.
+    """
+    candidates = table.candidates(arguments)
+    for entry, _ in list(candidates) if lasting else candidates:
         mark = len(trail)
         if entry.__class__ is tuple:
             if unify_rows(arguments, entry, trail):

@@ -266,7 +266,7 @@ class LookingTable(AskingTable):
 
     def candidates(self, arguments: Row) -> Iterable[tuple[Any, Annotations]]:
         """The entries that are kept, then those that are looked up."""
-        return [*self.entries(), *self._tables.ask_candidates(self.functor, arguments)]
+        return [*super().candidates(arguments), *self._tables.ask_candidates(self.functor, arguments)]
 
 
 def install(mind: Circumstance, base: BeliefBase, folder: Path, arguments: Iterable[object]) -> None:
