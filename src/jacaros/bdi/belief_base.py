@@ -29,6 +29,8 @@ Item = tuple[Any, tuple[Term, ...]]
 """An entry of a table with its annotations."""
 Index = dict[Any, Any]
 """By key the row, or a dictionary of the rows, newest last."""
+_NO_LATE = Late()
+"""Of all tables without any: most never have one."""
 _ONE = ((),)
 _NONE: tuple[Row, ...] = ()
 _NOTHING: tuple[Item, ...] = ()
@@ -65,7 +67,7 @@ class Table:
     def __init__(self, functor: Functor, base: "BeliefBase | None" = None) -> None:
         self.functor = functor
         self.rows: dict[Any, tuple[Term, ...]] = {}
-        self.late = Late()
+        self.late = _NO_LATE
         self.others = 0
         self.unwritten = 0
         self.plain = True
@@ -151,6 +153,8 @@ class Table:
         if self._base is not None and self._base.searching:
             self._part(self._base.searching)
         if last:
+            if not self.late:
+                self.late = Late()
             self.late.put(row, annotations)
             self._note(row, 1)
             return annotations
@@ -268,7 +272,7 @@ class Table:
         """An internal action in a condition changes beliefs: what the search is reading stays as it is."""
         if self._parted != serial:
             self._parted = serial
-            self.rows, self.late = dict(self.rows), Late(self.late)
+            self.rows, self.late = dict(self.rows), Late(self.late) if self.late else _NO_LATE
             self._indexes, self._mixed = {}, None
 
     def around(self) -> tuple[list[Any], list[Any]] | None:

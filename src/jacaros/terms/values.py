@@ -16,8 +16,10 @@ Formulae, plans and triggers are terms too (a program may pass them around): str
 another `Functor.kind` than `PLAIN`.
 """
 
-from collections.abc import Iterable, Iterator
+from _weakref import _remove_dead_weakref  # type: ignore[attr-defined]
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NoReturn
+from weakref import ref
 
 Term = Any
 """Any value of the table above."""
@@ -27,7 +29,7 @@ PLAIN, ARITHMETIC, FUNCTION, RELATION, LOGIC, ACTION, PLAN, NEGATION = range(8)
 
 
 class Functor:
-    """The name of an atom or structure; there is one object for each, so identity is equality.
+    """The name of an atom or structure; there is one object for each that is in use, so identity is equality.
 
     Attributes:
         name: as written, with the quotes of a quoted atom.
@@ -37,7 +39,7 @@ class Functor:
         kind: what the structure is, see the constants above.
     """
 
-    __slots__ = ("arity", "kind", "name", "namespace", "negated")
+    __slots__ = ("__weakref__", "arity", "kind", "name", "namespace", "negated")
 
     def __init__(self, name: str, arity: int, negated: bool, namespace: str | None, kind: int) -> None:
         self.name, self.arity, self.negated, self.namespace, self.kind = name, arity, negated, namespace, kind
@@ -50,7 +52,18 @@ class Functor:
         return functor, (self.name, self.arity, self.negated, self.namespace, self.kind)
 
 
-_functors: dict[tuple[str, int, bool, str | None, int], Functor] = {}
+_Key = tuple[str, int, bool, str | None, int]
+
+
+class _Held(ref[Functor]):
+    """A functor that others hold, with its key: a name that nobody uses is released."""
+
+    __slots__ = ("key",)
+
+    key: _Key
+
+
+_functors: dict[_Key, _Held] = {}
 
 
 def functor(
@@ -58,11 +71,33 @@ def functor(
 ) -> Functor:
     """The functor of that name and arity."""
     key = (name, arity, negated, namespace, kind)
-    found = _functors.get(key)
-    if found is None:
+    held = _functors.get(key)
+    found = None if held is None else held()
+    return _new_functor(key) if found is None else found
+
+
+def _new_functor(key: _Key) -> Functor:
+    made = Functor(*key)
+    new = _Held(made, _release)
+    new.key = key
+    while True:
         # At once: another thread may be making it, and there must be one object only.
-        found = _functors.setdefault(key, Functor(*key))
-    return found
+        found = _functors.setdefault(key, new)()
+        if found is not None:
+            return found
+        _remove_dead_weakref(_functors, key)
+
+
+def _release(
+    held: _Held,
+    functors: dict[_Key, _Held] = _functors,
+    remove: Callable[[dict[_Key, _Held], _Key], None] = _remove_dead_weakref,
+) -> None:
+    """Forget a functor that is gone, unless there is another one of its name by now; at once, as above.
+
+    The defaults outlive the module when the interpreter ends.
+    """
+    remove(functors, held.key)
 
 
 def atom(name: str, namespace: str | None = None) -> Functor:

@@ -1,5 +1,8 @@
 import copy
 import pickle
+import sys
+import threading
+import weakref
 
 import pytest
 
@@ -7,10 +10,12 @@ from jacaros.terms.collections import QueueValue, SetValue
 from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import (
     NIL,
+    PLAIN,
     Annotated,
     Reference,
     String,
     Var,
+    _functors,
     annotations_of,
     arguments_of,
     atom,
@@ -23,6 +28,34 @@ from jacaros.terms.values import (
     make_list,
     structure,
 )
+
+
+def test_a_name_that_is_no_longer_used_is_released() -> None:
+    gone = weakref.ref(atom("seen_once"))
+    used = atom("in_use")
+    assert gone() is None
+    assert ("seen_once", 0, False, None, PLAIN) not in _functors
+    assert atom("in_use") is used
+
+
+def test_there_is_one_functor_for_each_name_while_threads_make_and_release_it() -> None:
+    met = []
+
+    def make() -> None:
+        for _ in range(2000):
+            met.append(atom("shared") is atom("shared"))
+
+    threads = [threading.Thread(target=make) for _ in range(4)]
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    finally:
+        sys.setswitchinterval(before)
+    assert all(met)
 
 
 def test_there_is_one_functor_for_each_name() -> None:
