@@ -12,7 +12,7 @@ made before a yield are taken back before the next one is looked for.  A functio
 (``suspends``) calls `Context.suspend` and returns what that gave.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,6 +55,8 @@ class InternalAction:
         minimum, maximum: number of arguments allowed; maximum None for any number.
         direct: asked for a quicker function for a call with the arguments that a program writes out, or None: it is called
             with the agent itself and all arguments, bindings not applied, and never suspends.
+        values: gives what the first argument is in each answer, called with the others while that one is a variable without
+            value; None where this takes the function itself.  It must not look at beliefs.
     """
 
     name: str
@@ -64,6 +66,7 @@ class InternalAction:
     minimum: int = 0
     maximum: int | None = None
     direct: Callable[[Written], Function | None] | None = None
+    values: Callable[..., Iterable[Term]] | None = None
 
 
 Registry = dict[str, InternalAction]
@@ -78,12 +81,13 @@ def internal_action(
     backtracks: bool = False,
     suspends: bool = False,
     direct: Callable[[Written], Function | None] | None = None,
+    values: Callable[..., Iterable[Term]] | None = None,
 ) -> Callable[[Function], Function]:
     """Register a standard internal action; *arity* is a number of arguments, or least and most (None: any)."""
     least, most = (arity, arity) if isinstance(arity, int) else arity
 
     def register(function: Function) -> Function:
-        STANDARD[name] = InternalAction(name, function, backtracks, suspends, least, most, direct)
+        STANDARD[name] = InternalAction(name, function, backtracks, suspends, least, most, direct, values)
         return function
 
     return register

@@ -4,7 +4,7 @@ A search without end would leave nobody a turn.
 Agents without that option have no budget, and nothing is counted.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from jacaros.terms.values import Term
@@ -42,6 +42,12 @@ class SearchBudget:
             raise SearchLimit(
                 f"the search takes more than {self.limit} rules and answers (option search_limit)"
             )
+
+    def counting_answers(self, values: Iterable[Term]) -> Iterator[Term]:
+        """The answers of an internal action, each at the expense of this budget."""
+        for value in values:
+            self.spend()
+            yield value
 
     def counting(
         self, search: Callable[..., Iterator[tuple[Term, ...]]]

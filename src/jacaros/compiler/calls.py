@@ -1,6 +1,6 @@
 """Calls of internal actions that generated code makes, and what becomes of those that cannot be made."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from jacaros.compiler.outcomes import Failure
@@ -36,6 +36,22 @@ def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Ite
             beliefs.budget.spend()
         yield
         undo(trail, mark)
+
+
+def values_of(context: Any, action: Any, *arguments: Term) -> Iterable[Term]:
+    """What the first argument of a backtracking internal action is in each of its answers, as `answers_of` gives them.
+
+    *arguments* are the others; the first one has no value yet.
+    """
+    try:
+        values: Iterable[Term] = action.values(*arguments)
+    except InternalError:
+        raise
+    except Exception as fault:
+        context.report(action.name, fault)
+        return ()
+    budget = context.agent.beliefs.budget
+    return values if budget is None else budget.counting_answers(values)
 
 
 def first_answer_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:

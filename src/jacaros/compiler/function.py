@@ -1,6 +1,6 @@
 """One generated Python function: its text and what is known about variables at the point being written."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Protocol
 
@@ -42,6 +42,10 @@ class ActionInfo(Protocol):
     @property
     def direct(self) -> Callable[[tuple[Term | None, ...]], Callable[..., Any] | None] | None:
         """Asked for a quicker function for a call with the arguments that are written out; None when there is none."""
+
+    @property
+    def values(self) -> Callable[..., Iterable[Term]] | None:
+        """Gives what the first argument is in each answer while it has no value, called with the others; or None."""
 
 
 TOP = "NESTED"

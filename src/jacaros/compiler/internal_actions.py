@@ -4,8 +4,8 @@ from jacaros.asl import nodes
 from jacaros.compiler.answers import undoing
 from jacaros.compiler.building import build, resolved
 from jacaros.compiler.calls import takes_time
-from jacaros.compiler.function import FunctionBuilder
-from jacaros.compiler.matching import Then, settle_fresh
+from jacaros.compiler.function import ActionInfo, FunctionBuilder
+from jacaros.compiler.matching import Then, match, settle_fresh
 from jacaros.compiler.variables import names_in
 
 
@@ -17,6 +17,13 @@ def internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then)
         undoing(fn, f"unknown(agent.context, {node.name!r})", names, then)
         return
     constant = fn.constant(action)
+    if _gives_values(fn, action, node):
+        variable, *others = node.arguments
+        rest = "".join(f", {resolved(fn, build(fn, a))}" for a in others)
+        value = fn.local("c")
+        with fn.writer.block(f"for {value} in values_of(agent.context, {constant}{rest}):"):
+            match(fn, variable, value, then)
+        return
     arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
     if fn.quiet and takes_time(action):
         undoing(fn, f"cannot_wait(agent.context, {constant})", names, then)
@@ -34,6 +41,21 @@ def internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then)
             settle_fresh(fn, names)
             then()
         fn.line(f"if len(t) > {mark}: undo(t, {mark})")
+
+
+def _gives_values(fn: FunctionBuilder, action: ActionInfo, node: nodes.InternalAction) -> bool:
+    """Whether a call is answered by values for its first argument, a variable that is met here for the first time."""
+    if action.values is None or not fn.quiet or not accepts(action, len(node.arguments)):
+        return False
+    variable, *others = node.arguments
+    return (
+        isinstance(variable, nodes.Variable)
+        and variable.annotations is None
+        and variable.namespace is None
+        and not variable.negated
+        and (variable.unnamed or variable.name not in fn.values)
+        and all(name in fn.values and name != variable.name for other in others for name in names_in(other))
+    )
 
 
 def accepts(action: object, count: int) -> bool:

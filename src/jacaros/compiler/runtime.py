@@ -13,6 +13,7 @@ from jacaros.compiler.calls import (
     refuse,
     refuse_quietly,
     unknown,
+    values_of,
 )
 from jacaros.compiler.deconstruction import deconstruct, deconstruct_in
 from jacaros.compiler.literals import (
@@ -71,6 +72,7 @@ _FUNCTIONS = (
     annotation_set,
     annotations_of_event,
     answers_of,
+    values_of,
     at_most,
     binary,
     cannot_wait,

@@ -1,6 +1,9 @@
 """Variables of plans: where they get their values, and when they give them back."""
 
-from recording_host import printed
+from collections.abc import Callable
+
+import pytest
+from recording_host import mind, printed
 
 
 def test_a_failed_goal_gives_its_variables_back_to_the_handler_and_the_caller() -> None:
@@ -129,3 +132,23 @@ def test_annotations_of_a_rule_head_have_the_values_of_the_answer() -> None:
     assert printed(
         "!g. p(1). p(2). hd(X)[k(X)] :- p(X). +!g <- .findall(K,hd(_)[k(K)],L); .print(L); ?hd(Y)[|R]; .print(Y, R)."
     ) == ["[1,2]", "1[k(1),source(self)]"]
+
+
+@pytest.mark.parametrize("bounds", ["1, 4", "4, 1", "4, 1, -2", "1.9, 4.9", "1, 3, 0", "1, a", "U, 3", "X, 3"])
+def test_range_answers_alike_whether_its_variable_is_new_or_known_to_be_free(bounds: str) -> None:
+    """A variable that the search meets for the first time is given its values without unification."""
+    new = mind(f"!s. +!s <- .findall(X, .range(X, {bounds}), L); .print(L).")
+    known = mind(f"!s. +!s <- P = f(X); .findall(X, .range(X, {bounds}), L); .print(L).")
+    for host in (new, known):
+        host.run()
+    assert new.printed == known.printed
+    assert new.logged == known.logged
+
+
+def test_a_round_of_a_loop_over_numbers_takes_few_calls(
+    calls_of: Callable[[Callable[[], object]], int],
+) -> None:
+    def work(rounds: int) -> int:
+        return calls_of(lambda: printed(f"!s. +!s <- for (.range(I, 1, {rounds})) {{ Y = I }}; .print(end)."))
+
+    assert (work(300) - work(100)) / 200 < 5

@@ -276,7 +276,16 @@ def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) ->
     return ctx.unify(arguments[1], extreme)
 
 
-@internal_action(".range", arity=(3, 4), backtracks=True)
+def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
+    """The values of *X* in ``.range(X, First, Last[, Step])``."""
+    start, end = whole(first, "the second argument of .range"), whole(last, "the third argument of .range")
+    by = whole(step, "the fourth argument of .range")
+    if by == 0:
+        raise WrongArguments("the step of .range must not be 0")
+    return map(float, range(start, end + (1 if by > 0 else -1), by))
+
+
+@internal_action(".range", arity=(3, 4), backtracks=True, values=_numbers)
 def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0) -> Iterator[None]:
     """``.range(X, First, Last[, Step])``: *X* is each number from *First* to *Last* inclusive, in turn.
 
@@ -285,15 +294,16 @@ def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0)
     Raises:
         WrongArguments: an argument is no number, or the step is 0.
     """
-    start, end = whole(first, "the second argument of .range"), whole(last, "the third argument of .range")
-    by = whole(step, "the fourth argument of .range")
     if value.__class__ is not Var:
+        start, end = (
+            whole(first, "the second argument of .range"),
+            whole(last, "the third argument of .range"),
+        )
+        whole(step, "the fourth argument of .range")
         number(value, "the first argument of .range")
         if start <= whole(value, "the first argument of .range") <= end:
             yield
         return
-    if by == 0:
-        raise WrongArguments("the step of .range must not be 0")
-    for candidate in range(start, end + (1 if by > 0 else -1), by):
-        if ctx.unify(value, float(candidate)):
+    for candidate in _numbers(first, last, step):
+        if ctx.unify(value, candidate):
             yield
