@@ -142,6 +142,7 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
     """Events of matching goals vanish, with the intentions that posted them."""
     for event in goal_events(agent, goal):
         remove_event(agent, event)
+        _event_state(agent, event, "dropped", "finished")
     for event in list(agent.events):
         if (
             event[EVENT_INTENTION] is not None
@@ -193,6 +194,13 @@ def drop_all_events(agent: Circumstance) -> None:
     agent.suspended_events.clear()
 
 
+def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
+    """Tell what becomes of a goal that has not begun: it is an event yet."""
+    if agent.meta:
+        for state in states:
+            meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], state)
+
+
 # --- suspending --------------------------------------------------------------------------------------------
 
 
@@ -202,6 +210,7 @@ def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
         if event in agent.events:
             agent.events.remove(event)
             agent.suspended_events.append(event)
+            _event_state(agent, event, "suspended")
     for intention in intentions_for(agent, goal):
         suspend_intention(agent, intention, reason)
 
@@ -229,6 +238,7 @@ def resume_goal(agent: Circumstance, goal: Term) -> None:
         if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
             agent.suspended_events.remove(event)
             agent.queue(event)
+            _event_state(agent, event, "resumed")
             agent.architecture.ready()
     for intention in intentions_for(agent, goal):
         resume_intention(agent, intention)
@@ -276,6 +286,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
             agent.make_ready(intention)
     for event in goal_events(agent, goal):
         remove_event(agent, event)
+        _event_state(agent, event, "achieved", "finished")
     return own
 
 

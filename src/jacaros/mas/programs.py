@@ -1,5 +1,6 @@
 """The agent programs of a run: found, read once, shared by all agents that run them."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from errno import ENOTDIR
@@ -21,8 +22,16 @@ NEVER_SELECTED = "plan-never-selected"
 """What is told of plans behind those that are always taken first: agents of a class of their own may take them."""
 
 _LIBRARY = "$jacaros/"
-TEST_LIBRARY = ("tester_agent.asl", "test_assert.asl", "test_manager.asl", "test_performance.asl")
+TEST_LIBRARY = (
+    "mock_agent.asl",
+    "test_assert.asl",
+    "test_manager.asl",
+    "test_performance.asl",
+    "tester_agent.asl",
+)
 """Files that programs of Jason include for their tests; ours stand for them."""
+_OF_JASON = re.compile(r"\$jason(Jar)?/test/jason/inc/|\btest_manager\b|\bmock_owner\b")
+"""What is found in Jason's own copies of them, which projects have beside their tests."""
 
 
 class Programs:
@@ -164,16 +173,19 @@ class Programs:
         """
         if path.startswith(_LIBRARY):
             return _of_library(path.removeprefix(_LIBRARY))
+        name = path.rpartition("/")[2]
         beside = Path(including).parent / path
         try:
             # A program that is no file has nothing beside it.
             file = beside if is_file(beside) and not including.startswith("<") else self.find(path)
         except FileNotFoundError:
-            name = path.rpartition("/")[2]
             if name in TEST_LIBRARY:
                 return _of_library(name)
             raise
-        return str(file), file_text(file)
+        text = file_text(file)
+        if name in TEST_LIBRARY and _OF_JASON.search(text):
+            return _of_library(name)
+        return str(file), text
 
 
 def _concerns_author(warning: Diagnostic, path: Path) -> bool:

@@ -143,12 +143,14 @@ def suite_of(path: Path) -> Suite:
             if spec.declared_name not in declared:
                 declared.add(spec.declared_name)
                 suite.tests += _tests(spec.name, program, problems)
-        if problems:
-            raise AslError(problems)
+        suite.warnings += [each.render() for each in problems if each.severity == "warning"]
+        wrong = [each for each in problems if each.severity == "error"]
+        if wrong:
+            raise AslError(wrong)
         suite.deployment = deployment
-    except JacarosError as wrong:
+    except JacarosError as fault:
         suite.tests.clear()
-        suite.error = str(wrong)
+        suite.error = str(fault)
     return suite
 
 
@@ -213,9 +215,10 @@ def _folders_of_the_manager(suite: Suite) -> Iterator[Path]:
     for spec in suite.deployment.agents:
         for goal in parse_literals(spec.goals) if spec.goals.strip() else ():
             if goal.functor == "create_tester_agents" and isinstance(goal.arguments[0], nodes.String):
-                folder = suite.deployment.base_path / goal.arguments[0].value
-                if folder.is_dir():
-                    yield folder
+                written = goal.arguments[0].value
+                # Jason looks in the folder in which it is started.
+                folders = (suite.deployment.base_path / written, Path(written))
+                yield from [folder for folder in folders if folder.is_dir()][:1]
 
 
 def _without_repetitions(suites: list[Suite]) -> None:
@@ -299,14 +302,10 @@ def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> It
         first = known.setdefault(signature, plan)
         if first is not plan:
             # Several plans for one goal are alternatives of one test, unless the first one is always taken.
-            if first.context is None:
-                hint = "give it a goal of its own"
-                problems.append(
-                    Diagnostic(
-                        "error", f"this test is never run: !{signature} has another plan", plan.span, hint
-                    )
-                )
-            continue
+            if first.context is not None:
+                continue
+            told = f"this plan is never run: !{signature} has another, which is tested twice"
+            problems.append(Diagnostic("warning", told, plan.span, "give it a goal of its own"))
         mappings = tuple(_mappings(annotations, plan, problems))
         yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(annotations), mappings)
 

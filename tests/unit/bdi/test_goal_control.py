@@ -1,7 +1,7 @@
 """Goal control tells which goal it found; failures of waiting steps have a message; conditions do not wait."""
 
 import pytest
-from recording_host import mind
+from recording_host import mind, printed
 
 WAITING = (
     "!begin. +!w(X, Y) <- .wait(1000). -!w(X, Y) <- .print(failed(X)). +!begin <- !!w(1, a); .wait(10); "
@@ -133,3 +133,31 @@ def test_a_goal_that_suspends_itself_goes_on_with_its_next_step() -> None:
     )
     host.run(seconds=1)
     assert host.printed == ["before", "on"]
+
+
+@pytest.mark.parametrize(
+    ("steps", "states"),
+    [
+        (
+            ".suspend(g(1)); .wait(10); .resume(g(1)); .wait(10)",
+            "pending suspended resumed executing achieved finished",
+        ),
+        (".succeed_goal(g(1)); .wait(10)", "pending achieved finished"),
+        (".drop_event(g(1)); .wait(10)", "pending dropped finished"),
+    ],
+)
+def test_the_states_of_a_goal_that_is_an_event_yet_are_told(steps: str, states: str) -> None:
+    program = f"!s. +!s <- !!g(1); {steps}; .print(end). +!g(X). ^!g(X)[state(S)] <- .print(S)."
+    assert [line for line in printed(program) if line != "end"] == states.split()
+
+
+def test_a_wait_says_what_it_waits_for() -> None:
+    program = """
+!a. !b. !c. !look.
++!a <- .wait(300).
++!b <- .wait({+e(1)}, 300, _).
++!c <- .wait(p(2), 300, _).
++!look <- .wait(50); .suspended(a, wait(I)[time(T)]); .suspended(b, wait(_)[e(N)]); .suspended(c, wait(_)[p(M)]);
+   .suspend(a); .suspended(a, wait(_)[time(U)]); .print(I, " ", T, N, M, U).
+"""
+    assert printed(program) == ["1 30012300"]

@@ -41,10 +41,18 @@ def test_alternatives_of_one_goal_are_one_test(write: Write) -> None:
     assert names(write("t.asl", "@a[test] +!g : p. @b[test] +!g.")) == ["a"]
 
 
-def test_a_test_that_can_never_run_is_an_error(write: Write) -> None:
+def test_two_tests_with_one_goal_test_its_first_plan_twice(write: Write) -> None:
     suite = suite_of(write("t.asl", "@a[test] +!g(X) <- .print(X). @b[test] +!g(Y) <- .print(Y)."))
-    assert suite.error is not None
-    assert "t.asl:1:31: error: this test is never run: !g(_) has another plan" in suite.error
+    assert [test.name for test in suite.tests] == ["a", "b"]
+    told = "t.asl:1:31: warning: this plan is never run: !g(_) has another, which is tested twice"
+    assert any(told in warning for warning in suite.warnings)
+
+
+def test_jason_s_own_copies_of_its_test_library_are_ours(write: Write) -> None:
+    write("tester_agent.asl", '{ include("$jasonJar/test/jason/inc/test_assert.asl") }\n!execute_test_plans.')
+    suite = suite_of(write("t.asl", '{ include("tester_agent.asl") } @a[test] +!g <- !assert_equals(1, 1).'))
+    assert suite.deployment is not None
+    assert [test.name for test in suite.tests] == ["a"]
 
 
 def test_a_test_without_a_goal_is_an_error(write: Write) -> None:

@@ -11,3 +11,15 @@
 @test__execute_test_plans
 +!execute_test_plans
   <- .print("run the tests of this agent with jacaros test").
+
+// Another agent for a test to talk to; the test may kill it when it is done.
+@test__create_mock_agent
++!create_mock_agent(Name) : .my_name(Me)
+  <- .create_agent(Name, "mock_agent.asl");
+     .send(Name, tell, mock_owner(Me)).
+
+// Wait until such an agent has dealt with what it has been sent.
+@test__wait_idle
++!wait_idle(Name)
+  <- .wait(not sleeping(Name), 300, _);
+     .wait(sleeping(Name)).

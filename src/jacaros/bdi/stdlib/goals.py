@@ -230,8 +230,10 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
     """``.suspended(G, R)``: whether an intention with the goal is suspended or waits, and why (``act`` for an action)."""
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
         why = candidate.suspended
-        if why is None and candidate.waiting is not None:
-            why = candidate.waiting.reason
+        waiting = candidate.waiting
+        if waiting is not None and waiting.reason is not OWN_SUSPENSION:
+            # As in Jason: one that is suspended while it waits for something is told with that.
+            why = waiting.reason
             why = atom("act") if why.__class__ is tuple and why[0].name == "action" else why
         found = goals.goal_of(ctx.agent, candidate, goal)
         if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):

@@ -14,17 +14,20 @@ from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.triggers import Trigger
 from jacaros.terms.substitution import rename
 from jacaros.terms.text import text
-from jacaros.terms.values import String, Term, atom, functor
+from jacaros.terms.values import Annotated, String, Term, atom, functor
 
-ERROR = functor("error", 1)
+ERROR, TIME, WAIT = functor("error", 1), functor("time", 1), functor("wait", 1)
 
 
 class _Wait:
     """A ``.wait`` under way."""
 
-    def __init__(self, ctx: Context, elapsed: Term) -> None:
+    def __init__(self, ctx: Context, awaited: Term, elapsed: Term) -> None:
         self.ctx = ctx
         self.waiting: Waiting = ctx.suspend("wait")
+        assert ctx.intention is not None
+        # As in Jason: with the number of the intention, and what it waits for.
+        self.waiting.reason = Annotated((WAIT, float(ctx.intention.id)), (awaited,))
         self.elapsed = elapsed
         self.began = ctx.architecture.now()
         self.timer: Any = None
@@ -87,13 +90,13 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     if limit is not None and limit.__class__ is not float:
         raise WrongArguments(f"the time-out must be a number of milliseconds, not {text(limit)}")
     if what.__class__ is float:
-        waited = _Wait(ctx, elapsed)
+        waited = _Wait(ctx, (TIME, what), elapsed)
         waited.limit(what, fails=False)
         return waited.waiting
     found = trigger_of(what)
     if found is None:
         return _wait_for_condition(ctx, what, limit, elapsed)
-    waited = _Wait(ctx, elapsed)
+    waited = _Wait(ctx, rename(found[1]), elapsed)
     waited.entry = EventWait(found[0], found[1], waited)
     ctx.agent.event_waits.add(waited.entry)
     if limit is not None:
@@ -104,7 +107,7 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
 def _wait_for_condition(ctx: Context, formula: Term, limit: Term, elapsed: Term) -> Any:
     if ctx.succeeds(formula):
         return None if elapsed is None else ctx.unify(elapsed, 0.0)
-    waited = _Wait(ctx, elapsed)
+    waited = _Wait(ctx, rename(formula), elapsed)
 
     def holds() -> bool:
         if ctx.succeeds(formula):

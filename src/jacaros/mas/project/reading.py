@@ -130,10 +130,17 @@ def _read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
     return read_mas2j(cursor)
 
 
+def _has_programs(folder: str) -> bool:
+    return next(Path(folder).glob("*.asl"), None) is not None
+
+
 def _complete(path: Path, part: ProjectPart) -> None:
     """Find the folders and files that the file at *path* names; they are relative to it."""
     base = path.parent
-    declared = [base / folder for folder in part.source_paths if not folder.startswith("$")]
+    written = [folder for folder in part.source_paths if not folder.startswith("$")]
+    declared = [base / folder for folder in written]
+    # Jason looks in the folder in which it is started.
+    declared += [Path(folder) for folder in written if not (base / folder).is_dir() and _has_programs(folder)]
     if path.suffix == _JCM:
         # As in JaCaMo: the first asl-path takes the place of the usual ones, but for the project's own folder.
         usual = [base / folder for folder in (_JCM_PATHS[:1] if part.source_paths else _JCM_PATHS)]
