@@ -215,7 +215,11 @@ class BodyParser(TermParser):
     def _condition_of(self, word: Token) -> nodes.Term:
         opener = self.token
         if opener.kind != "(":
-            self.unexpected(f"'(' and the condition of '{word.kind}'", "missing-condition")
+            self.fail(
+                "missing-condition",
+                f"'(' and the condition of '{word.kind}' is expected, not '{opener.text}'",
+                hint=f"{word.kind} (condition) {{ steps }}",
+            )
         self.advance()
         condition = self.condition()
         self.close(opener)

@@ -150,7 +150,7 @@ class Cursor:
     def forgive(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
         """Record what Jason refuses and the JaCaROS thesis prints: a warning in programs that name the artifact
         classes of the thesis, an error in all others."""
-        if _THESIS in self.file.text:
+        if any(_THESIS in token.text for token in self.tokens):
             self.warn(code, message, span, hint)
         else:
             self.report(code, message, span, hint)

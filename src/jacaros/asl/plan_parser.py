@@ -124,6 +124,12 @@ class PlanParser(BodyParser):
     def _plan_body(self) -> nodes.Body:
         arrow = self.token
         if not self.accept("<-"):
+            if self.token.kind in ("atom", "!", "!!", "?", "if", "for", "while") and self.slip() is None:
+                self.fail(
+                    "unexpected-token",
+                    f"'<-' is expected before '{arrow.text}'",
+                    hint="the steps of a plan stand behind '<-'",
+                )
             return nodes.Body(span=self.span_of(arrow))
         if self.token.kind in (".", "}", "end") or self.at_plan():
             self.report(

@@ -31,6 +31,7 @@ _WORDS: Final = {
     "and": "'and' is written &",
     "or": "'or' is written |",
     "is": "a variable gets its value by =, as in X = Y + 1",
+    "in": "an element of a list is found by .member, as in for (.member(X, L)) { steps }",
     "then": "the steps stand in braces: if (condition) { steps }",
     "do": "the steps stand in braces: while (condition) { steps }",
     "elsif": "write elif (condition) { steps }",
@@ -38,6 +39,7 @@ _WORDS: Final = {
 }
 """Words that other languages have."""
 
+_PYTHON: Final = frozenset({"class", "def", "from", "import"})
 _CONTROL: Final = ("if", "while", "for", "elif")
 _ENDS_OPERAND: Final = frozenset({"atom", "variable", "number", "string", ")", "]", "}"})
 _BEGINS_OPERAND: Final = frozenset({"atom", "variable", "number", "string", "(", "[", "~", "-"})
@@ -57,6 +59,8 @@ def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
     return (
         _misspelt(tokens, index)
         or _foreign_word(tokens, index)
+        or _python(tokens, index)
+        or _open_block(tokens, index)
         or _reserved(tokens[index])
         or _cut(tokens, index)
         or _counting(tokens, index)
@@ -136,6 +140,33 @@ def _foreign_word(tokens: Sequence[Token], index: int) -> Slip | None:
     if tokens[index - 1].kind not in _ENDS_OPERAND:
         return None
     return Slip("foreign-word", f"there is no '{token.text}'", _WORDS[token.text])
+
+
+def _python(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``def go(): pass`` in the place of a clause."""
+    before = tokens[index - 1] if index else None
+    if before is None or before.text not in _PYTHON or tokens[index].kind not in ("atom", "variable"):
+        return None
+    if index > 1 and tokens[index - 2].kind not in (".", "}"):
+        return None
+    hint = "this is an agent program; Python code stands in a .py file, such as artifacts.py"
+    return Slip("foreign-word", f"'{before.text}' is a word of Python", hint, before)
+
+
+def _open_block(tokens: Sequence[Token], index: int) -> Slip | None:
+    """``if (c) { a else { b }``."""
+    if tokens[index].kind not in ("else", "elif"):
+        return None
+    depth = 0
+    for token in reversed(tokens[:index]):
+        depth += (token.kind == "}") - (token.kind == "{")
+        if depth < 0:
+            word = tokens[index].text
+            hint = f"the block before it was opened at line {token.line}, column {token.column}"
+            return Slip("unclosed-bracket", f"'}}' is missing before '{word}'", hint)
+        if token.kind == ".":
+            break
+    return None
 
 
 def _misspelt(tokens: Sequence[Token], index: int) -> Slip | None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from jacaros.env.artifact import Artifact, Host
-from jacaros.env.errors import OperationFailed, UnknownArtifactType
+from jacaros.env.errors import InvalidArtifact, OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
 from jacaros.env.kernel.faults import is_interruption, told
@@ -48,7 +48,10 @@ def artifact_type_of(
     except BaseException as error:
         if is_interruption(error):
             raise
-        setting.log_error(name, "the artifact type cannot be loaded:", error)
+        if isinstance(error, InvalidArtifact):
+            setting.log(f"[{name}] the artifact type cannot be loaded: {error}")
+        else:
+            setting.log_error(name, "the artifact type cannot be loaded:", error)
         message = f"artifact type {name} cannot be loaded: {told(error)}"
         raise refused("unknown_artifact_template", name, message) from error
     if not (isinstance(found, type) and issubclass(found, Artifact)):
