@@ -196,9 +196,11 @@ def _is_called(agent: Circumstance) -> bool:
 
 def _failed(agent: Circumstance, intention: Intention, fault: Exception) -> Any:
     """A step raised an exception: the event for the nearest handler, None when there is none."""
-    note_lack_of_memory(agent, fault)
-    undo(agent.trail, 0)
-    _report(agent, fault)
+    if agent.trail:
+        undo(agent.trail, 0)
+    if fault.__class__ is not Fail:
+        note_lack_of_memory(agent, fault)
+        _report(agent, fault)
     frame: Frame = intention.frames[-1]
     return fail_intention(agent, intention, failure.step_failure(frame, fault))
 

@@ -7,7 +7,7 @@ from jacaros.asl import nodes
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, StepPlace, goal_text
-from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, SERIAL, STEP, Frame, Intention
+from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.internal_action import ActionError, WrongArguments
 from jacaros.bdi.search_budget import SearchLimit
 from jacaros.bdi.subplans import handles
@@ -144,7 +144,7 @@ def too_deep(goal: tuple[Any, ...], annotations: Any, caller: Frame, depth: int)
 
 def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
     """Give the variables of a failed goal back as they were when it was posted."""
-    stack = [a for a in goal[1:] if a.__class__ is Var or a.__class__ is tuple]
+    stack = [a for a in goal if a.__class__ is Var or a.__class__ is tuple]
     while stack:
         term = stack.pop()
         if term.__class__ is Var:
@@ -164,22 +164,24 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
     The failed frames stay on the stack under the handler until it ends.  A failure inside a handler goes on to the goals
     below the one it handles.
     """
-    frames = intention.frames
+    frames, selects = intention.frames, agent.selects
     handlers = len(intention.handlers)
     index = len(frames) - 1
     while index >= 0:
         frame = frames[index]
-        trigger = frame[GOAL][0]
+        trigger = frame[1][0]
         if trigger.failing:
             handlers -= 1
             index = intention.handlers[handlers] - 1
             continue
         kind = trigger.on_fail
-        if kind is not None and (agent.selects[kind] is not None or handles(agent, intention, index, kind)):
-            event = reason.with_goal(frame[ANNOTATIONS])
-            release_bindings(frame[GOAL], frame[SERIAL])
+        if kind is not None and (
+            selects[kind] is not None or (agent.subplans and handles(agent, intention, index, kind))
+        ):
+            goal = frame[1]
+            release_bindings(goal, frame[3])
             intention.handlers.append(index)
-            return Posted((kind, *frame[GOAL][1:]), event)
+            return Posted((kind, *goal[1:]), reason.with_goal(frame[2]))
         index -= 1
     return None
 

@@ -109,6 +109,8 @@ class FailureReason:
 class _Nowhere:
     """No formula: something from outside ended the goal; *told* says what, where no ``error_msg`` does."""
 
+    __slots__ = ("_told",)
+
     def __init__(self, told: str = "") -> None:
         self._told = told
 
@@ -140,7 +142,7 @@ class StepPlace(_Nowhere):
     __slots__ = ("_frame", "_info", "_slots")
 
     def __init__(self, frame: Frame, info: StepInfo) -> None:
-        super().__init__()
+        self._told = ""
         self._frame, self._info = frame, info
         self._slots = frame[PLAN].slots
 
