@@ -13,6 +13,7 @@ from jacaros.terms.values import (
     RELATION,
     Annotated,
     Functor,
+    List,
     Term,
     Var,
     arguments_of,
@@ -156,6 +157,8 @@ def _is_passive(terms: Iterable[Term]) -> bool:
             if term[0].kind not in (PLAIN, ARITHMETIC):
                 return False
             todo.extend(term[1:])
+        elif kind is List:
+            todo.extend(term.from_bottom())
         elif kind is Annotated:
             todo.append(term.term)
             todo.extend(term.annotations)

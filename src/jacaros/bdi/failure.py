@@ -18,7 +18,7 @@ from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import display, text
-from jacaros.terms.values import String, Term, Var, atom, functor
+from jacaros.terms.values import List, String, Term, Var, atom, functor
 
 _ENV_FAILURE_REASON, _BIND_PARAM_ERROR = functor("env_failure_reason", 1), functor("bind_param_error", 2)
 
@@ -142,9 +142,12 @@ def too_deep(goal: tuple[Any, ...], annotations: Any, caller: Frame, depth: int)
     return FailureReason(error_terms("too_deep", message), GoalPlace(goal, annotations, caller))
 
 
+_MAY_BE_BOUND = frozenset({Var, tuple, List})
+
+
 def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
     """Give the variables of a failed goal back as they were when it was posted."""
-    stack = [a for a in goal if a.__class__ is Var or a.__class__ is tuple]
+    stack: list[Term] = [a for a in goal if a.__class__ in _MAY_BE_BOUND]
     while stack:
         term = stack.pop()
         if term.__class__ is Var:
@@ -155,7 +158,9 @@ def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
             else:
                 stack.append(term.ref)
         elif term.__class__ is tuple:
-            stack.extend(a for a in term[1:] if a.__class__ is Var or a.__class__ is tuple)
+            stack.extend(a for a in term[1:] if a.__class__ in _MAY_BE_BOUND)
+        elif isinstance(term, List) and term.settled != term.size:
+            stack.extend(a for a in term.stack[term.settled : term.size] if a.__class__ in _MAY_BE_BOUND)
 
 
 def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:

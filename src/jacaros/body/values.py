@@ -36,6 +36,7 @@ from jacaros.terms.values import (
     TRUE,
     Annotated,
     Functor,
+    List,
     Reference,
     String,
     Term,
@@ -44,6 +45,7 @@ from jacaros.terms.values import (
     deref,
     functor,
     make_list,
+    parted,
 )
 
 Outputs = list[tuple[Var, Out]]
@@ -68,6 +70,8 @@ def to_value(term: Term, outputs: Outputs | None = None) -> Any:
         return _variable_to_value(term, outputs)
     if kind is Functor:
         return _atom_to_value(term)
+    if kind is List:
+        return [to_value(item, outputs) for item in term.elements()]
     if kind is tuple:
         return _structure_to_value(term, outputs)
     if kind is Annotated:
@@ -96,11 +100,7 @@ def _atom_to_value(symbol: Functor) -> object:
 def _structure_to_value(term: Term, outputs: Outputs | None) -> object:
     symbol = term[0]
     if symbol is CONS:
-        items = []
-        while term.__class__ is tuple and term[0] is CONS:
-            items.append(to_value(term[1], outputs))
-            term = deref(term[2])
-        return items
+        return [to_value(item, outputs) for item in parted(term)[0]]
     if symbol.kind not in _CARRIED_AS_STRUCTURES:
         return text(term)
     return Structure(symbol_name(symbol), tuple(to_value(argument, outputs) for argument in term[1:]))

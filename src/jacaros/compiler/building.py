@@ -10,7 +10,7 @@ from jacaros.compiler.variables import variables_in
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, BODY_TERM, NO_LABEL, PLAN, RULE, TRIGGER
 from jacaros.terms.substitution import resolve
-from jacaros.terms.values import ACTION, FUNCTION, LOGIC, NIL, RELATION, Functor, Term, atom, functor
+from jacaros.terms.values import ACTION, FUNCTION, LOGIC, RELATION, Functor, Term, atom, functor
 from jacaros.terms.values import PLAN as PLAN_KIND
 
 _STATIC = (nodes.Literal, nodes.ListTerm, nodes.String)
@@ -136,7 +136,9 @@ def _literal(fn: FunctionBuilder, node: nodes.Literal) -> str:
 
 
 def _list(fn: FunctionBuilder, node: nodes.ListTerm) -> str:
-    tail = fn.constant(NIL) if node.tail is None else build(fn, node.tail)
+    if node.tail is None:
+        return f"make_list({tuple_of([build(fn, i) for i in node.items])})"
+    tail = build(fn, node.tail)
     items = [build(fn, i) for i in node.items]
     if len(items) > _LONG_LIST:
         return f"make_list({tuple_of(items)}, {tail})"

@@ -36,12 +36,11 @@ def match(
         _test(fn, f"{value} is {symbol} or ({_open(symbol, value)})", then)
     elif isinstance(pattern, nodes.Literal) and _is_plain(pattern) and _is_taken_apart(pattern):
         symbol = fn.constant(functor_of_literal(pattern))
-        _match_structure(fn, pattern, symbol, pattern.arguments, value, then)
+        _match_structure(fn, symbol, pattern.arguments, value, then)
     elif isinstance(pattern, nodes.ListTerm) and _is_taken_apart_list(pattern):
         items, tail = pattern.items, pattern.tail
         rest = tail if len(items) == 1 else nodes.replace(pattern, items=items[1:])
-        first_and_rest = (items[0], rest or nodes.ListTerm(()))
-        _match_structure(fn, pattern, fn.constant(CONS), first_and_rest, value, then)
+        _match_list(fn, (items[0], rest or nodes.ListTerm(())), value, then)
     else:
         _match_any(fn, pattern, value, then, pattern_left)
 
@@ -97,15 +96,39 @@ def _match_variable(fn: FunctionBuilder, pattern: nodes.Variable, value: str, th
     _test(fn, f"{condition} else unify({known}, {value}, t)", then)
 
 
+def _match_list(
+    fn: FunctionBuilder, first_and_rest: tuple[nodes.Node, nodes.Node], value: str, then: Then
+) -> None:
+    """Take the first element off a list."""
+
+    def of_list(value: str, parts: list[str], found: str) -> None:
+        first, rest = first_and_rest
+        with fn.writer.block(f"elif {value}.__class__ is List:"):
+            fn.line(f"{found} = True")
+            if not _is_anything(first):
+                fn.line(f"{parts[0]} = {value}.stack[{value}.size - 1]")
+            if not _is_anything(rest):
+                fn.line(f"{parts[1]} = {value}.rest()")
+
+    _match_structure(fn, fn.constant(CONS), first_and_rest, value, then, of_list)
+
+
+def _is_anything(pattern: nodes.Node) -> bool:
+    return isinstance(pattern, nodes.Variable) and pattern.unnamed and _is_plain(pattern)
+
+
 def _match_structure(
     fn: FunctionBuilder,
-    pattern: nodes.Node,
     symbol: str,
     arguments: Sequence[nodes.Node],
     value: str,
     then: Then,
+    otherwise: Callable[[str, list[str], str], None] | None = None,
 ) -> None:
-    """Take a structure apart; the parts are matched inside the test."""
+    """Take a structure apart; the parts are matched inside the test.
+
+    *otherwise* writes a test for values of another class.
+    """
     parts = [fn.local("p") for _ in arguments]
     found = fn.local("m")
     outer, value = value, fn.local("d")
@@ -113,6 +136,8 @@ def _match_structure(
     with fn.writer.block(f"if {value}.__class__ is tuple:"):
         fn.line(f"{found} = {value}[0] is {symbol}")
         fn.line(f"if {found}: _, {', '.join(parts)} = {value}")
+    if otherwise is not None:
+        otherwise(value, parts, found)
     with fn.writer.block(f"elif {value}.__class__ in CLOSED:"):
         fn.line(f"{found} = False")
     with fn.writer.block("else:"):

@@ -21,10 +21,12 @@ from jacaros.terms.values import (
     RELATION,
     Annotated,
     Functor,
+    List,
     String,
     Term,
     Var,
     deref,
+    parted,
 )
 
 
@@ -56,6 +58,8 @@ class Reflection:
             return nodes.ListTerm(()) if term is NIL else self._literal(term, ())
         if kind is Annotated:
             return self._annotated(term)
+        if kind is List:
+            return self._list(term)
         if kind is tuple:
             return self._structure(term)
         return cast("nodes.Term", Constant(term))
@@ -121,11 +125,8 @@ class Reflection:
         return (nodes.And if name == "&" else nodes.Or)(self.term(term[1]), self.term(term[2]))
 
     def _list(self, term: Term) -> nodes.ListTerm:
-        items = []
-        while term.__class__ is tuple and term[0] is CONS:
-            items.append(self.term(term[1]))
-            term = deref(term[2])
-        return nodes.ListTerm(tuple(items), None if term is NIL else self.term(term))
+        items, end = parted(term)
+        return nodes.ListTerm(tuple(map(self.term, items)), None if end is NIL else self.term(end))
 
     def plan(self, term: Term) -> nodes.Plan:
         """A plan term.

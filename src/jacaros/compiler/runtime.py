@@ -46,7 +46,7 @@ from jacaros.terms.negation import qualify
 from jacaros.terms.order import annotation_set, at_most, less
 from jacaros.terms.substitution import ATOMIC, equal, free_variables, rename, resolve
 from jacaros.terms.unifier import Trail, undo, unify, unify_annotations
-from jacaros.terms.values import BY_SELF, CONS, Annotated, Functor, String, Var, bare, deref, make_list
+from jacaros.terms.values import BY_SELF, CONS, Annotated, Functor, List, String, Var, bare, deref, make_list
 
 NESTED = 100
 """So many generators may be nested: each is a level of Python's stack, of which a thousand are allowed."""
@@ -58,7 +58,7 @@ def release(variables: list[Var]) -> None:
         variable.ref = None
 
 
-CLOSED = frozenset({float, String, Functor})
+CLOSED = frozenset({float, String, Functor, List})
 """Values that never unify with a structure."""
 
 
@@ -119,7 +119,7 @@ _FUNCTIONS = (
     unify_rows,
     unknown,
 )
-_CLASSES = (Annotated, Fail, InternalError, NextPlan, Remaining, Functor, String, Trail, Var)
+_CLASSES = (Annotated, Fail, InternalError, NextPlan, Remaining, Functor, List, String, Trail, Var)
 
 NAMES: dict[str, Any] = {
     **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},

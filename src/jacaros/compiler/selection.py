@@ -69,6 +69,8 @@ class SelectCompiler:
             fn.line("key = goal[1]")
             with fn.writer.block("if key.__class__ is tuple:"):
                 fn.line("key = None if key[0].kind else key[0]")
+            with fn.writer.block("elif key.__class__ is List:"):
+                fn.line("key = CONS")
             with fn.writer.block(
                 f"for part in ({table}.get(key, {table}_others) if key.__class__ in ATOMIC else {table}_all):"
             ):

@@ -7,8 +7,9 @@ contains itself is found by a variable that is met again inside its own value.
 
 from collections.abc import Callable
 
-from jacaros.terms.values import Annotated, Term, Var
+from jacaros.terms.values import CONS, NIL, Annotated, List, Term, Var, make_list
 
+_COMPOUND = frozenset({tuple, List, Annotated})
 MANY_TURNS = 100_000
 """Elements of a list after which a loop begins to look whether it goes in a circle."""
 
@@ -43,8 +44,12 @@ def rebuild(
     while todo:
         item = todo.pop()
         if item.__class__ is _Open:
-            made = _structure(item.term, done) if item.term.__class__ is tuple else None
-            done.append(_annotated(item.term, done, annotated) if made is None else structure(made))
+            if item.term.__class__ is tuple:
+                done.append(structure(_structure(item.term, done)))
+            elif item.term.__class__ is List:
+                done.append(_list(item.term, done))
+            else:
+                done.append(_annotated(item.term, done, annotated))
             inside.difference_update(item.variables)
             continue
         through: list[int] = []
@@ -53,7 +58,7 @@ def rebuild(
                 raise CyclicTerm
             through.append(id(item))
             item = item.ref
-        if item.__class__ is tuple or item.__class__ is Annotated:
+        if item.__class__ in _COMPOUND and not (item.__class__ is List and item.is_settled()):
             inside.update(through)
             todo.append(_Open(item, through))
             todo.extend(reversed(_parts(item)))
@@ -74,6 +79,8 @@ class _Open:
 def _parts(term: Term) -> tuple[Term, ...]:
     if term.__class__ is tuple:
         return term[1:]
+    if term.__class__ is List:
+        return tuple(term.elements())
     return (term.term, *term.annotations, *(() if term.tail is None else (term.tail,)))
 
 
@@ -82,7 +89,17 @@ def _structure(term: Term, done: list[Term]) -> Term:
     arguments = done[1 - len(term) :]
     del done[1 - len(term) :]
     same = all(new is old for new, old in zip(arguments, term[1:], strict=True))
+    if term[0] is CONS and (arguments[1] is NIL or arguments[1].__class__ is List):
+        return make_list(arguments[:1], arguments[1])
     return term if same else (term[0], *arguments)
+
+
+def _list(term: List, done: list[Term]) -> Term:
+    """The same for a list."""
+    items = done[-term.size :]
+    del done[-term.size :]
+    same = all(new is old for new, old in zip(items, term.elements(), strict=True))
+    return term if same else make_list(items)
 
 
 def _annotated(
@@ -111,14 +128,10 @@ def as_key(term: Term) -> Term:
         item, depth = todo.pop()
         if item.__class__ is Annotated:
             todo += ((part, depth + 1) for part in _parts(item))
-        elif item.__class__ is tuple:
+        elif item.__class__ is tuple or item.__class__ is List:
             if depth > _HASHABLE:
                 raise RecursionError(f"elements of sets and keys of maps have {_HASHABLE} levels at most")
-            todo += [
-                (part, depth + 1)
-                for part in item[1:]
-                if part.__class__ is tuple or part.__class__ is Annotated
-            ]
+            todo += [(part, depth + 1) for part in _parts(item) if part.__class__ in _COMPOUND]
     return term
 
 

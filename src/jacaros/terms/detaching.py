@@ -2,7 +2,7 @@
 
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.substitution import resolve
-from jacaros.terms.values import CONS, Annotated, Term, deref, list_items, make_list
+from jacaros.terms.values import ATOMIC, Annotated, List, Term, deref, is_list, list_items, make_list
 
 _COLLECTIONS = (SetValue, MapValue, QueueValue)
 
@@ -23,6 +23,10 @@ def holds_collection(term: Term) -> bool:
         kind = part.__class__
         if kind is tuple:
             stack.extend(part[1:])
+        elif kind is List:
+            items = part.from_bottom()
+            if not ATOMIC.issuperset(map(type, items)):
+                stack.extend(items)
         elif kind is Annotated:
             stack.append(part.term)
             stack.extend(part.annotations)
@@ -41,7 +45,7 @@ def _copy(term: Term, copies: dict[int, Term]) -> Term:
     if kind is Annotated:
         annotations = tuple(_copy(a, copies) for a in term.annotations)
         return Annotated(_copy(term.term, copies), annotations, term.tail)
-    if term[0] is CONS:
+    if is_list(term):
         return make_list([_copy(item, copies) for item in list_items(term)])
     return (term[0], *(_copy(argument, copies) for argument in term[1:]))
 

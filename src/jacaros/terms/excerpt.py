@@ -4,7 +4,18 @@ Where parts are shared, as in ``f(T,T)`` with such a ``T``, the text of a small 
 list of all ranges of a laser is more than anybody reads.
 """
 
-from jacaros.terms.values import CONS, PLAN, Annotated, Term, Var, deref, make_list
+from jacaros.terms.values import (
+    NIL,
+    PLAN,
+    Annotated,
+    List,
+    Term,
+    Var,
+    deref,
+    is_list,
+    make_list,
+    parts_of_list,
+)
 
 MOST_PARTS = 150
 """So many names, numbers and brackets are kept: more than a line has room for."""
@@ -30,7 +41,7 @@ class _Excerpt:
     def of(self, term: Term) -> Term:
         term = deref(term)
         kind = term.__class__
-        if kind is not tuple and kind is not Annotated:
+        if kind is not tuple and kind is not Annotated and kind is not List:
             self._left -= 1
             return term
         if self._left <= 0:
@@ -39,17 +50,18 @@ class _Excerpt:
         if kind is Annotated:
             annotations = tuple(self.of(each) for each in term.annotations)
             return Annotated(self.of(term.term), annotations, term.tail)
+        if is_list(term):
+            return self._list(term)
         if term[0].kind == PLAN:
             return term
-        if term[0] is CONS:
-            return self._list(term)
         return (term[0], *(self.of(argument) for argument in term[1:]))
 
     def _list(self, cell: Term) -> Term:
         elements: list[Term] = []
-        while cell.__class__ is tuple and cell[0] is CONS:
+        while is_list(cell) and cell is not NIL:
             if self._left <= 0:
                 return make_list(elements, REST)
-            elements.append(self.of(cell[1]))
-            cell = deref(cell[2])
+            first, cell = parts_of_list(cell)
+            elements.append(self.of(first))
+            cell = deref(cell)
         return make_list(elements, self.of(cell))

@@ -7,7 +7,7 @@ from jacaros.terms import arithmetic
 from jacaros.terms.arithmetic import ArithmeticFault, functions, settle
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.substitution import free_variables, resolve
-from jacaros.terms.values import Annotated, String, Term, is_list, list_items
+from jacaros.terms.values import Annotated, String, Term, is_list, list_items, list_length
 
 
 def _on_number(compute: Callable[[float], float]) -> Callable[..., Term]:
@@ -106,7 +106,7 @@ def _length(argument: Term) -> Term:
     if value.__class__ is String:
         return float(len(value))
     if is_list(value):
-        return float(sum(1 for _ in list_items(value)))
+        return float(list_length(value))
     if isinstance(value, (SetValue, MapValue, QueueValue)):
         return float(len(value))
     if value.__class__ is Annotated:

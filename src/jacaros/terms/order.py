@@ -7,11 +7,24 @@ import itertools
 from bisect import bisect_left
 from collections.abc import Iterable
 from functools import cmp_to_key
+from operator import ne
 from typing import Any
 
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.deep import MANY_TURNS
-from jacaros.terms.values import CONS, NIL, Annotated, Functor, Reference, String, Term, Var, annotations_of
+from jacaros.terms.values import (
+    CONS,
+    NIL,
+    Annotated,
+    Functor,
+    List,
+    Reference,
+    String,
+    Term,
+    Var,
+    annotations_of,
+    parts_of_list,
+)
 
 _NUMBER, _STRING, _LIST, _LITERAL, _OTHER, _VARIABLE = range(6)
 _variable_numbers = itertools.count()
@@ -25,6 +38,8 @@ def _rank(term: Term) -> int:
         return _STRING
     if kind is tuple:
         return _LIST if term[0] is CONS else _LITERAL
+    if kind is List:
+        return _LIST
     if kind is Functor:
         return _LIST if term is NIL else _LITERAL
     if kind is Annotated:
@@ -51,10 +66,13 @@ def compare(left: Term, right: Term) -> int:
             if rank == _LIST:
                 if left is NIL or right is NIL:
                     return (left is not NIL) - (right is not NIL)
-                order = compare(left[1], right[1])
+                if left.__class__ is List and right.__class__ is List:
+                    return _compare_lists(left, right)
+                first, left = parts_of_list(left)
+                second, right = parts_of_list(right)
+                order = compare(first, second)
                 if order:
                     return order
-                left, right = left[2], right[2]
                 turns += 1
                 continue
             if rank == _LITERAL:
@@ -63,6 +81,15 @@ def compare(left: Term, right: Term) -> int:
     except RecursionError:
         pass
     return _compare_deep(left, right)
+
+
+def _compare_lists(left: List, right: List) -> int:
+    for x, y in zip(left.elements(), right.elements(), strict=False):
+        if x is not y:
+            order = compare(x, y)
+            if order:
+                return order
+    return left.size - right.size
 
 
 def _compare_deep(left: Term, right: Term) -> int:
@@ -100,7 +127,9 @@ def _inner_comparisons(left: Term, right: Term, rank: int) -> list[Any]:
     if rank == _LIST:
         if left is NIL or right is NIL:
             return [(left is not NIL) - (right is not NIL)]
-        return [(left[1], right[1]), (left[2], right[2])]
+        if left.__class__ is List and right.__class__ is List:
+            return [*zip(left.elements(), right.elements(), strict=False), left.size - right.size]
+        return list(zip(parts_of_list(left), parts_of_list(right), strict=True))
     left_bare = settle(left.term) if left.__class__ is Annotated else left
     right_bare = settle(right.term) if right.__class__ is Annotated else right
     if _rank(left_bare) != _LITERAL or _rank(right_bare) != _LITERAL:
@@ -196,18 +225,40 @@ SortKey = cmp_to_key(compare)
 
 def sorted_terms(terms: Iterable[Term]) -> list[Term]:
     """The terms in the standard order; equal ones keep their order."""
-    return sorted(terms, key=SortKey)
+    items = list(terms)
+    if ordered_by_python(items):
+        return sorted(items)
+    if set(map(type, items)) == {Functor} and NIL not in items:
+        return sorted(items, key=_name_key)
+    return sorted(items, key=SortKey)
+
+
+def ordered_by_python(items: list[Term]) -> bool:
+    """Whether Python's own comparison, which is much faster, gives the standard order: of numbers only, or strings only."""
+    kinds = set(map(type, items))
+    return kinds == {String} or (kinds == {float} and not any(map(ne, items, items)))
+
+
+def sorted_set(items: list[Term]) -> list[Term]:
+    """The terms in the standard order, the first one of equal ones."""
+    if ordered_by_python(items):
+        return sorted(dict.fromkeys(items))
+    result: list[Term] = []
+    for item in sorted_terms(items):
+        if not result or compare(result[-1], item) != 0:
+            result.append(item)
+    return result
+
+
+def _name_key(symbol: Functor) -> tuple[str, str, bool]:
+    return symbol.namespace or "", symbol.name, symbol.negated
 
 
 def annotation_set(annotations: tuple[Term, ...]) -> tuple[Term, ...]:
     """Sorted, without duplicates, as annotations are kept."""
     if len(annotations) < 2:
         return annotations
-    result: list[Term] = []
-    for annotation in sorted_terms(annotations):
-        if not result or compare(result[-1], annotation) != 0:
-            result.append(annotation)
-    return tuple(result)
+    return tuple(sorted_set(list(annotations)))
 
 
 def merge_annotations(

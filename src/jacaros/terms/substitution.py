@@ -1,7 +1,9 @@
 """Terms with all bindings applied: their values, copies with fresh variables, and when two are the same."""
 
+from operator import is_not
 from typing import Any
 
+from jacaros.terms import values
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.deep import Turns, rebuild
 from jacaros.terms.order import annotation_set
@@ -9,19 +11,23 @@ from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
     FUNCTION,
+    NEGATION,
     NIL,
+    NO_KEY,
     Annotated,
     Functor,
-    String,
+    List,
     Term,
     Var,
     deref,
+    list_items,
     make_list,
+    parted,
 )
 
-ATOMIC = frozenset({float, String, Functor})
+ATOMIC = values.ATOMIC
 """Classes of values that hold no variables and evaluate to themselves."""
-HOLDERS = frozenset({tuple, Annotated})
+HOLDERS = frozenset({tuple, Annotated, List})
 """Classes of values that may hold variables."""
 
 
@@ -38,7 +44,9 @@ def resolve(term: Term) -> Term:
             value = deref(term)
             return value if value.__class__ is Var else resolve(value)
         if kind is tuple:
-            return _resolve_list(term) if term[0] is CONS else _resolve_structure(term)
+            return _resolve_cells(term) if term[0] is CONS else _resolve_structure(term)
+        if kind is List:
+            return term if term.settled == term.size else _resolve_list(term)
         if kind is Annotated:
             return _resolve_annotated(term)
     except RecursionError:
@@ -70,7 +78,80 @@ def _resolve_structure(term: Term) -> Term:
     return term
 
 
-def _resolve_list(term: Term) -> Term:
+def _resolve_list(term: List) -> Term:
+    if term.is_settled():
+        return term
+    bottom = term.settled
+    items = term.stack[bottom : term.size]
+    # The first element first: evaluation may warn.
+    new = [item if item.__class__ in ATOMIC else resolve(item) for item in reversed(items)]
+    new.reverse()
+    if any(map(is_not, new, items)):
+        term = List(term.stack[:bottom] + new, term.size, bottom, term.depth)
+    _settle(term)
+    return term
+
+
+def _settle(term: List) -> None:
+    """Find out how many elements of a resolved list need not be looked at again."""
+    if term.is_settled():
+        return
+    count, depth = term.settled, term.depth
+    items = term.stack[count : term.size]
+    try:
+        for item in items:
+            if item.__class__ not in ATOMIC:
+                inner = _depth(item)
+                if inner is None:
+                    break
+                depth = max(depth, inner + 1)
+            count += 1
+    except RecursionError:
+        return
+    # The depth first: another thread may look at the list.
+    term.depth = depth
+    term.settled = count
+
+
+def _depth(term: Term, level: int = 0) -> int | None:
+    """How deep a resolved term is nested; `NO_KEY` with annotations, None while something in it may change."""
+    kind = term.__class__
+    if kind is Var or level > _KEY_DEPTH:
+        return None
+    if kind is tuple:
+        if term[0].kind in (ARITHMETIC, FUNCTION, NEGATION) or term[0] is CONS:
+            return None
+        parts = term[1:]
+    elif kind is List:
+        if term.settled != term.size:
+            _settle(term)
+        # A list takes two levels of Python's stack to compare or to hash.
+        return term.depth + 1 if term.settled == term.size else None
+    elif kind is Annotated:
+        if term.tail is not None:
+            return None
+        parts = (term.term, *term.annotations)
+    else:
+        return 0
+    deepest = 0
+    for part in parts:
+        if part.__class__ not in ATOMIC:
+            depth = _depth(part, level + 1)
+            if depth is None:
+                return None
+            deepest = max(deepest, depth)
+    return NO_KEY if kind is Annotated else deepest + 1
+
+
+def _resolve_cells(term: Term) -> Term:
+    head, tail = term[1], term[2]
+    if tail.__class__ is Var:
+        tail = deref(tail)
+    if tail.__class__ is List and tail.settled == tail.size and head.__class__ in ATOMIC:
+        # The most frequent one: an element before a list.
+        result = tail.with_first(head)
+        result.settled = result.size
+        return result
     heads: list[Term] = []
     changed = False
     cell = term
@@ -93,7 +174,11 @@ def _resolve_list(term: Term) -> Term:
         new = resolve(cell)
         changed = changed or new is not cell
         cell = new
-    return make_list(heads, cell) if changed else term
+    if cell is not NIL and cell.__class__ is not List:
+        return make_list(heads, cell) if changed else term
+    result = make_list(heads, cell)
+    _settle(result)
+    return result
 
 
 def _resolve_annotated(term: Annotated) -> Term:
@@ -119,10 +204,7 @@ def with_tail(annotations: tuple[Term, ...], tail: Term) -> tuple[tuple[Term, ..
     tail = deref(tail)
     if tail is None or tail.__class__ is Var:
         return annotations, tail
-    more: list[Term] = []
-    while tail.__class__ is tuple and tail[0] is CONS:
-        more.append(tail[1])
-        tail = deref(tail[2])
+    more, tail = parted(tail)
     return annotation_set((*annotations, *more)), tail if tail.__class__ is Var else None
 
 
@@ -165,6 +247,9 @@ def free_variables(term: Term, found: list[Var] | None = None) -> list[Var]:
                     stack.append(term.ref)
         elif kind is tuple:
             stack.extend(reversed(term[1:]))
+        elif kind is List:
+            if not term.is_settled():
+                stack.extend(term.stack[term.settled : term.size])
         elif kind is Annotated:
             if term.tail is not None:
                 stack.append(term.tail)
@@ -216,8 +301,12 @@ def _renamed(term: Term, names: dict[Var, Var]) -> Term:
             while term.__class__ is tuple and term[0] is CONS:
                 heads.append(_rename(term[1], names))
                 term = term[2]
-            return make_list(heads, term if term is NIL else _rename(term, names))
+            return make_list(heads, _rename(term, names))
         return (term[0], *(_rename(a, names) for a in term[1:]))
+    if kind is List:
+        if term.is_settled():
+            return term
+        return make_list([_rename(item, names) for item in list_items(term)])
     if kind is Annotated:
         tail = None if term.tail is None else _rename(term.tail, names)
         return Annotated(_rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail)
@@ -248,6 +337,11 @@ def _equal_by_parts(left: Term, right: Term) -> bool:
             if len(a) != len(b):
                 return False
             stack.extend(zip(a, b, strict=True))
+        elif a.__class__ is List:
+            if a.size != b.size:
+                return False
+            if a.stack is not b.stack:
+                stack.extend(zip(a.from_bottom(), b.from_bottom(), strict=True))
         elif a.__class__ is Annotated:
             if len(a.annotations) != len(b.annotations):
                 return False
@@ -268,6 +362,10 @@ def is_key(term: Term, depth: int = 0) -> bool:
         kind = term.__class__
         if kind is Var or kind is Annotated or depth > _KEY_DEPTH:
             return False
+        if kind is List:
+            if term.settled != term.size:
+                _settle(term)
+            return bool(term.settled == term.size and depth + term.depth <= _KEY_DEPTH)
         if kind is not tuple:
             return True
         depth += 1

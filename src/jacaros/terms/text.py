@@ -28,11 +28,13 @@ from jacaros.terms.values import (
     RELATION,
     Annotated,
     Functor,
+    List,
     Reference,
     String,
     Term,
     Var,
     deref,
+    parted,
 )
 
 
@@ -132,6 +134,8 @@ def _write(term: Term) -> str:
             written.append(f'"{piece}"')
         elif kind is tuple:
             todo.extend(reversed(_structure(piece)))
+        elif kind is List:
+            todo.extend(reversed(_list(piece)))
         elif kind is Annotated:
             todo.extend(reversed(_annotated(piece)))
         elif kind is Var:
@@ -179,11 +183,8 @@ def _structure(term: tuple[Term, ...]) -> _Pieces:
 
 
 def _list(term: Term) -> _Pieces:
-    items = []
-    while term.__class__ is tuple and term[0] is CONS:
-        items.append(term[1])
-        term = deref(term[2])
-    tail = [] if term is NIL else ["|", term]
+    items, end = parted(term)
+    tail = [] if end is NIL else ["|", end]
     return ["[", *_separated(items), *tail, "]"]
 
 

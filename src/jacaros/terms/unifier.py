@@ -13,7 +13,19 @@ from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import TWINS
 from jacaros.terms.substitution import ATOMIC, HOLDERS, free_variables, replace_variable, with_tail
-from jacaros.terms.values import NEGATED, Annotated, Term, Var, deref, make_list
+from jacaros.terms.values import (
+    NEGATED,
+    NIL,
+    NO_KEY,
+    Annotated,
+    List,
+    Term,
+    Var,
+    deref,
+    is_list,
+    make_list,
+    parts_of_list,
+)
 
 
 class Trail(list[Var]):
@@ -91,6 +103,17 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
                 continue
             if kind is Annotated or right.__class__ is Annotated:
                 return _unify_annotated(left, right, trail)
+            if kind is List or right.__class__ is List:
+                if kind is right.__class__:
+                    return _unify_lists(left, right, trail)
+                if not (is_list(left) and is_list(right)) or left is NIL or right is NIL:
+                    return False
+                first, left = parts_of_list(left)
+                other, right = parts_of_list(right)
+                if not unify(first, other, trail):
+                    return False
+                turns += 1
+                continue
             return kind is right.__class__ and bool(left == right)
     except RecursionError:
         # What was bound so far stays: it is made equal once more.
@@ -101,6 +124,17 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
         return _unify_deep(left, right, trail)
     finally:
         trail.deep = False
+
+
+def _unify_lists(left: List, right: List, trail: Trail) -> bool:
+    if left.size != right.size:
+        return False
+    if left.is_settled() and right.is_settled() and max(left.depth, right.depth) < NO_KEY:
+        if left == right:
+            return True
+        if left.depth == right.depth == 1:
+            return False
+    return all(unify(a, b, trail) for a, b in zip(left.elements(), right.elements(), strict=True))
 
 
 def _unify_deep(left: Term, right: Term, trail: Trail) -> bool:
@@ -126,6 +160,15 @@ def _unify_deep(left: Term, right: Term, trail: Trail) -> bool:
             right, right_annotations, right_tail = _parts(right)
             todo.append((left_annotations, left_tail, right_annotations, right_tail))
             todo.append((left, right))
+        elif List in both and is_list(left) and is_list(right) and left is not NIL and right is not NIL:
+            if both == {List}:
+                if left.size != right.size:
+                    return False
+                todo.extend(zip(left.from_bottom(), right.from_bottom(), strict=True))
+            else:
+                first, left = parts_of_list(left)
+                other, right = parts_of_list(right)
+                todo += ((left, right), (first, other))
         elif both != {tuple} or left[0] is NEGATED or right[0] is NEGATED:
             if not unify(left, right, trail):
                 return False
@@ -181,6 +224,8 @@ def _occurs(variable: Var, value: Term) -> bool:
                 if any(_occurs(variable, deref(annotation)) for annotation in (*value.annotations, *tail)):
                     return True
                 value = deref(value.term)
+            if value.__class__ is List:
+                return not value.is_settled() and any(variable is v for v in free_variables(value))
             if value.__class__ is not tuple:
                 return value is variable
             for argument in value[1:-1]:

@@ -5,12 +5,16 @@ number              `float` (all numbers are doubles, as in Jason); never `int`,
 string              `String`, a `str` without arithmetic
 atom                an interned `Functor` of arity 0, compared by identity
 structure           a tuple ``(functor, argument, ...)``
-list                cons tuples ``(CONS, head, tail)`` ending in the atom `NIL`
+list                `List`; the empty one is the atom `NIL`
+open list           cons tuples ``(CONS, head, tail)`` ending in a `Var`
 annotated term      `Annotated`, around a term that has annotations; nobody else pays for them
 variable            `Var`; bound ones refer to their value
 set, map, queue     the mutable classes of `jacaros.terms.collections`
 anything else       `Reference`, opaque
 ==================  ==================================================================================
+
+A cons tuple may also end in a list: code builds ``[H|T]`` so, and `jacaros.terms.substitution.resolve` makes a `List`
+of it.  Terms that are stored or compared by ``==`` are resolved, and so each of them has one form.
 
 Formulae, plans and triggers are terms too (a program may pass them around): structures whose functor has
 another `Functor.kind` than `PLAIN`.
@@ -18,6 +22,7 @@ another `Functor.kind` than `PLAIN`.
 
 from _weakref import _remove_dead_weakref  # type: ignore[attr-defined]
 from collections.abc import Callable, Iterable, Iterator
+from operator import is_
 from typing import Any, NoReturn
 from weakref import ref
 
@@ -208,6 +213,135 @@ class Reference:
         return f"Reference({self.value!r})"
 
 
+_CELLS = 16
+"""Elements that are taken off a list at a time."""
+
+
+class List:
+    """A closed list of at least one element.
+
+    Lists share their elements: a tail is a shorter view of the same stack, and an element put in front is pushed on it.
+
+    Attributes:
+        stack: the elements, the last one first; what is above *size* belongs to other lists.
+        size: number of elements.
+        settled: number of elements from the bottom of the stack that are known to hold no variable and nothing to
+            evaluate; they are not looked at again.
+        depth: the settled elements are nested no deeper than this, counting the list itself; `NO_KEY` when there are
+            annotations among them.
+        hashed: the hash value, or None before it is asked for.
+    """
+
+    __slots__ = ("depth", "hashed", "settled", "size", "stack")
+
+    def __init__(self, stack: list[Term], size: int, settled: int = 0, depth: int = 1) -> None:
+        self.stack, self.size, self.settled, self.depth = stack, size, settled, depth
+        self.hashed: int | None = None
+
+    def rest(self) -> Term:
+        """The list without its first element.
+
+        Its next elements are cons tuples, so that a loop over the list makes a view only once in a while.
+        """
+        size = self.size - 1
+        bottom = size - _CELLS
+        stack = self.stack
+        tail: Term = NIL
+        if bottom > 0:
+            tail = self._without_first(bottom)
+        else:
+            bottom = 0
+        for item in stack[bottom:size]:
+            tail = (CONS, item, tail)
+        return tail
+
+    def _without_first(self, size: int) -> "List":
+        """The last *size* elements."""
+        stack = self.stack
+        if size * 4 < len(stack):
+            stack = stack[:size]  # a short tail does not keep a long list in memory
+        return List(stack, size, min(self.settled, size), self.depth)
+
+    def with_first(self, head: Term) -> "List":
+        """The list with one element more in front."""
+        size, stack = self.size, self.stack
+        if len(stack) > size and stack[size] is head:
+            pass  # it was there before
+        elif len(stack) == size and (size < 32 or size & (size - 1)):
+            # At powers of two a new stack begins, so that a short list does not keep all that grew from it in memory.
+            stack.append(head)
+            if stack[size] is not head:  # another thread was faster
+                stack = [*stack[:size], head]
+        else:
+            stack = [*stack[:size], head]
+        return List(stack, size + 1, self.settled, self.depth)
+
+    def preceded_by(self, heads: list[Term]) -> "List":
+        """The list with more elements in front."""
+        if len(heads) == 1:
+            return self.with_first(heads[0])
+        size, stack = self.size, self.stack
+        more = heads[::-1]
+        above = stack[size : size + len(heads)]
+        if len(above) < len(more) or not all(map(is_, above, more)):
+            stack = stack[:size] + more
+        return List(stack, size + len(heads), self.settled, self.depth)
+
+    def elements(self) -> list[Term]:
+        """The elements in their order, in a list of the caller's own."""
+        return self.stack[self.size - 1 :: -1]
+
+    def from_bottom(self) -> list[Term]:
+        """The elements, the last one first; not to be changed."""
+        return self.stack if len(self.stack) == self.size else self.stack[: self.size]
+
+    def is_settled(self) -> bool:
+        """Whether nothing in the list can change, as far as that is known, or all its elements are atomic."""
+        if self.settled == self.size:
+            return True
+        if ATOMIC.issuperset(map(type, self.stack[self.settled : self.size])):
+            self.settled = self.size
+            return True
+        return False
+
+    def of_these(self, stack: list[Term]) -> Term:
+        """The list of some elements of this one, the last one first."""
+        return List(stack, len(stack), len(stack) if self.is_settled() else 0, self.depth) if stack else NIL
+
+    def followed_by(self, other: "List") -> "List":
+        """The list of the elements of both."""
+        settled, depth = other.settled, other.depth
+        if other.is_settled() and self.is_settled():
+            settled, depth = self.size + other.size, max(depth, self.depth)
+        return List(other.from_bottom() + self.from_bottom(), self.size + other.size, settled, depth)
+
+    def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
+        if other.__class__ is not List or self.size != other.size:
+            return False
+        if self.stack is other.stack:
+            return True
+        if self.hashed is not None and other.hashed is not None and self.hashed != other.hashed:
+            return False
+        return self.from_bottom() == other.from_bottom()
+
+    def __hash__(self) -> int:
+        if self.hashed is None:
+            self.hashed = hash(tuple(self.from_bottom()))
+        return self.hashed
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return make_list, (self.elements(),)
+
+    def __repr__(self) -> str:
+        return f"make_list({self.elements()!r})"
+
+
+ATOMIC = frozenset({float, String, Functor})
+"""Classes of values that hold no variables and evaluate to themselves."""
+NO_KEY = 1_000_000
+"""Depth of a list whose elements have annotations."""
 CONS = functor("[|]", 2)
 NIL = functor("[]", 0)
 NEGATED = functor("~", 1, kind=NEGATION)
@@ -223,11 +357,18 @@ NO_ANNOTATIONS: tuple[Term, ...] = ()
 
 
 def make_list(items: Iterable[Term], tail: Term = NIL) -> Term:
-    """The list term of *items*."""
-    result = tail
-    for item in reversed(items if isinstance(items, (list, tuple)) else list(items)):
-        result = (CONS, item, result)
-    return result
+    """The list term of *items*, followed by the elements of *tail*."""
+    stack = list(items)
+    if not stack:
+        return tail
+    stack.reverse()
+    if tail is NIL:
+        return List(stack, len(stack))
+    if tail.__class__ is List:
+        return tail.preceded_by(stack[::-1])
+    for item in stack:
+        tail = (CONS, item, tail)
+    return tail
 
 
 def deref(term: Term) -> Term:
@@ -240,6 +381,10 @@ def deref(term: Term) -> Term:
 def list_items(term: Term) -> Iterator[Term]:
     """The elements of a list term; ends at a tail that is no list, or where the list would begin again."""
     term = deref(term)
+    return iter(term.elements()) if term.__class__ is List else _items_of_cells(term)
+
+
+def _items_of_cells(term: Term) -> Iterator[Term]:
     mark, count, limit = None, 0, 1
     while term.__class__ is tuple and term[0] is CONS:
         yield term[1]
@@ -251,11 +396,43 @@ def list_items(term: Term) -> Iterator[Term]:
             if count == limit:
                 mark, limit = term, limit * 2
             term = deref(term)
+    if term.__class__ is List:
+        yield from term.elements()
+
+
+def parted(term: Term) -> tuple[list[Term], Term]:
+    """The elements of a list term, and what is behind the bar: `NIL` if it is closed.
+
+    *term* must not contain itself.
+    """
+    if term.__class__ is List:
+        return term.elements(), NIL
+    items = []
+    while term.__class__ is tuple and term[0] is CONS:
+        items.append(term[1])
+        term = deref(term[2])
+    if term.__class__ is List:
+        return items + term.elements(), NIL
+    return items, term
+
+
+def parts_of_list(term: Term) -> tuple[Term, Term]:
+    """The first element of a list term that has one, and the rest."""
+    if term.__class__ is List:
+        return term.stack[term.size - 1], term.rest()
+    return term[1], term[2]
+
+
+def list_length(term: Term) -> int:
+    """The number of elements of a list term."""
+    if term.__class__ is List:
+        return int(term.size)
+    return sum(1 for _ in list_items(term))
 
 
 def is_list(term: Term) -> bool:
     """Whether the (dereferenced) term is a list."""
-    return term is NIL or (term.__class__ is tuple and term[0] is CONS)
+    return term is NIL or term.__class__ is List or (term.__class__ is tuple and term[0] is CONS)
 
 
 def bare(term: Term) -> Term:

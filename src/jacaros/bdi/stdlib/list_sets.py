@@ -3,7 +3,7 @@
 from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import internal_action
 from jacaros.bdi.stdlib.arguments import elements
-from jacaros.terms.order import compare, sorted_terms
+from jacaros.terms.order import compare, ordered_by_python, sorted_set
 from jacaros.terms.values import Term, Var, make_list
 
 
@@ -15,7 +15,7 @@ def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
         WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
     """
     first, second = _checked(left, right, result, ".union")
-    return ctx.unify(result, make_list(_sorted_set([*second, *first])))
+    return ctx.unify(result, make_list(sorted_set([*second, *first])))
 
 
 @internal_action(".intersection", arity=3)
@@ -46,21 +46,17 @@ def _checked(left: Term, right: Term, result: Term, name: str) -> tuple[list[Ter
     return elements(left, f"the first argument of {name}"), elements(right, f"the second argument of {name}")
 
 
-def _sorted_set(items: list[Term]) -> list[Term]:
-    result: list[Term] = []
-    for item in sorted_terms(items):
-        if not result or compare(result[-1], item) != 0:
-            result.append(item)
-    return result
-
-
 def _parted(items: list[Term], others: list[Term]) -> tuple[list[Term], list[Term]]:
     """The items that are also among *others*, and those that are not, both sorted, each once."""
+    if ordered_by_python(items) and ordered_by_python(others):
+        among = set(others)
+        ordered = sorted_set(items)
+        return [item for item in ordered if item in among], [item for item in ordered if item not in among]
     shared: list[Term] = []
     own: list[Term] = []
-    remaining = iter(_sorted_set(others))
+    remaining = iter(sorted_set(others))
     other = next(remaining, None)
-    for item in _sorted_set(items):
+    for item in sorted_set(items):
         while other is not None and compare(other, item) < 0:
             other = next(remaining, None)
         (own if other is None or compare(other, item) else shared).append(item)

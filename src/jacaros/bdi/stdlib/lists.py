@@ -9,11 +9,23 @@ from jacaros.bdi.stdlib.beliefs import best
 from jacaros.bdi.stdlib.java_regex import replace_all
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.deep import as_key
-from jacaros.terms.order import compare, sorted_terms
-from jacaros.terms.substitution import equal, is_ground
+from jacaros.terms.order import compare, ordered_by_python, sorted_terms
+from jacaros.terms.substitution import ATOMIC, equal, is_ground
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import CONS, NIL, Functor, String, Term, Var, deref, is_list, list_items, make_list
+from jacaros.terms.values import (
+    NIL,
+    Functor,
+    List,
+    String,
+    Term,
+    Var,
+    is_list,
+    list_items,
+    list_length,
+    make_list,
+    parted,
+)
 
 
 @internal_action(".length", arity=2)
@@ -35,7 +47,7 @@ def empty(_ctx: Context, collection: Term) -> bool:
 def _size(collection: Term) -> int | None:
     if isinstance(collection, (String, SetValue, MapValue, QueueValue)):
         return len(collection)
-    return sum(1 for _ in list_items(collection)) if is_list(collection) else None
+    return list_length(collection) if is_list(collection) else None
 
 
 @internal_action(".member", arity=2, backtracks=True)
@@ -49,6 +61,16 @@ def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
     """
     if isinstance(collection, (SetValue, QueueValue)) and is_ground(item):
         if _holds(collection, item):
+            yield
+        return
+    if (
+        collection.__class__ is List
+        and item.__class__ in ATOMIC
+        and item == item  # not a number is in no list
+        and collection.is_settled()
+        and collection.depth == 1
+    ):
+        for _ in range(collection.from_bottom().count(item)):
             yield
         return
     for candidate in members(collection, "the second argument of .member"):
@@ -72,6 +94,10 @@ def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[Non
         WrongArguments: *index* is no number or variable, or *collection* no list or string.
         ActionError: there is no such position.
     """
+    if collection.__class__ is List and index.__class__ is float and 0 <= index < collection.size:
+        if ctx.unify(item, collection.stack[collection.size - 1 - int(index)]):
+            yield
+        return
     if collection.__class__ is String:
         values: list[Term] = [String(character) for character in collection]
     else:
@@ -112,15 +138,15 @@ def concat(ctx: Context, *arguments: Term) -> bool:
         if position < len(parts):
             if _open_end(part) is not None:
                 raise ActionError(f".concat: {text(part)} has an open end")
-            joined = make_list(items, joined)
+            both = part.__class__ is List and joined.__class__ is List
+            joined = part.followed_by(joined) if both else make_list(items, joined)
     return ctx.unify(joined, result)
 
 
 def _open_end(collection: Term) -> Term | None:
     """What stands behind the bar of a list that is not closed."""
-    while collection.__class__ is tuple and collection[0] is CONS:
-        collection = deref(collection[2])
-    return None if collection is NIL else collection
+    end = parted(collection)[1]
+    return None if end is NIL else end
 
 
 def _unquoted(term: Term) -> str:
@@ -162,8 +188,10 @@ def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
             return ctx.unify(result, String(replace_all(characters(collection), what, "")))
         except ValueError as error:
             raise ActionError(f".delete: {error}") from None
-    kept = _not_matching(what, elements(collection, "the second argument of .delete"))
-    return ctx.unify(result, make_list(kept))
+    items = elements(collection, "the second argument of .delete")
+    if what.__class__ is Functor and ATOMIC.issuperset(map(type, items)):
+        return ctx.unify(result, make_list([item for item in items if item is not what]))
+    return ctx.unify(result, make_list(_not_matching(what, items)))
 
 
 def _not_matching(pattern: Term, items: list[Term]) -> list[Term]:
@@ -190,8 +218,11 @@ def _delete_range(ctx: Context, start: int, end: int, collection: Term, result: 
             collection = String(collection[:start] + collection[end:])
         return ctx.unify(result, collection)
     items = elements(collection, "the list or string of .delete")
-    kept = [item for position, item in enumerate(items) if not start <= position < end]
-    return ctx.unify(result, make_list(kept))
+    start = max(start, 0)
+    del items[start : max(start, end)]
+    if collection.__class__ is List:
+        return ctx.unify(result, collection.of_these(items[::-1]))
+    return ctx.unify(result, make_list(items))
 
 
 @internal_action(".reverse", arity=2)
@@ -207,6 +238,8 @@ def reverse(ctx: Context, collection: Term, result: Term) -> bool:
         if result.__class__ is not Var:
             elements(result, "the second argument of .reverse")
         items = list(list_items(collection))
+        if collection.__class__ is List:
+            return ctx.unify(collection.of_these(items), result)
         return ctx.unify(make_list(items[::-1], _open_end(collection) or NIL), result)
     if result.__class__ not in (Var, String):
         raise WrongArguments(f"the second argument of .reverse must be a string, not {text(result)}")
@@ -220,7 +253,11 @@ def sort(ctx: Context, collection: Term, result: Term) -> bool:
     Raises:
         WrongArguments: *L* is no list.
     """
-    return ctx.unify(make_list(sorted_terms(elements(collection, "the first argument of .sort"))), result)
+    items = sorted_terms(elements(collection, "the first argument of .sort"))
+    if collection.__class__ is List:
+        items.reverse()
+        return ctx.unify(collection.of_these(items), result)
+    return ctx.unify(make_list(items), result)
 
 
 @internal_action(".shuffle", arity=2)
@@ -269,6 +306,8 @@ def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) ->
     items = elements(arguments[0], f"the first argument of {name}")
     if not items:
         return False
+    if ordered_by_python(items):
+        return ctx.unify(arguments[1], max(items) if sign > 0 else min(items))
     extreme = items[0]
     for item in items[1:]:
         if sign * compare(item, extreme) > 0:

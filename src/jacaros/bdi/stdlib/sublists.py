@@ -6,7 +6,7 @@ from jacaros.bdi.context import Context
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.stdlib.arguments import elements
 from jacaros.terms.text import text
-from jacaros.terms.values import CONS, NIL, String, Term, Var, deref, is_list, list_items, make_list
+from jacaros.terms.values import NIL, String, Term, Var, is_list, make_list, parted
 
 Bounds = tuple[int, int]
 
@@ -82,7 +82,5 @@ def _known_length(part: Term) -> int | None:
     """The length of a closed list or string, None when it may have any."""
     if part.__class__ is String:
         return len(part)
-    cell = part
-    while cell.__class__ is tuple and cell[0] is CONS:
-        cell = deref(cell[2])
-    return sum(1 for _ in list_items(part)) if cell is NIL else None
+    items, end = parted(part)
+    return len(items) if end is NIL else None
