@@ -271,7 +271,9 @@ def merge_annotations(
     merged = list(held)
     new = []
     for annotation in added:
-        place = bisect_left(merged, SortKey(annotation), key=SortKey)
+        place = len(merged)
+        if merged and compare(merged[-1], annotation) >= 0:  # times mostly come in order
+            place = bisect_left(merged, SortKey(annotation), key=SortKey)
         if place == len(merged) or compare(merged[place], annotation) != 0:
             merged.insert(place, annotation)
             new.append(annotation)
