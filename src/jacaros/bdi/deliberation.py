@@ -221,6 +221,8 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
         and caller[PLAN].replaceable
     ):
         frames[-1] = frame
+        if agent.meta:
+            meta_events.observe(agent, caller[GOAL], "replaced")
         if agent.atomic is intention and not intention.is_atomic():
             agent.atomic_over = True
     else:

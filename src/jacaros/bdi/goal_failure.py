@@ -80,6 +80,7 @@ def fail_intention(
     posted = failure.handler_event(agent, intention, reason)
     if posted is not None:
         if agent.meta:
+            _observe_inner(agent, intention, reason)
             failed = intention.frames[intention.handlers[-1]]
             _tell(agent, failed[GOAL], failed[2], reason)
             meta_events.goal_state(agent, failed[GOAL], failed[2], "executing", _HAS_FAILURE_PLAN)
@@ -104,6 +105,17 @@ def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReaso
         if not frame[GOAL][0].failing:
             _tell(agent, frame[GOAL], frame[2], reason)
             meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
+
+
+def _observe_inner(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+    """Report the goals that served the one whose failure is now handled: they failed with it."""
+    if agent.goal_observer is None:
+        return
+    why = lost_goals.why(reason)
+    for frame in reversed(intention.frames[intention.handlers[-1] + 1 :]):
+        if not frame[GOAL][0].failing:
+            meta_events.observe(agent, frame[GOAL], "failed", why)
+            meta_events.observe(agent, frame[GOAL], "finished")
 
 
 def _tell(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, reason: FailureReason) -> None:

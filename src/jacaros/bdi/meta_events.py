@@ -28,14 +28,20 @@ def goal_state(
     kind = goal[0]
     if not kind.kind or kind.operator == "^":
         return
-    if agent.goal_observer is not None:
-        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), goal, why)
+    observe(agent, goal, state, why)
     meta = trigger("^", kind.kind, kind.functor)
     if agent.selects[meta] is None:
         return
     told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
     event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
     agent.do_soon(lambda: _insert(agent, event))
+
+
+def observe(agent: Circumstance, goal: tuple[Any, ...], state: str, why: str = "") -> None:
+    """Report a change of a goal to the observer only: plans get no event for it."""
+    kind = goal[0].kind
+    if agent.goal_observer is not None and kind:
+        agent.goal_observer(state, kind + text(literal_of(goal, ())), goal, why)
 
 
 def post_new_goal(agent: Circumstance, event: Event) -> None:
@@ -66,7 +72,8 @@ def _insert(agent: Circumstance, event: Event) -> None:
 def observe_goals(agent: Circumstance, observer: Callable[[str, str, object, str], None]) -> None:
     """Have an observer told of every change of a goal.
 
-    It gets the state (``executing``, ``achieved``, ``failed``, ``suspended``, ``resumed``, ``dropped`` …), the goal as
-    text, an object that is the same for all news of one goal, and for a failure its reason as people read it."""
+    It gets the state (``executing``, ``achieved``, ``failed``, ``suspended``, ``resumed``, ``dropped``, ``replaced`` …),
+    the goal as text, an object that is the same for all news of one goal, and for a failure its reason as people read
+    it."""
     agent.goal_observer = observer
     agent.meta = agent.special = agent.called = True

@@ -12,7 +12,7 @@ from jacaros.mas.agent_host import AgentHost
 Tell = Callable[[dict[str, object]], None]
 
 _OPEN = {"executing": "pursued", "resumed": "resumed", "suspended": "suspended"}
-_OVER = ("achieved", "failed", "dropped", "recovered")
+_OVER = ("achieved", "failed", "dropped", "recovered", "replaced")
 _AT_WORK = ("pursued", "resumed")
 _KEPT = 10_000
 """Goals whose end is waited for; the oldest are forgotten, for instance if a plan for their failure never ends."""
@@ -22,7 +22,6 @@ _KEPT = 10_000
 class _Goal:
     which: object
     number: int
-    text: str
     state: str
 
 
@@ -34,7 +33,9 @@ class GoalNews:
 
     Args:
         tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
-            ``dropped``, ``recovered``: a plan for its failure has ended), ``id``, counted from 1, and of a failure ``why``.
+            ``dropped``, ``recovered``: a plan for its failure has ended, ``replaced``: by the last goal of its plan, a tail
+            call), ``id``, counted from 1, and of a failure ``why``.  A goal that failed and has a plan for its failure
+            is pursued again under its number.
     """
 
     def __init__(self, tell: Tell) -> None:
@@ -49,22 +50,28 @@ class GoalNews:
 
     def __call__(self, agent: str, state: str, goal: str, which: object, why: str = "") -> None:
         """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""
-        if state == "finished":  # goals that were achieved, or failed for good, are gone already
+        key = (agent, id(which))
+        known = self._goals.get(key)
+        if state == "finished":  # goals that were achieved are gone already
+            if known is not None and known.state == "failed":
+                del self._goals[key]
+                return
             state = "recovered"
+        elif state == "achieved" and why == "recovered":
+            state, why = "recovered", ""
         if not goal.startswith("!") or (state not in _OPEN and state not in _OVER):
             return
-        key, shown = (agent, id(which)), _OPEN.get(state, state)
-        known = self._goals.get(key)
-        if known is None and state == "recovered":
-            return
-        if known is None or known.text != goal:
-            known = self._goals[key] = _Goal(which, next(self._numbers), goal, "")
+        shown = _OPEN.get(state, state)
+        if known is None:
+            if state == "recovered":
+                return
+            known = self._goals[key] = _Goal(which, next(self._numbers), "")
             if len(self._goals) > _KEPT:
                 del self._goals[next(iter(self._goals))]
-        is_news = not (known.state in _AT_WORK and shown in _AT_WORK)
+        is_news = known.state != shown and not (known.state in _AT_WORK and shown in _AT_WORK)
         known.state = shown
         if is_news:
             told = {"agent": agent, "goal": goal, "state": shown, "id": known.number}
             self._tell({**told, "why": why} if why else told)
-        if state in _OVER:
+        if state in _OVER and state != "failed":  # one that failed may still be recovered
             del self._goals[key]

@@ -11,7 +11,7 @@ Events that the replay knows how to show:
 
 ========================  ==========================================================================
 ``goal``                  ``agent``, ``goal``, ``state``: pursued, suspended, resumed, achieved,
-                          failed, recovered or dropped; ``id`` when goals of one name must be told apart;
+                          failed, recovered, dropped or replaced (by a tail call); ``id`` tells goals apart;
                           of a failure ``why``, in lines: error and place, step, terms for plans
 ``plan``                  ``agent``, ``goal``, ``plan``: the plan chosen for the goal
 events of the world       ``robot`` and what `jacaros.sim.ground_truth.Event` says: docked, undocked,

@@ -36,7 +36,7 @@ def test_goals_are_counted_whatever_their_place_in_memory(told):
     told("executing", agent="eve", number=1)
     told("achieved")
     told("executing")
-    told("executing", goal="!charge")
+    told("executing", goal="!charge", number=7)
     assert told()[-3:] == ["1 bob achieved !patrol", "3 bob pursued !patrol", "4 bob pursued !charge"]
 
 
