@@ -134,7 +134,9 @@ def test_annotations_of_a_rule_head_have_the_values_of_the_answer() -> None:
     ) == ["[1,2]", "1[k(1),source(self)]"]
 
 
-@pytest.mark.parametrize("bounds", ["1, 4", "4, 1", "4, 1, -2", "1.9, 4.9", "1, 3, 0", "1, a", "U, 3", "X, 3"])
+@pytest.mark.parametrize(
+    "bounds", ["1, 4", "4, 1", "4, 1, -2", "1.9, 4.9", "1, 3, 0", "1, a", "U, 3", "X, 3"]
+)
 def test_range_answers_alike_whether_its_variable_is_new_or_known_to_be_free(bounds: str) -> None:
     """A variable that the search meets for the first time is given its values without unification."""
     new = mind(f"!s. +!s <- .findall(X, .range(X, {bounds}), L); .print(L).")
