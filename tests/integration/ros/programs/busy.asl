@@ -7,5 +7,5 @@
      .print("listening").
 
 +pose(X, _, _)
-  <- for (.range(I, 1, 3000)) { _Y = I };
+  <- for (.range(I, 1, 20000)) { _Y = I };
      answer(X).
