@@ -1,7 +1,7 @@
 """The post: which parcels wait where, and which are on the robot."""
 
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
-from jacaros.env import operation
+from jacaros.env import Atom, operation
 
 
 class Post(RosArtifact):
@@ -23,7 +23,7 @@ class Post(RosArtifact):
         self.journal = self.publisher("cleaning/task", "std_msgs/msg/String")
 
     @operation
-    def order(self, start: str, goal: str) -> None:
+    def order(self, start: Atom, goal: Atom) -> None:
         """Let a parcel wait in a room."""
         self.last += 1
         self.define_property("parcel", self.last, start, goal)

@@ -44,7 +44,7 @@ def test_the_tests_of_an_example_pass(folder: Path) -> None:
         ("04_patrol", ".resume(patrol(_))", ".print(patrol)", "stops_on_its_way_and_goes_on_to_the_same_corner"),
         ("04_patrol", "operationRecharge; ", "", "goes_to_the_dock_when_the_battery_is_low"),
         ("04_patrol", "Percent < Least", "Percent > Least", "remembers_the_lowest_percentage_only"),
-        ("05_house_cleaning", "!return;", "", "comes_back_into_its_room_after_a_recharge"),
+        ("05_house_cleaning", "!return;", "", "comes_back_to_its_room_after_a_recharge"),
         ("09_three_robots", "     !hand_over;\n", "", "charges_in_its_dock_when_the_battery_is_low"),
         ("07_shared_robot", "     hand_over;\n", "", "takes_the_robot_when_the_battery_is_low_and_gives_it_back_full"),
     ],
