@@ -1,6 +1,7 @@
 """The graphs that the one contract suite runs on."""
 
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -90,11 +91,20 @@ def pair(graph: Any, _pairs: dict[int, tuple[Any, Any]]) -> tuple[Any, Any]:
     return _pairs[id(graph)]
 
 
+@pytest.fixture(scope="session")
+def _uses() -> Counter[str]:
+    return Counter()
+
+
 @pytest.fixture
-def own_name(request: pytest.FixtureRequest) -> str:
-    """A word that belongs to this test, and to this attempt at it: peers remember what they did for the one before."""
-    attempt = getattr(request.node, "execution_count", 1)
-    return str(request.node.originalname) + (f"_{attempt}" if attempt > 1 else "")
+def own_name(request: pytest.FixtureRequest, _uses: Counter[str]) -> str:
+    """A word that belongs to this test with its parameters, and to this attempt at it.
+
+    Peers remember what they did for the one before, and those that a test starts live on until the last test is over.
+    """
+    name = str(request.node.originalname)
+    _uses[name] += 1
+    return name if _uses[name] == 1 else f"{name}_{_uses[name]}"
 
 
 @pytest.fixture

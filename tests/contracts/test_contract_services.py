@@ -170,9 +170,11 @@ def test_closing_a_client_ends_its_calls(graph: Any, pair: Pair, topic: str) -> 
 
 
 @pytest.mark.parametrize("asked", [False, True])
-def test_closing_a_node_ends_its_calls_on_the_loop(graph: Any, topic: str, asked: bool) -> None:
+def test_closing_a_node_ends_its_calls_on_the_loop(
+    graph: Any, topic: str, own_name: str, asked: bool
+) -> None:
     """Before the server has got the request, and after that."""
-    server, node = graph.peer(f"silent_server_{asked}"), graph.peer(f"closing_caller_{asked}")
+    server, node = graph.peer(f"{own_name}_server"), graph.peer(f"{own_name}_caller")
     server.serve(topic, "never")
     graph.wait_until(lambda: node.ready(topic), "the service is found")
     node.debug()
