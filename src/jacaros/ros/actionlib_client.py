@@ -160,6 +160,8 @@ class ActionlibWire:
         )
         if complete and not self._complete:
             self._lose_unanswered()
+            # A publisher is seen a moment before it knows us, and what it says meanwhile is lost, be it a result.
+            self._heard = False
         if publishers == 0:
             self._heard = False
         self._complete = complete

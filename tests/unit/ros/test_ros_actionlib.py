@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Coroutine
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -12,7 +13,7 @@ from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import GoalUnderWay
 from jacaros.ros.actionlib_client import OVERTAKEN, ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.actionlib_states import part_type
+from jacaros.ros.actionlib_states import STATUS_PERIOD, part_type
 from jacaros.ros.backends.memory import MemoryBackend, MemoryGraph
 from jacaros.ros.backends.rosbridge_types import BridgeSchema
 from jacaros.ros.errors import CallTimedOut, GoalRejected
@@ -155,6 +156,25 @@ def test_the_goal_of_another_node_is_no_orphan() -> None:
         await graph.clock.sleep(5)
         assert graph.stopped == []
         assert not [line for line in graph.logged if "earlier run" in line]
+
+    play(scene)
+
+
+def test_a_server_is_ready_when_it_was_heard_after_all_topics_were_connected() -> None:
+    """A publisher is seen a moment before it knows its subscriber; a result in that moment would be lost."""
+
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        wire = client.wire
+        assert isinstance(wire, ActionlibWire)
+        result = wire._result
+        wire._result = SimpleNamespace(publisher_count=0)  # type: ignore[assignment]
+        await graph.clock.sleep(2.0)
+        assert not wire.offered
+        wire._result = result
+        assert not wire.offered
+        await graph.clock.sleep(1.1 * STATUS_PERIOD)
+        assert wire.offered
 
     play(scene)
 
