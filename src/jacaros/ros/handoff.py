@@ -25,6 +25,7 @@ class Handoff(Generic[T]):
     def __init__(self, loop: asyncio.AbstractEventLoop, depth: int, deliver: Callable[[T], None]) -> None:
         self._loop = loop
         self._deliver = deliver
+        self._depth = depth
         self._waiting: deque[T] = deque(maxlen=depth)
         self._lock = threading.Lock()
         self._woken = False
@@ -36,8 +37,7 @@ class Handoff(Generic[T]):
         with self._lock:
             if self._closed:
                 return
-            if len(self._waiting) == self._waiting.maxlen:
-                self.dropped += 1
+            self.dropped += len(self._waiting) == self._depth
             self._waiting.append(item)
             if self._woken:
                 return
@@ -45,18 +45,18 @@ class Handoff(Generic[T]):
         if not post(self._loop, self._deliver_next):
             self.close()
 
-    def put_here(self, item: T) -> None:
-        """Deliver *item*, which is on the loop already: now if nothing waits, else in its turn."""
+    def put_here(self, *items: T) -> None:
+        """Deliver *items*, which came to the loop together, the oldest first: one now if nothing waits, others in turn."""
         with self._lock:
-            if self._closed:
+            if self._closed or not items:
                 return
+            self.dropped += max(0, len(self._waiting) + len(items) - self._depth)
+            self._waiting.extend(items)
             if self._woken:
-                if len(self._waiting) == self._waiting.maxlen:
-                    self.dropped += 1
-                self._waiting.append(item)
                 return
             # The turn is taken: what comes before the next one waits.
             self._woken = True
+            item = self._waiting.popleft()
         self._loop.call_soon(self._deliver_next)
         self._deliver(item)
 

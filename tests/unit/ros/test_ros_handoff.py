@@ -194,6 +194,20 @@ def test_what_is_on_the_loop_already_is_delivered_at_once_but_one_item_a_turn() 
     run(main, WallClock())
 
 
+def test_of_what_comes_together_the_newest_are_delivered() -> None:
+    async def main() -> None:
+        got: list[int] = []
+        handoff = Handoff[int](asyncio.get_running_loop(), 2, got.append)
+        handoff.put_here(*range(10))
+        assert got == [8]
+        handoff.put_here(10, 11)
+        await turns_until(lambda: len(got) == 3)
+        assert got == [8, 10, 11]
+        assert handoff.dropped == 9
+
+    run(main, WallClock())
+
+
 def test_what_comes_on_the_loop_does_not_overtake_what_came_from_a_thread() -> None:
     async def main() -> None:
         got: list[int] = []

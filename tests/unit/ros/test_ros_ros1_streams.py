@@ -103,6 +103,24 @@ def test_a_long_message_comes_whole(pair: tuple[socket.socket, socket.socket]) -
     run(main, WallClock())
 
 
+def test_what_piled_up_while_the_loop_was_busy_comes_together(
+    pair: tuple[socket.socket, socket.socket],
+) -> None:
+    """Only so the newest of it can be told from the oldest."""
+    ours, theirs = pair
+    piled_up = [b"%04d" % number * 256 for number in range(100)]
+
+    async def main() -> None:
+        theirs.sendall(b"".join(map(framed, piled_up)))
+        reading = Reading(ours)
+        await until(lambda: len(reading.got) == len(piled_up))
+        assert reading.got == piled_up
+        assert reading.rounds == [len(piled_up)]
+        reading.inlet.close()
+
+    run(main, WallClock())
+
+
 def test_what_came_before_the_end_is_taken(pair: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = pair
 

@@ -17,8 +17,8 @@ from rospy.impl.tcpros_base import TCPROSTransport  # type: ignore[import-not-fo
 from jacaros.ros.backends.ros1_streams import Inlet, Outbox
 from jacaros.ros.handoff import post
 
-Take = Callable[[Any, "dict[str, str]"], None]
-"""Takes a message, on the loop, and what its publisher said of itself at first."""
+Take = Callable[[list[Any], "dict[str, str]"], None]
+"""Takes messages that came together, on the loop, and what their publisher said of itself at first."""
 
 
 class Takers(dict[str, Take]):
@@ -67,9 +67,17 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
     def _take(self, subscriber: Any, take: Take, messages: list[bytes], size: int) -> None:
         self.stat_bytes += size
         self.stat_num_msg += len(messages)
+        if self.done or not (read := self._deserialized(subscriber, messages)):
+            return
+        alone = len(subscriber.callbacks) == 1 and subscriber.statistics_logger is None
+        if alone and self.takers.get(self.name) == take:
+            take(read, self.header)
+        else:  # somebody else in this process listens as well, by rospy, or we have just ceased to
+            subscriber.receive_callback(read, self)
+
+    def _deserialized(self, subscriber: Any, messages: list[bytes]) -> list[Any]:
+        read = []
         for data in messages:
-            if self.done:
-                return
             try:
                 message = subscriber.data_class().deserialize(data)
             except DeserializationError as problem:
@@ -78,11 +86,8 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
                 )
                 continue
             message._connection_header = self.header
-            alone = len(subscriber.callbacks) == 1 and subscriber.statistics_logger is None
-            if alone and self.takers.get(self.name) == take:
-                take(message, self.header)
-            else:  # somebody else in this process listens as well, by rospy, or we have just ceased to
-                subscriber.receive_callback([message], self)
+            read.append(message)
+        return read
 
     def close(self) -> None:
         """Close the connection; in any thread."""

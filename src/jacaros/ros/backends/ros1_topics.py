@@ -2,7 +2,7 @@
 
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import rospy  # type: ignore[import-not-found]
@@ -181,13 +181,13 @@ class TopicFeed:
             for subscription in self._subscriptions:
                 subscription.queue.put(message)
 
-    def _take(self, message: Any, header: Mapping[str, str]) -> None:
-        """Take a message on the loop."""
+    def _take(self, messages: Sequence[Any], header: Mapping[str, str]) -> None:
+        """Take messages that came together, on the loop."""
         if header.get("latching") == "1":
             with self._lock:
-                self._latched[header.get("callerid", "")] = message
+                self._latched[header.get("callerid", "")] = messages[-1]
         for subscription in self._subscriptions:
-            subscription.queue.put_here(message)
+            subscription.queue.put_here(*messages)
         self._node.delivered()
 
 

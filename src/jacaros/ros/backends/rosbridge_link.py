@@ -36,16 +36,33 @@ BACKLOG = 4_000_000
 
 
 class _Protocol(AsyncioRosBridgeProtocol):  # type: ignore[misc]
-    """One connection; everything here is called on roslibpy's thread."""
+    """One connection; all but ``send_message`` and ``backlog`` is called on roslibpy's thread."""
 
     factory: "_Factory"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._handed_over = 0
+        self._lock = threading.Lock()
+
+    def send_message(self, payload: bytes) -> None:
+        self._count(len(payload))
+        super().send_message(payload)
+
+    def _send(self, payload: bytes) -> None:
+        self._count(-len(payload))
+        super()._send(payload)
+
+    def _count(self, size: int) -> None:
+        with self._lock:
+            self._handed_over += size
 
     def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
         self.factory.link.received(payload, isBinary)
 
     def backlog(self) -> int:
-        """Bytes that wait for the network."""
-        return int(self.transport.get_write_buffer_size())
+        """Bytes that wait: for roslibpy's thread, and for the network."""
+        return self._handed_over + int(self.transport.get_write_buffer_size())
 
 
 class _Factory(AsyncioRosBridgeClientFactory):  # type: ignore[misc]
