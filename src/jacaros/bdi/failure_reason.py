@@ -31,7 +31,8 @@ class FailureReason:
         terms: ``error(..)``, ``error_msg(..)`` and what else was given.
         goal_annotations: those of the goal that failed.
         goals: those of the intention that was lost, as people read them, the one that failed first; noted when it ends.
-        candidates: of a goal without applicable plan, the plans that there were; noted at the same time.
+        candidates: of a goal without applicable plan, the plans that there were and where their contexts fail, as lines for
+            people; noted at the same time.
     """
 
     __slots__ = ("_made", "_place", "candidates", "goal_annotations", "goals", "terms")
@@ -87,9 +88,9 @@ class FailureReason:
         found: tuple[tuple[Any, ...], ...] = self._place.inner_goals()
         return found
 
-    def unplanned(self) -> tuple[Any, ...] | None:
-        """The goal that no plan fits, None when that is not the reason."""
-        found: tuple[Any, ...] | None = self._place.unplanned()
+    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+        """The goal that no plan fits and its annotations, None when that is not the reason."""
+        found: tuple[tuple[Any, ...], Any] | None = self._place.unplanned()
         return found
 
     def interrupted(self, frames: list[Frame]) -> "FailureReason":
@@ -123,7 +124,7 @@ class _Nowhere:
     def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
         return ()
 
-    def unplanned(self) -> tuple[Any, ...] | None:
+    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
         return None
 
     def annotations(self) -> tuple[Term, ...]:
@@ -245,8 +246,8 @@ class GoalPlace(_Nowhere):
     def span(self) -> Span | None:
         return self._call()[0]
 
-    def unplanned(self) -> tuple[Any, ...] | None:
-        return self.goal
+    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+        return self.goal, self.goal_annotations
 
     def _call(self) -> tuple[Span | None, str]:
         if self.caller is None:

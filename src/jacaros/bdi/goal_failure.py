@@ -51,16 +51,15 @@ def fail_goal(
 ) -> Posted | None:
     """A goal that has no frame failed: post its handler, or look further down."""
     trigger = goal[0]
-    if agent.meta:
-        _tell(agent, goal, annotations, reason)
     if trigger.on_fail is not None and subplans.handles(
         agent, intention, len(intention.frames), trigger.on_fail
     ):
         intention.handlers.append(len(intention.frames))
         if agent.meta:
+            _tell(agent, goal, annotations, reason)
             meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
         return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
-    return fail_intention(agent, intention, reason, goal)
+    return fail_intention(agent, intention, reason, goal, annotations)
 
 
 def fail_intention(
@@ -68,18 +67,23 @@ def fail_intention(
     intention: Intention,
     reason: FailureReason,
     goal: tuple[Any, ...] | None = None,
+    annotations: Any = (),
 ) -> Posted | None:
     """The nearest handler down the stack takes over; without one the intention ends with a warning.
 
-    *goal* is the one that failed, when it is not on the stack.
+    *goal* and *annotations* are those that failed, when they are not on the stack.
     """
     while intention.forks and not failure.has_handler(agent, intention, intention.forks[-1][0].depth):
         if not branch_failed(agent, intention):
+            if agent.meta and goal is not None:
+                _tell(agent, goal, annotations, reason)
             agent.finish(intention)
             return None
     posted = failure.handler_event(agent, intention, reason)
     if posted is not None:
         if agent.meta:
+            if goal is not None:
+                _tell(agent, goal, annotations, reason)
             _observe_inner(agent, intention, reason)
             failed = intention.frames[intention.handlers[-1]]
             _tell(agent, failed[GOAL], failed[2], reason)
@@ -94,6 +98,8 @@ def fail_intention(
         if count:
             _tell_people(agent, lost_goals.loss(agent, intention, reason, goal), count)
     if agent.meta:
+        if goal is not None:
+            _tell(agent, goal, annotations, reason)
         _tell_failed(agent, intention, reason)
     agent.finish(intention)
     return None

@@ -1,11 +1,13 @@
 """What people are told of a goal that failed and that no plan saved: where, at which step, for which goals, and why."""
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import Any, NamedTuple
 
 from jacaros.asl.formatter import format_term
 from jacaros.asl.source import Span
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.failing_context import FailingContexts
 from jacaros.bdi.failure_reason import FailureReason, shown_goal
 from jacaros.bdi.intention import GOAL, Intention
 from jacaros.bdi.step_text import unbracketed
@@ -74,7 +76,8 @@ def note_goals(
     """
     stack = [*reason.inner_goals(), *([] if goal is None else [goal]), *goals_below(intention)]
     reason.goals = _shown(stack)
-    reason.candidates = _candidates(agent, reason.unplanned())
+    unplanned = reason.unplanned()
+    reason.candidates = () if unplanned is None else _candidates(agent, *unplanned)
     return stack
 
 
@@ -92,15 +95,21 @@ def lost_in_handler(
     if reason is None:
         return Loss(told, (), None)
     reason.goals = _shown(list(goals_below(intention)))
-    reason.candidates = _candidates(agent, goal)
+    reason.candidates = _candidates(agent, goal, reason)
     return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.span())
 
 
 def why(reason: FailureReason) -> str:
-    """A reason for records of a run, in lines: error, message and place; the step; the terms for plans."""
+    """A reason for records of a run, in lines: error, message and place; the step; plans that did not fit, once they have
+    been noted; the terms for plans."""
     step = _step(reason)
     return "\n".join(
-        (f"{_error(reason)}{_place(reason)}", *([f"step: {step}"] if step else ()), *_terms(reason))
+        (
+            f"{_error(reason)}{_place(reason)}",
+            *([f"step: {step}"] if step else ()),
+            *reason.candidates,
+            *_terms(reason),
+        )
     )
 
 
@@ -115,8 +124,7 @@ def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
         lines.append(f"step: {step}{', for ' if goals else ''}{', '.join(goals)}")
     elif len(goals) > 2:  # the first and the last are named in the message
         lines.append(f"for: {', '.join(goals[1:])}")
-    lines += _limited([f"does not fit: {each}" for each in reason.candidates], MOST_PLANS, "plans")
-    return (*lines, *_terms(reason))
+    return (*lines, *reason.candidates, *_terms(reason))
 
 
 def _step(reason: FailureReason) -> str:
@@ -159,11 +167,6 @@ def _shown(stack: list[tuple[Any, ...]]) -> tuple[str, ...]:
     return (*map(shown_goal, stack[: MOST_GOALS - 1]), f"{left} more", shown_goal(stack[-1]))
 
 
-def _limited(lines: list[str], most: int, of_what: str) -> list[str]:
-    left = len(lines) - most
-    return lines if left <= 0 else [*lines[:most], f"and {left} more {of_what}"]
-
-
 def _why(reason: FailureReason) -> str:
     told = _error(reason)
     return f": {told}" if told else ""
@@ -182,19 +185,23 @@ def _short(told: str, longest: int = LONGEST) -> str:
     return told if len(told) <= longest else f"{told[: longest - 3]}..."
 
 
-def _candidates(agent: Circumstance, goal: tuple[Any, ...] | None) -> tuple[str, ...]:
-    """The plans that there were for a goal."""
-    if goal is None:
-        return ()
-    return tuple(_head(plan) for plan in agent.library.relevant(goal[0]))
+def _candidates(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> tuple[str, ...]:
+    """The plans that there were for a goal, those whose trigger fits it first, each with what its context stops at."""
+    plans = agent.library.relevant(goal[0])
+    contexts = FailingContexts(agent, goal, annotations)
+    shown = list(islice(filter(contexts.fits, plans), MOST_PLANS))
+    shown += islice((plan for plan in plans if plan not in shown), MOST_PLANS - len(shown))
+    lines = [_candidate(plan, contexts.stop(plan)) for plan in shown]
+    left = len(plans) - len(shown)
+    return (*lines, f"and {left} more plans") if left > 0 else tuple(lines)
 
 
-def _head(plan: Plan) -> str:
-    """Trigger and context of a plan, with its place."""
+def _candidate(plan: Plan, stop: str) -> str:
+    """A plan that did not fit: trigger, place and the conjunct that its context stops at, or else the whole context."""
     node = plan.node
     trigger = node.trigger
     told = f"{trigger.operator}{trigger.kind}{format_term(trigger.literal)}"
-    if node.context is not None:
+    if node.context is not None and not stop:
         told += f" : {unbracketed(format_term(node.context))}"
     line = f":{node.span.line}" if node.span is not None else ""
-    return f"{_short(told)} ({plan.file}{line})"
+    return f"does not fit: {_short(told)} ({plan.file}{line}){', ' if stop else ''}{stop}"

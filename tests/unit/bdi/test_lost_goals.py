@@ -76,7 +76,7 @@ def test_plans_that_do_not_fit_are_told() -> None:
         "g",
         "no_applicable, no applicable plan for !h(4)",
         2,
-        "does not fit: +!h(X) : X > 5 (tester.asl:3)",
+        "does not fit: +!h(X) (tester.asl:3), stops at `X > 5` with X=4",
         "does not fit: +!h(a) (tester.asl:4)",
         "does not fit: +!h(b) (tester.asl:5)",
         "and 2 more plans",
@@ -86,7 +86,7 @@ def test_plans_that_do_not_fit_are_told() -> None:
 def test_an_initial_goal_without_applicable_plan_has_a_name() -> None:
     assert told("!g.\n+!g : ready.") == [
         "the goal !g failed and has no plan for its failure: no_applicable, no applicable plan for !g",
-        "  does not fit: +!g : ready (tester.asl:2)",
+        "  does not fit: +!g (tester.asl:2), stops at `ready`",
     ]
 
 
