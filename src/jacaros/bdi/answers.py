@@ -3,7 +3,9 @@
 from jacaros.asl import nodes
 from jacaros.bdi.belief_base import without_sources
 from jacaros.bdi.circumstance import Circumstance
+from jacaros.bdi.failure_reason import FailureReason
 from jacaros.bdi.intention import Frame
+from jacaros.bdi.lost_goals import lost_question
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.bdi.speech_acts import answer
 from jacaros.compiler.plan import Plan
@@ -49,8 +51,11 @@ class AnswerByPlan:
         answer(agent, self.message, without_sources(resolve(Annotated(term, self.annotations))))
         frame[0] = None
 
-    def failed(self, _reason: object) -> None:
-        """No plan, or it failed."""
+    def failed(self, reason: FailureReason | None) -> None:
+        """No plan, which is an answer, or a plan that failed, which is logged."""
+        loss = None if reason is None else lost_question(self.message.sender, self.goal, reason)
+        if loss is not None:
+            self.agent.architecture.log("warning", loss.text())
         answer(self.agent, self.message, None)
 
 

@@ -99,6 +99,20 @@ def lost_in_handler(
     return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.span())
 
 
+def lost_question(asker: str, goal: tuple[Any, ...], reason: FailureReason) -> Loss | None:
+    """What is told of a question from *asker* whose plan failed; its goals were noted in the reason.
+
+    None when no plan was applicable: that is an answer, as of a plan whose context checks who asks.
+    """
+    unplanned = reason.unplanned()
+    if unplanned is not None and unplanned[0] is goal:
+        return None
+    told = f"the question {shown_goal(goal)} from {asker} is answered false, because its plan failed"
+    return Loss(
+        f"{told}{_why(reason)}{_place(reason)}", details(reason, f"the question {shown_goal(goal)}"), None
+    )
+
+
 def why(reason: FailureReason) -> str:
     """A reason for records of a run, in lines: error, message and place; the step; plans that did not fit, once they have
     been noted; the terms for plans."""

@@ -163,3 +163,27 @@ def test_a_long_message_is_cut() -> None:
     (found,) = told("!a.\n+!a <- .findall(X, .range(X, 1, 50000), L); !g(L).")
     assert "no relevant plan for !g([1,2,3," in found
     assert len(found) < 1000
+
+
+ASKS = "!ask.\n+!ask <- .send(self, askOne, door(X), R); .print(R).\n"
+
+
+def test_a_plan_that_fails_for_a_question_is_told_with_its_reason() -> None:
+    (first, step) = told(ASKS + "+?door(X) <- ?seen(X).")
+    assert first.startswith("the question ?door(")
+    assert first.endswith(
+        " from self is answered false, because its plan failed: "
+        "test_goal_failed, a test found no answer (tester.asl:3)"
+    )
+    assert step.startswith("  step: ?seen(")
+
+
+def test_a_question_without_applicable_plan_is_answered_without_a_warning() -> None:
+    host = mind(ASKS + "+?door(X) : open(X).")
+    host.run()
+    assert host.printed == ["false"]
+    assert host.logged == []
+
+
+def test_a_question_that_a_failure_plan_saves_is_not_told() -> None:
+    assert told(ASKS + "+?door(X) <- .fail.\n-?door(X) <- X = shut.") == []
