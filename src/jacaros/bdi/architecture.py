@@ -67,6 +67,9 @@ class Architecture(Protocol):
     def log(self, level: str, text: str) -> None:
         """Tell people about trouble; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
 
+    def goal_lost(self) -> None:
+        """A goal failed and no plan took over; the warning comes by `log`."""
+
     def out_of_memory(self) -> None:
         """A step or an event met a `MemoryError`; the agent goes on as long as it is let."""
 

@@ -93,6 +93,7 @@ def fail_intention(
         lost_goals.note_goals(agent, intention, reason, goal)
         intention.on_failed(reason)
     else:
+        agent.architecture.goal_lost()
         budget = agent.budgets.get(reason.error())
         count = budget.note_loss() if budget is not None else 1
         if count:
@@ -144,5 +145,6 @@ def _lost_in_handler(
     if intention.on_failed is not None:
         intention.on_failed(reason)
     else:
+        agent.architecture.goal_lost()
         _tell_people(agent, lost_goals.lost_in_handler(agent, intention, goal, reason))
     agent.finish(intention)

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from jacaros.bdi.agent import Agent
 from jacaros.cli.graph_options import (
     graph_options,
     orphan_policy,
@@ -18,6 +19,7 @@ from jacaros.cli.graph_options import (
 )
 from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
 from jacaros.errors import UsageError
+from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
@@ -29,6 +31,9 @@ from jacaros.text_files import is_file
 
 FAST_PATIENCE = 1.0
 """Seconds that a run on the virtual clock waits for a reader; its agents miss nothing meanwhile."""
+HOW_TO_END = "press Ctrl+C to end the run, or start it with --until-idle"
+MOST_NAMES = 8
+"""Agents that wait, in the note that a run has nothing left to do."""
 SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 """Of files that can be run."""
 
@@ -68,6 +73,11 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     help="Mapping file of a robot; a lone program focuses its artifacts. May be given more often.",
 )
 @click.option("--until-idle", is_flag=True, help="End when no agent has anything to do or to wait for.")
+@click.option(
+    "--fail-on-lost-goal",
+    is_flag=True,
+    help="Exit with code 1 instead of 0 if a goal failed and no plan took over, or an exception ended an agent in Python.",
+)
 @click.option("--for", "seconds", type=float, metavar="S", help="End after S seconds of the run's clock.")
 @click.option(
     "--guard",
@@ -128,6 +138,7 @@ def command(
     world: str | None,
     mappings: tuple[str, ...],
     until_idle: bool,
+    fail_on_lost_goal: bool,
     seconds: float | None,
     guard: bool,
     domain_id: int | None,
@@ -176,6 +187,7 @@ def command(
         show_world=outputs.any,
         namespace=namespace,
         until_idle=until_idle,
+        fail_on_lost_goal=fail_on_lost_goal,
         seconds=seconds,
         ros_clock=clock == "ros",
         domain_id=domain_id,
@@ -218,6 +230,8 @@ def _launch(file: Path | Deployment, options: RunOptions, console: StandardConso
             loop = asyncio.get_running_loop()
             end = partial(mas.stop_system, 0.0, OUTPUT_GONE)
             console.when_gone(lambda: loop.call_soon_threadsafe(end))
+        if not options.until_idle and options.seconds is None:
+            report_idleness(mas)
 
     if not outputs.any:
         with console.with_prints():
@@ -231,6 +245,40 @@ def _launch(file: Path | Deployment, options: RunOptions, console: StandardConso
 
     with Watching(console, outputs) as watching, console.with_prints():
         return launch(file, options, watching, begin_watched)
+
+
+def report_idleness(mas: System) -> None:
+    """Log once that the run has nothing left to do, if nothing from outside can change that."""
+    if mas.options.real_graph:
+        return  # any message may
+
+    def idle() -> None:
+        stop()
+        if not _can_be_woken(mas):
+            mas.console.log(f"note: nothing left to do: {_what_waits(mas)}; {HOW_TO_END}")
+
+    stop = mas.idleness.watch(idle)
+
+
+def _can_be_woken(mas: System) -> bool:
+    """Whether something else than the agents may give them something to do: the ROS graph, artifacts, the project's Python
+    code."""
+    from jacaros.env.default.furnishing import DEFAULT_TYPES  # here: only for runs that get idle
+
+    if mas.ros.joined is not None or any(type(host) is not AgentHost for host in mas.directory):
+        return True
+    workspaces = mas.environment.workspaces() if mas.environment is not None else ()
+    return any(
+        each.type_name not in DEFAULT_TYPES for workspace in workspaces for each in workspace.artifacts()
+    )
+
+
+def _what_waits(mas: System) -> str:
+    waiting = [host.name for host in mas.directory if isinstance(host.mind, Agent) and host.mind.alive]
+    if not waiting:
+        return "no agent has a goal or an event"
+    names = ", ".join(waiting[:MOST_NAMES]) + (", ..." if len(waiting) > MOST_NAMES else "")
+    return f"the goals of {names} wait, and no agent can wake them"
 
 
 def _close(console: StandardConsole, code: int) -> None:

@@ -102,6 +102,9 @@ class Run(Protocol):
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
 
+    def goal_lost(self) -> None:
+        """A goal of an agent failed and no plan took over."""
+
     def out_of_memory(self, name: str) -> None:
         """End the run: an agent met a `MemoryError`."""
 
@@ -295,6 +298,10 @@ class AgentHost:
             # Details that an agent is to tell are wanted, whatever is shown of others.
             shown = "info" if level == "debug" and verbose > 1 else level
             self._run.console.log(f"[{self.name}] {level}: {text}", shown)
+
+    def goal_lost(self) -> None:
+        """A goal failed and no plan took over."""
+        self._run.goal_lost()
 
     def out_of_memory(self) -> None:
         """A step or an event of the mind met a `MemoryError`."""

@@ -28,6 +28,7 @@ class RunOptions:
         show_world: make the world at the start, even when nobody asks for a robot yet.
         namespace: put before relative ROS names.
         until_idle: end when no agent has anything to do and no operation is under way.
+        fail_on_lost_goal: the exit code is 1 instead of 0 if a goal failed and no plan took over.
         seconds: end after so many seconds of the run's clock.
         ros_clock: time is that of the graph's ``/clock``, as a simulator publishes it.
         domain_id, master, bridge, node_name, remap, parameters, orphans: see `jacaros.ros.address.GraphAddress`.
@@ -47,6 +48,7 @@ class RunOptions:
     keep_ground_truth: bool = False
     namespace: str = ""
     until_idle: bool = False
+    fail_on_lost_goal: bool = False
     seconds: float | None = None
     ros_clock: bool = False
     domain_id: int | None = None

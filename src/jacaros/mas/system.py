@@ -64,6 +64,7 @@ class System:
         population: makes and ends agents.
         mailboxes: the messages between agents.
         deliver: brings a message to its receiver; False when there is none.
+        lost_goals: how many goals have failed with no plan to take over, and agents in Python ended by an exception.
         services: the directory facilitator; another one may be put here before the run starts.
     """
 
@@ -102,6 +103,7 @@ class System:
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
+        self.lost_goals = 0
         self._exit_code: int | None = None
         self._error: BaseException | None = None
 
@@ -246,9 +248,16 @@ class System:
     # ---- the end
 
     def end(self, exit_code: int) -> None:
-        """End the run: no agent has another turn, no line is printed any more."""
+        """End the run: no agent has another turn, no line is printed any more.
+
+        With the option ``fail_on_lost_goal`` the exit code 0 becomes 1 if a goal was lost.
+        """
         if self._ending:
             return
+        if exit_code == 0 and self.options.fail_on_lost_goal and self.lost_goals:
+            exit_code = 1
+            goals = "1 goal was" if self.lost_goals == 1 else f"{self.lost_goals} goals were"
+            self.console.log(f"error: {goals} lost (--fail-on-lost-goal)", "error")
         self.ros.ending()
         self._ending = True
         self._exit_code = exit_code
@@ -278,6 +287,10 @@ class System:
     def error(self) -> BaseException | None:
         """The defect of JaCaROS that ended the run, if one did."""
         return self._error
+
+    def goal_lost(self) -> None:
+        """Count a goal that failed with no plan to take over."""
+        self.lost_goals += 1
 
     def out_of_memory(self, name: str = "") -> None:
         """End the run because a `MemoryError` was raised, in the step of an agent or elsewhere.

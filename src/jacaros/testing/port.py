@@ -96,6 +96,9 @@ class HarnessPort:
     def log(self, level: str, text: str) -> None:
         self._harness.logs.append(f"{level}: {text}")
 
+    def goal_lost(self) -> None:
+        pass
+
     def out_of_memory(self) -> None:
         self.log("error", "out of memory")
 

@@ -56,6 +56,7 @@ def run_project(
     world: str | Path | None = None,
     seconds: float | None = None,
     until_idle: bool = False,
+    fail_on_lost_goal: bool = False,
     fast: bool = True,
     ros: str = "memory",
     mappings: Iterable[str | Path] = (),
@@ -74,6 +75,7 @@ def run_project(
         world: world file or name in place of the project's own.
         seconds: end after so many seconds of the run's clock.
         until_idle: end when no agent has anything to do.
+        fail_on_lost_goal: the exit code is 1 instead of 0 if a goal failed and no plan took over.
         fast: on the virtual clock.
         ros: kind of the ROS graph.
         mappings: mapping files whose artifacts are made at the start.
@@ -93,6 +95,7 @@ def run_project(
         world=world,
         keep_ground_truth=True,
         until_idle=until_idle,
+        fail_on_lost_goal=fail_on_lost_goal,
         seconds=seconds,
         mappings=tuple(map(str, mappings)),
         remap=dict(remap or {}),

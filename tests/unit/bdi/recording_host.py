@@ -42,6 +42,7 @@ class RecordingHost:
         self.sent: list[SpeechAct] = []
         self.stopped = False
         self.memory_errors = 0
+        self.goals_lost = 0
         self.exit_code = 0
         self.agent: Agent
         self._complete = complete
@@ -89,6 +90,9 @@ class RecordingHost:
 
     def log(self, level: str, text: str) -> None:
         self.logged.append((level, text))
+
+    def goal_lost(self) -> None:
+        self.goals_lost += 1
 
     def out_of_memory(self) -> None:
         self.memory_errors += 1

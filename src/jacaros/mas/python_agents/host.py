@@ -116,6 +116,7 @@ class PythonAgentHost(AgentHost):
         self._settled()
 
     def _failed(self, error: BaseException) -> None:
+        self._run.goal_lost()
         for line in fault_lines(error):
             self._run.console.log(f"[{self.name}] {line}", "error")
         if not self._leaving:
