@@ -7,13 +7,15 @@ import itertools
 from bisect import bisect_left
 from collections.abc import Iterable
 from functools import cmp_to_key
-from operator import ne
+from operator import itemgetter, ne
 from typing import Any
 
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.deep import MANY_TURNS
 from jacaros.terms.values import (
+    ARITHMETIC,
     CONS,
+    FUNCTION,
     NIL,
     Annotated,
     Functor,
@@ -27,6 +29,7 @@ from jacaros.terms.values import (
 )
 
 _NUMBER, _STRING, _LIST, _LITERAL, _OTHER, _VARIABLE = range(6)
+_EVALUATED = (ARITHMETIC, FUNCTION)
 _variable_numbers = itertools.count()
 
 
@@ -228,8 +231,34 @@ def sorted_terms(terms: Iterable[Term]) -> list[Term]:
     items = list(terms)
     if ordered_by_python(items):
         return sorted(items)
-    if set(map(type, items)) == {Functor} and NIL not in items:
-        return sorted(items, key=_name_key)
+    groups = _by_name(items)
+    if groups is None:
+        return sorted(items, key=SortKey)
+    return [item for name in sorted(groups) for item in _sorted_namesakes(groups[name])]
+
+
+def _by_name(items: list[Term]) -> dict[tuple[str, str, bool], list[Term]] | None:
+    """Atoms and structures grouped by what counts first in the standard order; None when there are other terms."""
+    groups: dict[tuple[str, str, bool], list[Term]] = {}
+    for item in items:
+        symbol = item[0] if item.__class__ is tuple else item
+        if symbol.__class__ is not Functor or symbol is CONS or symbol is NIL or symbol.kind in _EVALUATED:
+            return None
+        groups.setdefault((symbol.namespace or "", symbol.name, symbol.negated), []).append(item)
+    return groups
+
+
+def _sorted_namesakes(items: list[Term]) -> list[Term]:
+    """Sort terms of the same name: by their arguments alone where Python's own comparison will do."""
+    if len(items) == 1:
+        return items
+    symbols = {item[0] if item.__class__ is tuple else item for item in items}
+    if len(symbols) == 1:
+        arity = len(items[0]) - 1 if items[0].__class__ is tuple else 0
+        if not arity:
+            return items
+        if all(ordered_by_python([item[place] for item in items]) for place in range(1, arity + 1)):
+            return sorted(items, key=itemgetter(*range(1, arity + 1)))
     return sorted(items, key=SortKey)
 
 
@@ -243,15 +272,22 @@ def sorted_set(items: list[Term]) -> list[Term]:
     """The terms in the standard order, the first one of equal ones."""
     if ordered_by_python(items):
         return sorted(dict.fromkeys(items))
+    groups = _by_name(items)
+    if groups is None:
+        return _without_doubles(sorted(items, key=SortKey))
     result: list[Term] = []
-    for item in sorted_terms(items):
-        if not result or compare(result[-1], item) != 0:
-            result.append(item)
+    for name in sorted(groups):
+        group = groups[name]
+        result += group if len(group) == 1 else _without_doubles(_sorted_namesakes(group))
     return result
 
 
-def _name_key(symbol: Functor) -> tuple[str, str, bool]:
-    return symbol.namespace or "", symbol.name, symbol.negated
+def _without_doubles(items: list[Term]) -> list[Term]:
+    result = items[:1]
+    for item in items[1:]:
+        if compare(result[-1], item) != 0:
+            result.append(item)
+    return result
 
 
 def annotation_set(annotations: tuple[Term, ...]) -> tuple[Term, ...]:

@@ -1,13 +1,23 @@
 from collections.abc import Callable
+from functools import cmp_to_key
 
 import pytest
 from drawn_terms import any_plans, build
 from hypothesis import given
 from hypothesis import strategies as st
 
+from jacaros.terms import order
 from jacaros.terms.arithmetic import ADD
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.order import annotation_set, at_most, compare, less, merge_annotations, sorted_terms
+from jacaros.terms.order import (
+    annotation_set,
+    at_most,
+    compare,
+    less,
+    merge_annotations,
+    sorted_set,
+    sorted_terms,
+)
 from jacaros.terms.substitution import equal
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, Reference, String, Term, Var, atom, functor, make_list, structure
@@ -66,6 +76,26 @@ IN_ORDER: list[Term] = [
 ]
 
 
+NAMESAKES = [
+    structure("p", 2.0, String("b")),
+    structure("p", 2.0, String("a")),
+    structure("p", float("-inf"), String("a")),
+    structure("p", float("nan"), String("a")),
+    structure("p", 2.0, atom("a")),
+    structure("p", 1.0),
+    structure("p", 0.0),
+    structure("p", -0.0),
+    atom("p"),
+    atom("p", "ns"),
+    functor("p", 0, negated=True),
+    structure("q", Var("X")),
+    structure("q", make_list([])),
+    structure("q", structure("p", 1.0)),
+    structure("q", structure("p", 1.0)),
+    (ADD, 1.0, 2.0),
+]
+
+
 @pytest.mark.parametrize("position", range(1, len(IN_ORDER)))
 def test_each_kind_of_term_has_its_place(position: int) -> None:
     lower, higher = IN_ORDER[position - 1], IN_ORDER[position]
@@ -78,6 +108,32 @@ def test_sorting_puts_terms_in_order_and_keeps_equal_ones_apart() -> None:
     assert sorted_terms(reversed(IN_ORDER)) == IN_ORDER
     twins = [Annotated(atom("a"), ()), atom("a")]
     assert sorted_terms(twins) == twins
+
+
+drawn_terms = st.lists(any_plans, max_size=6).map(lambda plans: [build(plan, {}) for plan in plans])
+
+
+@given(drawn_terms | st.lists(st.sampled_from(NAMESAKES), max_size=8))
+def test_terms_are_sorted_as_they_compare(terms: list[Term]) -> None:
+    expected = sorted(terms, key=cmp_to_key(compare))
+    assert list(map(id, sorted_terms(terms))) == list(map(id, expected))
+    firsts = [term for place, term in enumerate(expected) if not place or compare(expected[place - 1], term)]
+    assert list(map(id, sorted_set(terms))) == list(map(id, firsts))
+
+
+@pytest.mark.parametrize(
+    "terms",
+    [
+        [structure(name, atom("x")) for name in ("error", "code", "source", "code_line", "error_msg")],
+        [structure("at", time, String("a")) for time in (3.0, 1.0, 2.0)],
+    ],
+)
+def test_names_and_plain_arguments_are_sorted_without_comparing_terms(
+    monkeypatch: pytest.MonkeyPatch, terms: list[Term]
+) -> None:
+    expected = sorted(terms, key=order.SortKey)
+    monkeypatch.setattr(order, "SortKey", None)
+    assert sorted_terms(terms) == expected
 
 
 def test_what_is_not_a_number_is_sorted_behind_the_numbers() -> None:
