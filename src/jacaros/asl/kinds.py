@@ -32,6 +32,7 @@ KINDS: Final[dict[str, Kind]] = {
     "empty-clause": Kind("error", "a '.' or ';' with nothing before it"),
     "empty-step": Kind("error", "no step where one is expected"),
     "end-without-begin": Kind("error", "{ end } without a { begin ... }"),
+    "event-never-happens": Kind("warning", "a plan for an event of beliefs that nothing causes"),
     "foreign-word": Kind("error", "a word of another language"),
     "formula-in-list": Kind("error", "a relation or another formula as an element of a list"),
     "include-circle": Kind("error", "files that include each other"),

@@ -1,18 +1,21 @@
-"""Beliefs that agents wait or ask for and that nobody makes, because their name is misspelt.
+"""Beliefs that agents wait or ask for and that nobody makes: the name is misspelt, the number of arguments is another one,
+or the belief is the conclusion of a rule, which makes no event.
 
-Beliefs may come from anywhere: other programs, Python code, tests, people.  So only a name is told that is nearly one which
-the project makes for certain, and that stands nowhere else.
+Beliefs may come from anywhere: other programs, Python code, tests, people.  So a name is reported only if it is one, or
+nearly one, that the project makes for certain, and if it appears nowhere else.
 """
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.beliefs import beliefs_of, is_misspelt
+from jacaros.asl.checks.beliefs import Beliefs, beliefs_of, is_misspelt
+from jacaros.asl.checks.formulas import parts_of
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.formatter import format_term
 from jacaros.asl.spelling import Slips
 from jacaros.text_files import file_bytes
 
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
 
 CODE: Final = "misspelt-belief"
+NEVER: Final = "event-never-happens"
 
 _TEXTS: Final = (".asl", ".py", ".mas2j", ".jcm", ".yaml", ".yml")
 """Files in which a name may stand that becomes a belief."""
@@ -40,7 +44,7 @@ def check_beliefs(
     types: "Callable[[], Sequence[type[Artifact]] | None]",
     folders: Iterable[Path],
 ) -> list[Diagnostic]:
-    """Warnings about misspelt names of beliefs.
+    """Warnings about misspelt names of beliefs, and about events of beliefs that never happen.
 
     Args:
         programs: all that the agents of a project run.
@@ -51,6 +55,13 @@ def check_beliefs(
     found = [beliefs_of(program) for program in programs]
     if any(each.is_open for each in found):
         return []
+    folders = tuple(folders)
+    return [*_misspelt(found, types, folders), *_never_happening(found, types, folders)]
+
+
+def _misspelt(
+    found: Sequence[Beliefs], types: "Callable[[], Sequence[type[Artifact]] | None]", folders: Sequence[Path]
+) -> list[Diagnostic]:
     made = {name for each in found for name in each.made}
     known = {name for each in found for name in each.mentioned} | made | _OF_THE_SYSTEM
     asked: dict[str, list[nodes.Literal]] = {}
@@ -59,7 +70,7 @@ def check_beliefs(
             if name not in known:
                 asked.setdefault(name, []).extend(filter(_is_own, literals))
     if asked:
-        made |= _observables(types() or ())
+        made |= _observables(types() or ()) or set()
     near = Slips(made)
     slips = {
         name: sorted(each for each in near.of(name) if is_misspelt(name, each))
@@ -67,9 +78,55 @@ def check_beliefs(
         if name not in made
     }
     slips = {name: meant for name, meant in slips.items() if meant}
-    if slips:
-        slips = _only_here(slips, asked, folders)
-    return [_warning(name, meant[0], each) for name, meant in slips.items() for each in asked[name]]
+    only_here = _only_here({name: asked[name] for name in slips}, folders)
+    return [
+        _warning(name, slips[name][0], each) for name in slips if name in only_here for each in asked[name]
+    ]
+
+
+def _never_happening(
+    found: Sequence[Beliefs], types: "Callable[[], Sequence[type[Artifact]] | None]", folders: Sequence[Path]
+) -> list[Diagnostic]:
+    """Warnings about plans for events of beliefs that only rules conclude, or that are made with other arguments only."""
+    made = {key for each in found for key in each.made_as}
+    mentioned = {key for each in found for key in each.mentioned_as} | made
+    said = {word for each in found for word in each.said} | _OF_THE_SYSTEM
+    warnings: dict[str, list[Diagnostic]] = {}
+    places: dict[str, list[nodes.Literal]] = {}
+    for each in found:
+        for key, events in each.events.items():
+            name = key[0]
+            if name in said or key in mentioned or (name, 0) in mentioned:
+                continue
+            other = sorted(size for made_name, size in made if made_name == name)
+            rule = each.concluded.get(key)
+            if rule is None and (not other or any(key in one.concluded for one in found)):
+                continue
+            for sign, literal in events:
+                if _is_own(literal):
+                    places.setdefault(name, []).append(literal)
+                    warnings.setdefault(name, []).append(_never(sign, literal, rule, other))
+    if not warnings:
+        return []
+    existing = types()
+    observables = None if existing is None else _observables(existing)
+    if observables is None:
+        return []
+    places = {name: literals for name, literals in places.items() if name not in observables}
+    return [warning for name in _only_here(places, folders) for warning in warnings[name]]
+
+
+def _never(sign: str, literal: nodes.Literal, rule: nodes.Rule | None, other: Sequence[int]) -> Diagnostic:
+    key = f"{literal.functor}/{len(literal.arguments)}"
+    if rule is not None:
+        asked = next((part for part in parts_of(rule.body) if isinstance(part, nodes.Literal)), None)
+        example = "" if asked is None else f", as in +{format_term(asked)} : {format_term(rule.head)}"
+        why = f"{key} is the conclusion of a rule"
+        hint = f"conclusions cause no events; react to a belief that the rule asks for{example}"
+    else:
+        why = f"nobody makes a belief {key}"
+        hint = f"did you mean {' or '.join(f'{literal.functor}/{size}' for size in other)}?"
+    return Diagnostic("warning", f"the event {sign}{key} never happens: {why}", literal.span, hint, NEVER)
 
 
 def _is_own(literal: nodes.Literal) -> bool:
@@ -82,14 +139,14 @@ def _warning(name: str, meant: str, literal: nodes.Literal) -> Diagnostic:
     return Diagnostic("warning", f"nobody makes a belief {key}", literal.span, f"did you mean {meant}?", CODE)
 
 
-def _observables(types: "Sequence[type[Artifact]]") -> set[str]:
-    """Properties and signals of artifacts; none when some of them work names out."""
+def _observables(types: "Sequence[type[Artifact]]") -> set[str] | None:
+    """Properties and signals of artifacts; None when some of them work names out."""
     from jacaros.env.manual_sources import described, own_classes, written_properties, written_signals
 
     names: set[str] = set()
     for artifact_type in types:
         if any(map(_works_names_out, own_classes(artifact_type))):
-            return set()
+            return None
         for section in ("Properties", "Signals"):
             names.update(described(artifact_type, section))
         names.update(written_properties(artifact_type), written_signals(artifact_type))
@@ -108,25 +165,23 @@ def _works_names_out(artifact_class: type) -> bool:
         return True
 
 
-def _only_here(
-    slips: dict[str, list[str]], asked: dict[str, list[nodes.Literal]], folders: Iterable[Path]
-) -> dict[str, list[str]]:
+def _only_here(asked: Mapping[str, Sequence[nodes.Literal]], folders: Iterable[Path]) -> list[str]:
     """Those of the names that stand in no file besides those that ask for them."""
+    if not asked:
+        return []
     own = {
-        name: {Path(each.span.file.name).resolve() for each in asked[name] if each.span is not None}
-        for name in slips
+        name: {Path(each.span.file.name).resolve() for each in literals if each.span is not None}
+        for name, literals in asked.items()
     }
-    left = dict(slips)
+    left = list(asked)
     for number, path in enumerate(_texts(folders)):
         if number >= _MOST_FILES:
-            return {}
+            return []
         try:
             words = set(_WORD.findall(file_bytes(path).decode(errors="replace")))
         except OSError:
             continue
-        left = {
-            name: meant for name, meant in left.items() if name not in words or path.resolve() in own[name]
-        }
+        left = [name for name in left if name not in words or path.resolve() in own[name]]
     return left
 
 

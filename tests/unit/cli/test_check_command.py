@@ -220,6 +220,7 @@ MEANT = {
     "namespaces_and_includes/include_without_namespace": {"plan-never-selected"},
     "plan_selection/first_applicable_in_file_order": {"plan-never-selected"},
     "plan_selection/priority_annotation_ignored": {"plan-never-selected"},
+    "rules_and_queries/rules_raise_no_events": {"event-never-happens"},
     "rules_and_queries/waiting_is_no_condition": {"acting-condition"},
 }
 """Cases in which what is told is what the case is about."""

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.asl.checks.beliefs import is_misspelt
+from jacaros.asl.diagnostics import Diagnostic
 from jacaros.mas.checking import check_files
 
 ARTIFACTS = """
@@ -41,6 +42,23 @@ def folder(tmp_path: Path) -> Path:
 
 def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
     """The misspelt names of a program, or of a project that it belongs to, with what is meant."""
+    return [
+        f"{each.message.split()[-1]} {(each.hint or '').split()[-1]}"
+        for each in warnings(folder, program, project, mappings)
+        if each.code == "misspelt-belief"
+    ]
+
+
+def never(folder: Path, program: str, project: str = "", mappings: tuple[str, ...] = ()) -> list[str]:
+    """What is said of events that never happen, the help behind a semicolon."""
+    return [
+        f"{each.message.removeprefix('the event ')}; {each.hint}"
+        for each in warnings(folder, program, project, mappings)
+        if each.code == "event-never-happens"
+    ]
+
+
+def warnings(folder: Path, program: str, project: str, mappings: tuple[str, ...]) -> list[Diagnostic]:
     path = folder / "a.asl"
     path.write_text(program, encoding="utf-8")
     if project:
@@ -48,11 +66,7 @@ def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...
         path.write_text(project, encoding="utf-8")
     found = check_files([path], mappings).diagnostics
     assert not [each for each in found if each.severity == "error"]
-    return [
-        f"{each.message.split()[-1]} {(each.hint or '').split()[-1]}"
-        for each in found
-        if each.code == "misspelt-belief"
-    ]
+    return found
 
 
 @pytest.mark.parametrize(
@@ -68,6 +82,7 @@ def told(folder: Path, program: str, project: str = "", mappings: tuple[str, ...
         "+!go <- for (obstacel(D)) { .print(D) }.",
         "+!go <- .count(obstacel(_), N); .print(N).",
         "+!go <- .findall(D, obstacel(D), L); .print(L).",
+        "+!go <- .wait({+obstacel(D)}); .print(D).",
     ],
 )
 def test_each_place_where_a_property_is_asked_for(folder: Path, use: str) -> None:
@@ -223,3 +238,85 @@ def test_plans_for_others_in_strings_count(folder: Path) -> None:
 )
 def test_what_is_a_slip(written: str, meant: str, misspelt: bool) -> None:
     assert is_misspelt(written, meant) is misspelt
+
+
+RULE = "low :- battery(B) & B < 20. battery(15). "
+BY_RULE = (
+    "low/0 never happens: low/0 is the conclusion of a rule; "
+    "conclusions cause no events; react to a belief that the rule asks for, as in +battery(B) : low"
+)
+
+
+@pytest.mark.parametrize(
+    ("reacts", "sign"),
+    [
+        ("+low <- .print(low).", "+"),
+        ('+low <- .print("the battery is low").', "+"),
+        ("-low <- .print(a).", "-"),
+        ("+!go <- .wait({+low}); .print(a).", "+"),
+        ("+!go <- .wait(100). { +low <- .print(b). }", "+"),
+    ],
+)
+def test_conclusions_of_rules_make_no_events(folder: Path, reacts: str, sign: str) -> None:
+    assert never(folder, RULE + reacts) == [sign + BY_RULE]
+
+
+def test_an_event_with_another_number_of_arguments_never_happens(folder: Path) -> None:
+    program = "battery(15). +battery(B, _) <- .print(B). +battery(B) <- .print(B)."
+    assert never(folder, program) == [
+        "+battery/2 never happens: nobody makes a belief battery/2; did you mean battery/1?"
+    ]
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "low.",
+        "+!more <- +low.",
+        "+!more <- .send(self, tell, low).",
+        "+!more <- .send(bob, askOne, low, R); .print(R).",
+        "+!more(B) <- +B.",
+        "+!more <- .asserta(low).",
+        "+!more <- put(low).",
+        '+!more <- .term2string(T, "low"); put(T).',
+        "+!more(T) <- makeArtifact(m, T, [], _).",
+        '+!more <- makeArtifact(m, "Anything", ["low"], _).',
+    ],
+)
+def test_a_conclusion_that_may_be_a_belief_too_is_not_reported(folder: Path, more: str) -> None:
+    assert never(folder, f"{RULE} +low <- .print(a). {more}") == []
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "battery(1, 2).",
+        "battery(A, B) :- A < B.",
+        "+!more <- +battery(1, 2).",
+        "+!more(X) <- T =.. [battery, [X, X], []]; put(T).",
+        '+!more <- .send(bob, tellHow, "+!t <- .send(alice, tell, battery(1, 2)).").',
+        "+!more(T) <- makeArtifact(m, T, [], _).",
+    ],
+)
+def test_another_number_of_arguments_that_may_come_is_not_reported(folder: Path, more: str) -> None:
+    expected = 1 if more.startswith("battery(A") else 0  # then it is the conclusion of a rule
+    found = never(folder, f"battery(15). +battery(A, B) <- .print(A, B). {more}")
+    assert len(found) == expected
+
+
+def test_properties_and_signals_of_artifacts_are_events(folder: Path) -> None:
+    assert never(folder, f"{MAKES} obstacle(1, 2). +obstacle(X) <- .print(X).") == []
+    assert never(folder, f"{MAKES} near :- turned & obstacle(1). turned :- near. +turned <- .print(a).") == []
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("b.asl", "!t. +!t <- .send(a, tell, low)."),
+        ("tool.py", "def tell(agent):\n    agent.believe('low')\n"),
+        ("robot.yaml", "topics: {low: {topic: /battery}}"),
+    ],
+)
+def test_an_event_that_another_file_mentions_may_happen(folder: Path, file: str, text: str) -> None:
+    (folder / file).write_text(text, encoding="utf-8")
+    assert never(folder, RULE + "+low <- .print(a).") == []

@@ -15,6 +15,8 @@ _ADDING: Final = frozenset({".include", ".add_plan", ".create_agent", ".clone", 
 """Internal actions that bring in plans or agents which do not stand in the program."""
 _QUERIES: Final = {".count": 0, ".findall": 1, ".setof": 1}
 """Internal actions with a condition among their arguments."""
+_PRINTING: Final = frozenset({".print", ".println", ".printf", ".puts", ".log"})
+"""Internal actions that only show their arguments."""
 _WORD: Final = re.compile(r"\w+")
 _SHORTEST: Final = 5
 """Shorter names are too easily like each other."""
@@ -22,6 +24,10 @@ _SHORTEST_PART: Final = 3
 """So are shorter parts of names with underscores."""
 _ENDINGS: Final = "sdr"
 """Letters that make another form of a word."""
+
+
+Key = tuple[str, int]
+"""Name and number of arguments."""
 
 
 @dataclass
@@ -33,30 +39,74 @@ class Beliefs:
         made: names that the program gives to beliefs of its own and of others.
         mentioned: all other names in it, and words of strings: they may become beliefs by ways that are not seen.
         is_open: beliefs, plans or agents come from elsewhere at run time.
+        events: what plans and ``.wait`` react to, sign and belief: of the default namespace, without strong negation.
+        made_as, concluded, mentioned_as: as `made`, but for rules; the conclusions of rules; as `mentioned`, without words.
+        said: words of strings that are not only printed.
     """
 
     asked: dict[str, list[nodes.Literal]] = field(default_factory=dict)
     made: set[str] = field(default_factory=set)
     mentioned: set[str] = field(default_factory=set)
     is_open: bool = False
+    events: dict[Key, list[tuple[str, nodes.Literal]]] = field(default_factory=dict)
+    made_as: set[Key] = field(default_factory=set)
+    concluded: dict[Key, nodes.Rule] = field(default_factory=dict)
+    mentioned_as: set[Key] = field(default_factory=set)
+    said: set[str] = field(default_factory=set)
 
 
 def beliefs_of(program: nodes.Program) -> Beliefs:
     """Look through a program, with all that it includes."""
     found = Beliefs()
+    heads: set[int] = set()
     for belief in program.beliefs:
         head = belief.head if isinstance(belief, nodes.Rule) else belief
+        heads.add(id(head))
         found.made.update(_names(head))
+        if isinstance(belief, nodes.Rule):
+            found.concluded.setdefault(key_of(belief.head), belief)
+        else:
+            found.made_as.update(_keys(belief))
     asked: set[int] = set()
     for clause in clauses(program):
         for node, is_asked in in_order(clause):
             _look_at(node, is_asked, asked, found)
+    for plan in program.plans:
+        _react(plan, found)
+    printed: set[int] = set()
     for node in walk(program.beliefs, program.goals, program.plans):
-        if isinstance(node, nodes.Literal) and id(node) not in asked:
+        if isinstance(node, nodes.InternalAction) and node.name in _PRINTING:
+            printed.update(map(id, walk(node.arguments)))
+        elif isinstance(node, nodes.Literal) and id(node) not in asked:
             found.mentioned.add(_name(node))
+            if id(node) not in heads and id(node) not in printed:
+                found.mentioned_as.add(key_of(node))
         elif isinstance(node, nodes.String):
-            found.mentioned.update(_WORD.findall(node.value))
+            words = _WORD.findall(node.value)
+            found.mentioned.update(words)
+            if id(node) not in printed:
+                found.said.update(words)
     return found
+
+
+def _react(plan: nodes.Plan, found: Beliefs) -> None:
+    """Note the events of beliefs that a plan and its sub-plans are for."""
+    if plan.trigger.kind == "" and plan.trigger.operator in "+-":
+        _note_event(plan.trigger.operator, plan.trigger.literal, found)
+    for inner in plan.subplans:
+        _react(inner, found)
+
+
+def _note_event(sign: str, literal: nodes.Node, found: Beliefs) -> None:
+    if isinstance(literal, nodes.Literal) and literal.namespace is None and not literal.negated:
+        found.events.setdefault(key_of(literal), []).append((sign, literal))
+
+
+def _awaited(wait: nodes.InternalAction) -> Iterator[nodes.BeliefChange]:
+    """The event ``{+b}`` or ``{-b}`` that a ``.wait`` is for: it reads like a change of beliefs."""
+    for argument in wait.arguments:
+        if isinstance(argument, nodes.BodyTerm):
+            yield from (step for step in argument.body.steps if isinstance(step, nodes.BeliefChange))
 
 
 def _look_at(node: nodes.Node, is_asked: bool, asked: set[int], found: Beliefs) -> None:
@@ -64,15 +114,22 @@ def _look_at(node: nodes.Node, is_asked: bool, asked: set[int], found: Beliefs) 
         if node.kind == "" and node.operator in "+-":
             _ask(node.literal, asked, found)
         elif node.kind == "?":
-            found.made.update(_names(node.literal))
+            _make(node.literal, found)
     elif isinstance(node, nodes.BeliefChange):
+        if id(node) in asked:
+            return
         found.is_open = found.is_open or isinstance(node.operand, nodes.Variable)
         if isinstance(node.operand, nodes.Literal) and "+" in node.operator:
-            found.made.add(_name(node.operand))
+            _make(node.operand, found)
     elif isinstance(node, nodes.InternalAction):
+        if node.name == ".wait":
+            for change in _awaited(node):
+                asked.add(id(change))
+                _ask(change.operand, asked, found)
+                _note_event(change.operator, change.operand, found)
         found.is_open = found.is_open or node.name in _ADDING
         if node.name in _SENDS and node.arguments:
-            found.made.update(_names(node.arguments[-1]))
+            _make(node.arguments[-1], found)
         for condition in node.arguments[_QUERIES.get(node.name, len(node.arguments)) :][:1]:
             for part in parts_of(condition):
                 _ask(part, asked, found)
@@ -85,6 +142,23 @@ def _ask(node: nodes.Node, asked: set[int], found: Beliefs) -> None:
     if isinstance(node, nodes.Literal) and node.namespace is None:
         asked.add(id(node))
         found.asked.setdefault(_name(node), []).append(node)
+
+
+def _make(term: nodes.Node, found: Beliefs) -> None:
+    """Note a belief that is made, or a list of them."""
+    found.made.update(_names(term))
+    found.made_as.update(_keys(term))
+
+
+def _keys(term: nodes.Node) -> Iterator[Key]:
+    for node in term.items if isinstance(term, nodes.ListTerm) else (term,):
+        if isinstance(node, nodes.Literal):
+            yield key_of(node)
+
+
+def key_of(literal: nodes.Literal) -> Key:
+    """Name and number of arguments of a belief."""
+    return _name(literal), len(literal.arguments)
 
 
 def _names(term: nodes.Node) -> Iterator[str]:
