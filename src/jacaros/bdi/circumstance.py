@@ -68,7 +68,8 @@ class Circumstance:
         pending_asks: questions whose answer is awaited, by message id.
         abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
         meta: whether plans or an observer want to hear of changes of goal states.
-        goal_observer: told of the state, text and identity of each goal that changes, and why it failed, or None.
+        goal_observer: told of each goal that changes, or None, see `jacaros.bdi.meta_events.observe_goals`.
+        on_finish: called with each intention that ends with goals on its stack, or None.
         probe: the test that looks on, or None.
         intentions_made: number of intentions so far.
         plans_made: number of plans so far, for the labels of those that have none.
@@ -143,6 +144,7 @@ class Circumstance:
         "namespace_properties",
         "next_count",
         "next_look",
+        "on_finish",
         "option_filter",
         "options",
         "outer_frame",
@@ -217,7 +219,8 @@ class Circumstance:
         self.pending_asks: dict[str, Any] = {}
         self.abandoned_asks: set[str | None] = set()
         self.meta = False
-        self.goal_observer: Callable[[str, str, object, str], None] | None = None
+        self.goal_observer: Callable[[str, str, int, int, str], None] | None = None
+        self.on_finish: Callable[[Intention], None] | None = None
         self.probe: Probe | None = None
         self.goal_conditions = False
         self.subplans = False
@@ -271,6 +274,8 @@ class Circumstance:
         """An intention is over; what it waits for is cancelled."""
         intention.dropped = True
         if intention.frames:
+            if self.on_finish is not None:
+                self.on_finish(intention)
             intention.frames.clear()
         if intention.handlers:
             intention.handlers.clear()

@@ -132,7 +132,7 @@ def _begin(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool
     if frame[PLAN].atomic:
         agent.atomic, agent.atomic_over = intention, False
     if agent.meta:
-        meta_events.goal_state(agent, goal, annotations, "executing")
+        meta_events.frame_state(agent, intention, frame, "executing")
     agent.make_ready(intention)
     return True
 
@@ -222,7 +222,7 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
     ):
         frames[-1] = frame
         if agent.meta:
-            meta_events.observe(agent, caller[GOAL], "replaced")
+            meta_events.observe(agent, intention, caller, "replaced")
         if agent.atomic is intention and not intention.is_atomic():
             agent.atomic_over = True
     else:
@@ -230,7 +230,7 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
     if plan.atomic:
         agent.atomic, agent.atomic_over = intention, False
     if agent.meta and trigger.kind and not trigger.failing:
-        meta_events.goal_state(agent, frame[GOAL], frame[2], "executing")
+        meta_events.frame_state(agent, intention, frame, "executing")
     return len(frames) <= agent.goal_depth or has_room(agent, intention)
 
 

@@ -30,24 +30,32 @@ class FailureReason:
     Attributes:
         terms: ``error(..)``, ``error_msg(..)`` and what else was given.
         goal_annotations: those of the goal that failed.
+        goal_number: by which observers know that goal, when it had no plan and so no frame on the stack.
         goals: those of the intention that was lost, as people read them, the one that failed first; noted when it ends.
         candidates: of a goal without applicable plan, the plans that there were and where their contexts fail, as lines for
             people; noted at the same time.
     """
 
-    __slots__ = ("_made", "_place", "candidates", "goal_annotations", "goals", "terms")
+    __slots__ = ("_made", "_place", "candidates", "goal_annotations", "goal_number", "goals", "terms")
 
-    def __init__(self, terms: tuple[Term, ...], place: Any, goal_annotations: Any = ()) -> None:
+    def __init__(
+        self,
+        terms: tuple[Term, ...],
+        place: Any,
+        goal_annotations: Any = (),
+        goal_number: int | None = None,
+    ) -> None:
         self.terms = terms
         self._place = place
         self.goal_annotations = goal_annotations
+        self.goal_number = goal_number
         self.goals: tuple[str, ...] = ()
         self.candidates: tuple[str, ...] = ()
         self._made: tuple[Term, ...] | None = None
 
-    def with_goal(self, annotations: Any) -> "FailureReason":
+    def with_goal(self, annotations: Any, number: int | None = None) -> "FailureReason":
         """The same reason, for the failure event of another goal."""
-        return FailureReason(self.terms, self._place, annotations)
+        return FailureReason(self.terms, self._place, annotations, number)
 
     def annotations(self) -> tuple[Term, ...]:
         """All annotations, sorted."""

@@ -29,9 +29,9 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         else:
             frames.pop()
         if agent.meta and trigger.kind:
-            why = "recovered" if trigger.failing else ""
-            meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved", why=why)
-            meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
+            meta_events.observe(agent, intention, frame, "recovered" if trigger.failing else "achieved")
+            meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved")
+            meta_events.frame_state(agent, intention, frame, "finished")
         if agent.atomic is intention and not intention.is_atomic():
             agent.atomic_over = True
     agent.finish(intention)

@@ -52,6 +52,7 @@ def fork(agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ..
         agent.make_ready(branch)
         if agent.atomic is parent:
             agent.atomic = branch
+    parent.frames.clear()  # its goals are pursued in the branches
     agent.finish(parent)
     return SUSPENDED
 
@@ -108,4 +109,6 @@ def _drop_branches(agent: Circumstance, point: Fork, survivor: Intention) -> Non
     point.open.clear()
     for other in list(agent.alive.values()):
         if other is not survivor and any(fork_point is point for fork_point, _ in other.forks):
+            while other.forks[-1][0] is not point:
+                other.forks = other.forks[:-1]
             agent.finish(other)

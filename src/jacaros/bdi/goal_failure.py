@@ -7,10 +7,12 @@ from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
 from jacaros.bdi.failure_reason import FailureReason
 from jacaros.bdi.forks import branch_failed
-from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Intention
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
 from jacaros.terms.values import atom
 
 _HAS_FAILURE_PLAN = atom("has_failure_plan")
+_Unplanned = tuple[tuple[Any, ...], Any, int]
+"""A goal without a frame, its annotations, and the number by which observers know it."""
 
 
 def unplanned(
@@ -42,53 +44,67 @@ def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
     if goal[0].failing:
         # Handlers of handlers without end: nobody is left who could deal with it.
         intention.handlers.clear()
+        observe_failed(agent, intention, 1, reason)
         del intention.frames[1:]
-    return fail_goal(agent, intention, goal, annotations, reason)
+    return fail_goal(agent, intention, goal, annotations, reason, frame[SERIAL])
 
 
 def fail_goal(
-    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any, reason: FailureReason
+    agent: Circumstance,
+    intention: Intention,
+    goal: tuple[Any, ...],
+    annotations: Any,
+    reason: FailureReason,
+    number: int = -1,
 ) -> Posted | None:
-    """A goal that has no frame failed: post its handler, or look further down."""
+    """A goal that has no frame failed: post its handler, or look further down.
+
+    *number* is that of the frame that it had, by which observers know it.
+    """
     trigger = goal[0]
+    if number < 0:
+        agent.trail.serial += 1
+        number = agent.trail.serial
     if trigger.on_fail is not None and subplans.handles(
         agent, intention, len(intention.frames), trigger.on_fail
     ):
         intention.handlers.append(len(intention.frames))
         if agent.meta:
-            _tell(agent, goal, annotations, reason)
+            _tell_unplanned(agent, intention, (goal, annotations, number), reason)
+            meta_events.observe_goal(agent, intention, goal, number, "executing")
             meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
-        return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations))
-    return fail_intention(agent, intention, reason, goal, annotations)
+        return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations, number))
+    return fail_intention(agent, intention, reason, (goal, annotations, number))
 
 
 def fail_intention(
     agent: Circumstance,
     intention: Intention,
     reason: FailureReason,
-    goal: tuple[Any, ...] | None = None,
-    annotations: Any = (),
+    unplanned: _Unplanned | None = None,
 ) -> Posted | None:
     """The nearest handler down the stack takes over; without one the intention ends with a warning.
 
-    *goal* and *annotations* are those that failed, when they are not on the stack.
+    *unplanned* is the goal that failed, when it is not on the stack.
     """
     while intention.forks and not failure.has_handler(agent, intention, intention.forks[-1][0].depth):
+        depth = intention.forks[-1][0].depth
         if not branch_failed(agent, intention):
-            if agent.meta and goal is not None:
-                _tell(agent, goal, annotations, reason)
+            _tell_unplanned(agent, intention, unplanned, reason, over=True)
+            observe_failed(agent, intention, depth + 1, reason)
             agent.finish(intention)
             return None
     posted = failure.handler_event(agent, intention, reason)
     if posted is not None:
         if agent.meta:
-            if goal is not None:
-                _tell(agent, goal, annotations, reason)
-            _observe_inner(agent, intention, reason)
-            failed = intention.frames[intention.handlers[-1]]
-            _tell(agent, failed[GOAL], failed[2], reason)
-            meta_events.goal_state(agent, failed[GOAL], failed[2], "executing", _HAS_FAILURE_PLAN)
+            _tell_unplanned(agent, intention, unplanned, reason, over=True)
+            index = intention.handlers[-1]
+            observe_failed(agent, intention, index + 1, reason)
+            failed = intention.frames[index]
+            _tell(agent, intention, failed, reason)
+            meta_events.frame_state(agent, intention, failed, "executing", _HAS_FAILURE_PLAN)
         return posted
+    goal = None if unplanned is None else unplanned[0]
     if intention.on_failed is not None:
         lost_goals.note_goals(agent, intention, reason, goal)
         intention.on_failed(reason)
@@ -99,35 +115,54 @@ def fail_intention(
         if count:
             _tell_people(agent, lost_goals.loss(agent, intention, reason, goal), count)
     if agent.meta:
-        if goal is not None:
-            _tell(agent, goal, annotations, reason)
+        _tell_unplanned(agent, intention, unplanned, reason, over=True)
         _tell_failed(agent, intention, reason)
     agent.finish(intention)
     return None
 
 
+def _tell_unplanned(
+    agent: Circumstance,
+    intention: Intention,
+    unplanned: _Unplanned | None,
+    reason: FailureReason,
+    over: bool = False,
+) -> None:
+    """Tell that a goal without a frame has failed, after it was found out why; *over*: no plan of its own saves it."""
+    if unplanned is None or not agent.meta:
+        return
+    goal, annotations, number = unplanned
+    why = lost_goals.why(reason) if agent.goal_observer is not None else ""
+    meta_events.observe_goal(agent, intention, goal, number, "failed", why)
+    meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
+    if over:
+        meta_events.observe_goal(agent, intention, goal, number, "finished")
+
+
 def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
     """All goals of an intention that nobody saved have failed, and are over."""
+    observe_failed(agent, intention, 0, reason)
     for frame in reversed(intention.frames):
         if not frame[GOAL][0].failing:
-            _tell(agent, frame[GOAL], frame[2], reason)
-            meta_events.goal_state(agent, frame[GOAL], frame[2], "finished")
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "failed", atom(reason.error()))
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
 
 
-def _observe_inner(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
-    """Report the goals that served the one whose failure is now handled: they failed with it."""
-    if agent.goal_observer is None:
-        return
-    why = lost_goals.why(reason)
-    for frame in reversed(intention.frames[intention.handlers[-1] + 1 :]):
-        if not frame[GOAL][0].failing:
-            meta_events.observe(agent, frame[GOAL], "failed", why)
-            meta_events.observe(agent, frame[GOAL], "finished")
+def observe_failed(
+    agent: Circumstance, intention: Intention, first: int, reason: FailureReason | None
+) -> None:
+    """Tell the observer that the goals of the frames from the one at *first* failed and are over."""
+    if agent.goal_observer is not None:
+        why = lost_goals.why(reason) if reason is not None else ""
+        for frame in reversed(intention.frames[first:]):
+            meta_events.observe(agent, intention, frame, "failed", why)
+            meta_events.observe(agent, intention, frame, "finished")
 
 
-def _tell(agent: Circumstance, goal: tuple[Any, ...], annotations: Any, reason: FailureReason) -> None:
+def _tell(agent: Circumstance, intention: Intention, frame: Frame, reason: FailureReason) -> None:
     why = lost_goals.why(reason) if agent.goal_observer is not None else ""
-    meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()), why)
+    meta_events.observe(agent, intention, frame, "failed", why)
+    meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "failed", atom(reason.error()))
 
 
 def _tell_people(agent: Circumstance, loss: lost_goals.Loss, count: int = 1) -> None:
@@ -147,4 +182,9 @@ def _lost_in_handler(
     else:
         agent.architecture.goal_lost()
         _tell_people(agent, lost_goals.lost_in_handler(agent, intention, goal, reason))
+    number = meta_events.failed_number(annotations)
+    if number is not None:
+        meta_events.observe_goal(agent, intention, goal, number, "failed")
+        meta_events.observe_goal(agent, intention, goal, number, "finished")
+    observe_failed(agent, intention, 0, reason)
     agent.finish(intention)

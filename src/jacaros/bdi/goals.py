@@ -130,8 +130,8 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
     """An intention vanishes without failure events; what it waits for is cancelled."""
     if agent.meta:
         for frame in intention.frames:
-            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
-            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
+            meta_events.frame_state(agent, intention, frame, "dropped")
+            meta_events.frame_state(agent, intention, frame, "finished")
     event = pending_event(agent, intention)
     if event is not None:
         remove_event(agent, event)
@@ -223,7 +223,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
     agent.called = True
     if agent.meta:
         for frame in intention.frames:
-            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "suspended")
+            meta_events.frame_state(agent, intention, frame, "suspended")
     event = pending_event(agent, intention)
     if event is not None and event in agent.events:
         agent.events.remove(event)
@@ -251,7 +251,7 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     intention.suspended = None
     if agent.meta:
         for frame in intention.frames:
-            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "resumed")
+            meta_events.frame_state(agent, intention, frame, "resumed")
     held = next((e for e in agent.suspended_events if e[EVENT_INTENTION] is intention), None)
     if held is not None:
         agent.suspended_events.remove(held)
@@ -313,6 +313,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         frame = intention.frames[index]
         ended = reason.interrupted(intention.frames[index:])
         release_bindings(frame[GOAL], frame[SERIAL])
+        goal_failure.observe_failed(agent, intention, index + 1, ended)
         cut(agent, intention, index)
         for queue in (agent.intentions, agent.crowd):
             if intention in queue:
@@ -320,7 +321,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         _post(
             agent,
             intention,
-            goal_failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], ended),
+            goal_failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], ended, frame[SERIAL]),
         )
     for event in goal_events(agent, goal):
         remove_event(agent, event)

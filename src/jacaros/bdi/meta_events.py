@@ -1,11 +1,13 @@
 """Changes of goal states: events for plans that ask for them (``^!g[state(S)]``), and news for an observer."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
-from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
+from jacaros.bdi.failure_reason import FailureReason
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
 from jacaros.compiler.literals import annotations_of_event, literal_of
 from jacaros.compiler.triggers import trigger
 from jacaros.terms.order import annotation_set
@@ -15,20 +17,17 @@ from jacaros.terms.values import Annotated, String, Term, atom, structure
 _NO_REASON = String("")
 
 
+GoalObserver = Callable[[str, str, int, int, str], None]
+"""Takes a goal's state, the goal as text, its number, that of its intention, and of a failure the reason for people."""
+
+
 def goal_state(
-    agent: Circumstance,
-    goal: tuple[Any, ...],
-    annotations: Any,
-    state: str,
-    reason: Term = _NO_REASON,
-    why: str = "",
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str, reason: Term = _NO_REASON
 ) -> None:
-    """Tell that a goal has got into another state, and an observer *why*; an event comes one cycle later, before
-    ordinary ones."""
+    """Tell plans that a goal has got into another state: the event comes one cycle later, before ordinary ones."""
     kind = goal[0]
     if not kind.kind or kind.operator == "^":
         return
-    observe(agent, goal, state, why)
     meta = trigger("^", kind.kind, kind.functor)
     if agent.selects[meta] is None:
         return
@@ -37,11 +36,49 @@ def goal_state(
     agent.do_soon(lambda: _insert(agent, event))
 
 
-def observe(agent: Circumstance, goal: tuple[Any, ...], state: str, why: str = "") -> None:
-    """Report a change of a goal to the observer only: plans get no event for it."""
-    kind = goal[0].kind
-    if agent.goal_observer is not None and kind:
-        agent.goal_observer(state, kind + text(literal_of(goal, ())), goal, why)
+def frame_state(
+    agent: Circumstance, intention: Intention, frame: Frame, state: str, reason: Term = _NO_REASON
+) -> None:
+    """Tell plans and the observer that the goal of a frame has got into another state."""
+    observe(agent, intention, frame, state)
+    goal_state(agent, frame[GOAL], frame[ANNOTATIONS], state, reason)
+
+
+def observe(agent: Circumstance, intention: Intention, frame: Frame, state: str, why: str = "") -> None:
+    """Tell the observer only."""
+    if agent.goal_observer is not None:
+        number = _goal_number(frame)
+        if number is not None:
+            observe_goal(agent, intention, frame[GOAL], number, state, why)
+
+
+def observe_goal(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], number: int, state: str, why: str = ""
+) -> None:
+    """Tell the observer only, of a goal that may have no frame."""
+    kind = goal[0]
+    if agent.goal_observer is not None and kind.kind and kind.operator != "^":
+        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), number, intention.id, why)
+
+
+def _goal_number(frame: Frame) -> int | None:
+    """The number of a frame's goal, the same in all branches of a fork; None when the goal has a frame below."""
+    if not frame[GOAL][0].failing:
+        number: int = frame[SERIAL]
+        return number
+    return failed_number(frame[ANNOTATIONS])
+
+
+def failed_number(annotations: Any) -> int | None:
+    """Of a failure event, the number of the goal that failed without having got a frame."""
+    return annotations.goal_number if isinstance(annotations, FailureReason) else None
+
+
+def observe_rest(agent: Circumstance, intention: Intention) -> None:
+    """Tell the observer that goals are over because their intention is, with those of a fork's branch only."""
+    first = intention.forks[-1][0].depth + 1 if intention.forks else 0
+    for frame in reversed(intention.frames[first:]):
+        observe(agent, intention, frame, "finished")
 
 
 def post_new_goal(agent: Circumstance, event: Event) -> None:
@@ -55,7 +92,7 @@ def top_goal_state(agent: Circumstance, intention: Intention, state: str, reason
     """The same for the topmost goal of an intention."""
     for frame in reversed(intention.frames):
         if frame[GOAL][0].kind and not frame[GOAL][0].failing:
-            goal_state(agent, frame[GOAL], frame[ANNOTATIONS], state, reason)
+            frame_state(agent, intention, frame, state, reason)
             return
 
 
@@ -69,11 +106,13 @@ def _insert(agent: Circumstance, event: Event) -> None:
     agent.events.insert(place, event)
 
 
-def observe_goals(agent: Circumstance, observer: Callable[[str, str, object, str], None]) -> None:
-    """Have an observer told of every change of a goal.
+def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
+    """Have an observer told of every change of a goal that has begun.
 
-    It gets the state (``executing``, ``achieved``, ``failed``, ``suspended``, ``resumed``, ``dropped``, ``replaced`` …),
-    the goal as text, an object that is the same for all news of one goal, and for a failure its reason as people read
-    it."""
+    The states are ``executing``, ``waiting``, ``suspended``, ``resumed``, ``achieved``, ``failed``, ``recovered``,
+    ``dropped``, ``replaced``, and last ``finished``.  A goal keeps its number when its variables get values, and in all
+    branches of a fork.
+    """
     agent.goal_observer = observer
+    agent.on_finish = partial(observe_rest, agent)
     agent.meta = agent.special = agent.called = True

@@ -3,7 +3,7 @@
 from jacaros.bdi import meta_events
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import EVENT_INTENTION, Event
-from jacaros.bdi.intention import ANNOTATIONS, GOAL, Intention
+from jacaros.bdi.intention import GOAL, Intention
 
 
 def pending_event(agent: Circumstance, intention: Intention) -> Event | None:
@@ -41,8 +41,8 @@ def achieve(agent: Circumstance, intention: Intention, index: int) -> None:
     """Cut a stack at a goal that ends as achieved; the goals that served it are dropped."""
     if agent.meta:
         for place, frame in reversed(list(enumerate(intention.frames))[index:]):
-            if not frame[GOAL][0].failing:
-                state = "achieved" if place == index else "dropped"
-                meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], state)
-                meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
+            state = "achieved" if place == index else "dropped"
+            tell = meta_events.observe if frame[GOAL][0].failing else meta_events.frame_state
+            tell(agent, intention, frame, state)
+            tell(agent, intention, frame, "finished")
     cut(agent, intention, index)

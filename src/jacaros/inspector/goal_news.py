@@ -12,15 +12,12 @@ from jacaros.mas.agent_host import AgentHost
 Tell = Callable[[dict[str, object]], None]
 
 _OPEN = {"executing": "pursued", "resumed": "resumed", "suspended": "suspended"}
-_OVER = ("achieved", "failed", "dropped", "recovered", "replaced")
+_OVER = ("achieved", "dropped", "recovered", "replaced")
 _AT_WORK = ("pursued", "resumed")
-_KEPT = 10_000
-"""Goals whose end is waited for; the oldest are forgotten, for instance if a plan for their failure never ends."""
 
 
 @dataclass(slots=True)
 class _Goal:
-    which: object
     number: int
     state: str
 
@@ -28,50 +25,53 @@ class _Goal:
 class GoalNews:
     """Tells watchers of goals, from what minds tell of them.
 
-    A mind tells that it works for a goal whenever a step of that has ended.  Goals that are open are kept, so that no
-    other one can take their identity: numbers are the same in each run with one seed.
+    Goals are numbered in the order in which they begin: the numbers are the same in each run with one seed.
 
     Args:
         tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
             ``dropped``, ``recovered``: a plan for its failure has ended, ``replaced``: by the last goal of its plan, a tail
-            call), ``id``, counted from 1, and of a failure ``why``.  A goal that failed and has a plan for its failure
-            is pursued again under its number.
+            call), ``id``, counted from 1, ``intention``, the number of the stack of goals that it is on, and of a failure
+            ``why``.  A goal that failed and has a plan for its failure is pursued again under its number.
     """
 
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
         self._numbers = count(1)
-        self._goals: dict[tuple[str, int], _Goal] = {}  # by agent and identity
+        self._goals: dict[tuple[str, int], _Goal] = {}
+        """The open ones, by agent and the mind's number."""
+        self._newest: dict[str, int] = {}
+        """By agent, the largest number of the mind's so far."""
 
     def listen(self, host: AgentHost) -> None:
         """Hear of the goals of an agent from now on; agents written in Python have none."""
         if isinstance(host.mind, Agent):
             observe_goals(host.mind, partial(self, host.name))
 
-    def __call__(self, agent: str, state: str, goal: str, which: object, why: str = "") -> None:
+    def __call__(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
         """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""
-        key = (agent, id(which))
-        known = self._goals.get(key)
-        if state == "finished":  # goals that were achieved are gone already
-            if known is not None and known.state == "failed":
-                del self._goals[key]
+        if not goal.startswith("!"):
+            return
+        known = self._goals.get((agent, which))
+        if state == "finished":
+            if known is None:
                 return
-            state = "recovered"
-        elif state == "achieved" and why == "recovered":
-            state, why = "recovered", ""
-        if not goal.startswith("!") or (state not in _OPEN and state not in _OVER):
+            if known.state == "failed":
+                del self._goals[agent, which]
+                return
+            state = "dropped"  # its intention is over, and nobody has told anything else of it
+        if state not in _OPEN and state not in _OVER and state != "failed":
             return
         shown = _OPEN.get(state, state)
         if known is None:
-            if state == "recovered":
+            # What is told of a goal that is over is no news, nor is the end of one that nobody saw begin.
+            if state not in _OPEN and (state != "failed" or which <= self._newest.get(agent, 0)):
                 return
-            known = self._goals[key] = _Goal(which, next(self._numbers), "")
-            if len(self._goals) > _KEPT:
-                del self._goals[next(iter(self._goals))]
+            known = self._goals[agent, which] = _Goal(next(self._numbers), "")
+            self._newest[agent] = max(which, self._newest.get(agent, 0))
         is_news = known.state != shown and not (known.state in _AT_WORK and shown in _AT_WORK)
         known.state = shown
         if is_news:
-            told = {"agent": agent, "goal": goal, "state": shown, "id": known.number}
+            told = {"agent": agent, "goal": goal, "state": shown, "id": known.number, "intention": intention}
             self._tell({**told, "why": why} if why else told)
-        if state in _OVER and state != "failed":  # one that failed may still be recovered
-            del self._goals[key]
+        if state in _OVER:
+            del self._goals[agent, which]

@@ -1,12 +1,9 @@
-"""Reasoning cycles: fuel, depth, turns, and what observers are told of goals."""
+"""Reasoning cycles: fuel, depth, and turns."""
 
 from pathlib import Path
 
 import pytest
 from recording_host import mind, printed
-
-from jacaros.bdi.meta_events import observe_goals
-from jacaros.inspector.goal_news import GoalNews
 
 CASES = Path(__file__).parents[2] / "conformance"
 
@@ -56,23 +53,6 @@ def test_ten_thousand_nested_goals_need_no_python_recursion() -> None:
 
 def test_a_rule_a_hundred_thousand_levels_deep_needs_no_python_recursion() -> None:
     assert printed("n(0). n(X) :- X > 0 & n(X-1). !s. +!s : n(100000) <- .print(deep).") == ["deep"]
-
-
-def test_an_observer_hears_of_every_change_of_a_goal() -> None:
-    host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
-    heard: list[tuple[str, str]] = []
-    observe_goals(host.agent, lambda state, goal, number, why: heard.append((state, goal)))
-    host.run()
-    states = [state for state, goal in heard if goal == "!a"]
-    assert states == ["executing", "waiting", "executing", "suspended"]
-    assert [state for state, goal in heard if goal == "!b"] == [
-        "pending",
-        "executing",
-        "failed",
-        "executing",
-        "achieved",
-        "finished",
-    ]
 
 
 def test_a_goal_that_is_ended_is_told_to_be_achieved_and_finished() -> None:
@@ -306,26 +286,3 @@ def test_a_literal_can_be_taken_apart_without_its_namespace() -> None:
 +!go <- n::a(1)[x] =.. [F, T, A]; a =.. [G, [], []]; .print(F, T, A, G); L = [b, [2], [y]]; b(2)[y] =.. L.
 """
     assert printed(program) == ["a[1][x]a"]
-
-
-def goals_at_the_end(program):
-    """The last text and state of each goal of a program, by number."""
-    host, last = mind(program), {}
-    news = GoalNews(lambda goal: last.update({goal["id"]: f"{goal['state']} {goal['goal']}"}))
-    observe_goals(host.agent, lambda *change: news("bob", *change))
-    host.run()
-    return list(last.values())
-
-
-def test_a_goal_whose_variables_get_values_stays_one_goal():
-    assert goals_at_the_end("!a. +!a <- !ask(X). +!ask(X) <- X = 3.") == ["achieved !a", "achieved !ask(3)"]
-
-
-def test_a_goal_that_a_tail_call_replaces_ends():
-    program = "!loop(1). +!loop(N) : N < 3 <- !loop(N + 1). +!loop(_)."
-    assert goals_at_the_end(program) == ["replaced !loop(1)", "replaced !loop(2)", "achieved !loop(3)"]
-
-
-def test_goals_below_a_handled_failure_failed_and_the_handled_one_recovered():
-    program = "!try. +!try <- !inner. -!try. +!inner <- .fail."
-    assert goals_at_the_end(program) == ["recovered !try", "failed !inner"]

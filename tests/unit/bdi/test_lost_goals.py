@@ -146,7 +146,7 @@ def test_long_terms_and_deep_stacks_are_cut() -> None:
 def test_an_observer_hears_error_place_step_and_reason() -> None:
     host = mind('!a.\n+!a <- .fail(wet, error_msg("ouch")).')
     heard: list[str] = []
-    observe_goals(host.agent, lambda state, goal, number, why: heard.append(why) if why else None)
+    observe_goals(host.agent, lambda state, goal, number, intention, why: heard.append(why) if why else None)
     host.run()
     assert heard == ["internal_action, ouch (tester.asl:2)\nstep: .fail(...)\nreason: wet"]
 
