@@ -1,16 +1,20 @@
 """What ticks a tree: on the run's clock, and as soon as something has happened."""
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.trees import BehaviourTree
 
+from jacaros.behaviour_trees.act import Act
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
 from jacaros.env import Session
+from jacaros.env.session.account import Observer
 
+_ENDS = {Status.SUCCESS: "achieved", Status.FAILURE: "failed"}
 CLOSEST = 0.01
 """Seconds between two ticks at least: a tree whose own operations wake it must not hold time up."""
 
@@ -58,6 +62,7 @@ class TreeRunner:
         self._setup: dict[str, Any] = {**(setup or {}), "session": session, "wake": self.wake}
         self._running = self._due = self._ends = False
         self._waiting: asyncio.Future[None] | None = None
+        self._told: dict[Behaviour, None] = {}
 
     async def run(self, forever: bool = False) -> Status:
         """Set the tree up and tick it until its root is done.
@@ -100,7 +105,8 @@ class TreeRunner:
     async def _tick(self, forever: bool) -> None:
         while not self._ends:
             self._due = False
-            self.tree.tick()
+            with self._observed():
+                self.tree.tick()
             if self.tree.root.status is not Status.RUNNING and not forever:
                 return
             if self.period is not None:
@@ -143,4 +149,40 @@ class TreeRunner:
                 if behaviour.status is Status.RUNNING:
                     behaviour.stop(Status.INVALID)
         finally:
+            if self.session.observer is not None:
+                self._tell(self.session.observer)
             self.tree.shutdown()
+
+    @contextmanager
+    def _observed(self) -> Iterator[None]:
+        """Around a tick: who observes the session hears of the behaviours before the operations that they begin."""
+        tell = self.session.observer
+        if tell is None:
+            yield
+            return
+        told: list[tuple[str, str, object, str]] = []
+        self.session.observer = lambda *news: told.append(news)
+        try:
+            yield
+        finally:
+            self.session.observer = tell
+            self._tell(tell)
+            for news in told:
+                tell(*news)
+
+    def _tell(self, tell: Observer) -> None:
+        """Tell which behaviours run now, and how those ended that ran before."""
+        before, self._told = self._told, {}
+        for behaviour in reversed(list(self.tree.root.iterate())):  # parents come before their children
+            # Operations are told by the session, with their arguments and reasons.
+            if behaviour.status is Status.RUNNING and not isinstance(behaviour, Act):
+                self._told[behaviour] = None
+        for behaviour in reversed(before):
+            if behaviour not in self._told:
+                state = _ENDS.get(behaviour.status, "dropped")
+                tell(
+                    state, behaviour.name, behaviour, behaviour.feedback_message if state == "failed" else ""
+                )
+        for behaviour in self._told:
+            if behaviour not in before:
+                tell("executing", behaviour.name, behaviour, "")

@@ -58,9 +58,7 @@ class Watching:
             watchers.append(self._view)
         self._watch = watch_of(mas, watchers, world)
         self._watch.start()
-        news = GoalNews(partial(self._watch.event, "goal"))
-        for host in mas.directory:
-            news.listen(host)
+        GoalNews(partial(self._watch.event, "goal")).listen_to_all(mas.directory)
 
     def print(self, agent: str, text: str) -> None:
         """Show a line of an agent's output; a view that draws on the terminal shows it itself."""

@@ -8,6 +8,8 @@ from itertools import count
 from jacaros.bdi.agent import Agent
 from jacaros.bdi.meta_events import observe_goals
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.directory import Directory
+from jacaros.mas.python_agents.host import PythonAgentHost
 
 Tell = Callable[[dict[str, object]], None]
 
@@ -23,7 +25,7 @@ class _Goal:
 
 
 class GoalNews:
-    """Tells watchers of goals, from what minds tell of them.
+    """Tells watchers of goals, from what minds tell of them, and of the work of agents written in Python.
 
     Goals are numbered in the order in which they begin: the numbers are the same in each run with one seed.
 
@@ -31,7 +33,9 @@ class GoalNews:
         tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
             ``dropped``, ``recovered``: a plan for its failure has ended, ``replaced``: by the last goal of its plan, a tail
             call), ``id``, counted from 1, ``intention``, the number of the stack of goals that it is on, and of a failure
-            ``why``.  A goal that failed and has a plan for its failure is pursued again under its number.
+            ``why``.  A goal that failed and has a plan for its failure is pursued again under its number.  For an agent
+            written in Python the goals are its ``run``, its operations and the behaviours of its trees that run; all of
+            them are on one stack.
     """
 
     def __init__(self, tell: Tell) -> None:
@@ -42,15 +46,32 @@ class GoalNews:
         self._newest: dict[str, int] = {}
         """By agent, the largest number of the mind's so far."""
 
+    def listen_to_all(self, directory: Directory[AgentHost]) -> Callable[[], None]:
+        """Hear of the goals of all agents of a run, also of those that come later; gives what ends that."""
+        for host in directory:
+            self.listen(host)
+
+        def came(name: str, present: bool) -> None:
+            host = directory.find(name)
+            if present and host is not None:
+                self.listen(host)
+
+        return directory.watch(came)
+
     def listen(self, host: AgentHost) -> None:
-        """Hear of the goals of an agent from now on; agents written in Python have none."""
-        if isinstance(host.mind, Agent):
+        """Hear of the goals of an agent from now on."""
+        if isinstance(host, PythonAgentHost):
+            host.observe(_Work(self, host.name))
+        elif isinstance(host.mind, Agent):
             observe_goals(host.mind, partial(self, host.name))
 
     def __call__(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
         """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""
-        if not goal.startswith("!"):
-            return
+        if goal.startswith("!"):
+            self.take(agent, state, goal, which, intention, why)
+
+    def take(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
+        """Take what is told of anything that an agent pursues."""
         known = self._goals.get((agent, which))
         if state == "finished":
             if known is None:
@@ -75,3 +96,24 @@ class GoalNews:
             self._tell({**told, "why": why} if why else told)
         if state in _OVER:
             del self._goals[agent, which]
+
+
+class _Work:
+    """Numbers what one agent written in Python works at."""
+
+    def __init__(self, news: GoalNews, agent: str) -> None:
+        self._news, self._agent = news, agent
+        self._numbers = count(1)
+        self._at_work: dict[object, int] = {}
+
+    def __call__(self, state: str, text: str, which: object, why: str) -> None:
+        """Be told by the agent, see `jacaros.env.session.account.Observer`."""
+        if state == "executing":
+            self._at_work[which] = next(self._numbers)
+        number = self._at_work.get(which)
+        if number is None:
+            return
+        self._news.take(self._agent, state, text, number, 1, why)
+        if state != "executing":
+            self._news.take(self._agent, "finished", text, number, 1)
+            del self._at_work[which]

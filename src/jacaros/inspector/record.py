@@ -41,17 +41,8 @@ def record(
     recorder = Recorder(path, keep, lambda text: mas.system.console.log(f"warning: {text}", "warning"))
     watch = watch_of(mas.system, [recorder], mas.world)
     watch.start()
-    directory = mas.system.directory
     news = GoalNews(partial(watch.event, "goal"))
-    for host in directory:
-        news.listen(host)
-
-    def came(name: str, present: bool) -> None:
-        host = directory.find(name)
-        if present and host is not None:
-            news.listen(host)
-
-    ends = mas.on_print(watch.text), directory.watch(came)
+    ends = mas.on_print(watch.text), news.listen_to_all(mas.system.directory)
     try:
         yield recorder.recording if keep else None
     finally:

@@ -11,9 +11,9 @@ Events that the replay knows how to show:
 
 ========================  ==========================================================================
 ``goal``                  ``agent``, ``goal``, ``state``: pursued, suspended, resumed, achieved,
-                          failed, recovered, dropped or replaced (by a tail call); ``id`` tells goals apart;
-                          of a failure ``why``, in lines: error and place, step, terms for plans
-``plan``                  ``agent``, ``goal``, ``plan``: the plan chosen for the goal
+                          failed, recovered, dropped or replaced (by a tail call); ``id`` tells goals apart,
+                          ``intention`` the stacks they are on; of a failure ``why``, in lines: error and
+                          place, step, terms for plans
 events of the world       ``robot`` and what `jacaros.sim.ground_truth.Event` says: docked, undocked,
                           charging, charged, bump, collision, task, battery, ...
 ========================  ==========================================================================

@@ -31,6 +31,8 @@ _COLOURS = ("cyan", "magenta", "green", "yellow", "blue", "red")
 _PRINTS = 5
 _DOOR = ("▒", "bold yellow")
 _OPEN = ("pursued", "resumed", "suspended")
+_INTENTIONS = 4
+"""Rows for the intentions of one agent."""
 
 
 class Screen(io.TextIOBase):
@@ -94,7 +96,8 @@ class TerminalView:
         self._size = (0, 0)
         self._t = 0.0
         self._robots: Sequence[RobotView] = ()
-        self._goals: dict[tuple[str, str], str] = {}
+        self._goals: dict[tuple[str, object], tuple[str, object]] = {}
+        """Open goals by agent and id: what is shown, and the intention."""
         self._prints: deque[tuple[str, str]] = deque(maxlen=_PRINTS)
         self._drawn_at = wall()
         self._drawn_t = 0.0
@@ -140,11 +143,14 @@ class TerminalView:
             self._open[data["door"]] = kind == "door_opened"
         if kind != "goal":
             return
-        key = (str(data.get("agent", "")), str(data.get("goal", "")))
-        state = str(data.get("state", ""))
-        self._goals.pop(key, None)
-        if state in _OPEN:
-            self._goals[key] = state
+        goal, state = str(data.get("goal", "")), str(data.get("state", ""))
+        key = (str(data.get("agent", "")), data.get("id", goal))
+        if state not in _OPEN:
+            self._goals.pop(key, None)
+            return
+        if state == "pursued":
+            self._goals.pop(key, None)
+        self._goals[key] = (goal + (" (suspended)" if state == "suspended" else ""), data.get("intention"))
 
     def close(self) -> None:
         """Draw the end and leave the terminal; closing twice does no harm."""
@@ -195,13 +201,20 @@ class TerminalView:
         return Group(*rows)
 
     def _pursued(self) -> list[str]:
-        """What each agent pursues, the newest goal first: a row is cut off where the terminal ends."""
-        goals: dict[str, list[str]] = {}
-        for (agent, goal), state in self._goals.items():
-            goals.setdefault(agent, []).insert(0, goal + (" (suspended)" if state == "suspended" else ""))
-        if len(goals) == 1:
-            return [f"pursuing {', '.join(shown)}" for shown in goals.values()]
-        return [f"{agent} pursues {', '.join(shown)}" for agent, shown in sorted(goals.items())]
+        """A row for each intention of each agent, what it is at first: a row is cut off where the terminal ends."""
+        agents: dict[str, dict[object, list[str]]] = {}
+        for (agent, _), (goal, intention) in self._goals.items():
+            stacks = agents.setdefault(agent, {})
+            stack = stacks.pop(intention, [])
+            stacks[intention] = [goal, *stack]  # the one that was at work last is the last one
+        rows = []
+        for agent, stacks in sorted(agents.items()):
+            who = "pursuing" if len(agents) == 1 else f"{agent} pursues"
+            newest = list(reversed(stacks.values()))
+            rows += [f"{who} {' for '.join(stack)}" for stack in newest[:_INTENTIONS]]
+            if len(newest) > _INTENTIONS:
+                rows.append(f"{who} {len(newest) - _INTENTIONS} more")
+        return rows
 
     def _map(self) -> Text:
         self._fit()

@@ -90,7 +90,7 @@ class Watch:
             watcher.text(self.t(), agent, text)
 
     def event(self, kind: str, data: Mapping[str, Any]) -> None:
-        """Pass on something that happened now, such as ``goal`` or ``plan``."""
+        """Pass on something that happened now, such as ``goal``."""
         for watcher in self.watchers:
             watcher.event(self.t(), kind, data)
 

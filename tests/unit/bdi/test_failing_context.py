@@ -173,7 +173,7 @@ def test_nothing_is_searched_for_goals_that_are_saved(monkeypatch: pytest.Monkey
 def test_an_observer_hears_the_conjunct_of_a_lost_goal() -> None:
     host = mind("battery(12). !go.\n+!go : battery(B) & B > 20.")
     heard: list[str] = []
-    observe_goals(host.agent, lambda state, goal, number, why: heard.append(why) if why else None)
+    observe_goals(host.agent, lambda state, goal, number, intention, why: heard.append(why) if why else None)
     host.run()
     (why,) = heard
     error, plan = why.splitlines()

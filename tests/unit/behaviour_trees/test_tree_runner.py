@@ -8,7 +8,7 @@ import py_trees
 import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
-from py_trees.composites import Sequence
+from py_trees.composites import Selector, Sequence
 
 from jacaros.behaviour_trees import (
     Act,
@@ -329,3 +329,21 @@ def test_without_py_trees_the_cure_is_told():
         "ModuleNotFoundError: behaviour trees need py_trees, which is not installed: "
         "pip install 'jacaros[behaviour-trees]'"
     )
+
+
+def test_an_observer_hears_of_behaviours_and_operations_from_beginning_to_end(on_rails):
+    told = []
+
+    async def scene(rails):
+        rails.session.observer = lambda state, text, which, why: told.append((state, text, why))
+        far = Sequence("tour", memory=True, children=[Act("drive", 3), Act("drive", 30)])
+        await rails.runner(Selector("whatever", memory=True, children=[far, Timer(0.5)])).run()
+
+    on_rails(scene)
+    assert [news for news in told if news[0] == "executing"] == [
+        ("executing", text, "") for text in ("whatever", "tour", "drive(3)", "drive(30)", "0.5 s")
+    ]
+    ends = [(state, text) for state, text, _ in told if state != "executing"]
+    assert ends[:3] == [("achieved", "drive(3)"), ("failed", "drive(30)"), ("failed", "tour")]
+    assert sorted(ends[3:]) == [("achieved", "0.5 s"), ("achieved", "whatever")]
+    assert ("failed", "drive(30)", "a wall") in told

@@ -3,8 +3,11 @@
 import json
 from pathlib import Path
 
+import pytest
+
 import jacaros
 from jacaros import Mas
+from jacaros.cli.main import main
 from jacaros.inspector import record
 
 
@@ -40,3 +43,67 @@ def test_a_file_alone_is_not_kept_in_memory(tmp_path: Path) -> None:
 
     jacaros.run(main(), clock="fast")
     assert (tmp_path / "run.jsonl").is_file()
+
+
+PROJECT = """mas work {
+    agent worker: worker.py { join: w }
+    agent starter
+    workspace w { artifact wheels: Wheels }
+}"""
+WORKER = """from jacaros import Atom, OperationFailed, PythonAgent
+from jacaros.env import Artifact, operation
+
+
+class Wheels(Artifact):
+    @operation
+    async def roll(self, metres: int) -> None:
+        if metres > 5:
+            self.fail("too far", Atom("far"))
+        await self.sleep(metres)
+
+
+class Worker(PythonAgent):
+    async def run(self):
+        await self.act("roll", 2)
+        try:
+            await self.act("roll", 9)
+        except OperationFailed:
+            self.session.begin("roll", 5)
+            await self.sleep(1)
+"""
+
+
+def test_what_agents_in_python_work_at_and_agents_that_come_later_are_recorded(tmp_path: Path) -> None:
+    (tmp_path / "work.jcm").write_text(PROJECT)
+    (tmp_path / "worker.py").write_text(WORKER)
+    (tmp_path / "artifacts.py").write_text(WORKER)
+    (tmp_path / "starter.asl").write_text('!s. +!s <- .wait(100); .create_agent(late, "late.asl").')
+    (tmp_path / "late.asl").write_text("!l. +!l <- .wait(1).")
+    with pytest.raises(SystemExit) as ended:
+        main(
+            [
+                "run",
+                str(tmp_path / "work.jcm"),
+                "--clock",
+                "fast",
+                "--until-idle",
+                "--record",
+                str(tmp_path / "r"),
+            ]
+        )
+    written = [json.loads(line) for line in (tmp_path / "r").read_text().splitlines()]
+    goals = [line["data"] for line in written if line.get("event") == "goal"]
+    told = [(goal["state"], goal["goal"]) for goal in goals if goal["agent"] == "worker"]
+    assert told == [
+        ("pursued", "Worker.run"),
+        ("pursued", "roll(2)"),
+        ("achieved", "roll(2)"),
+        ("pursued", "roll(9)"),
+        ("failed", "roll(9)"),
+        ("pursued", "roll(5)"),
+        ("achieved", "Worker.run"),
+        ("achieved", "roll(5)"),
+    ]
+    assert [goal["why"] for goal in goals if goal["state"] == "failed"] == ["too far"]
+    assert [goal["state"] for goal in goals if goal["agent"] == "late"] == ["pursued", "achieved"]
+    assert not ended.value.code

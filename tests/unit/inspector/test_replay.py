@@ -157,7 +157,23 @@ def test_of_goals_that_a_plan_pursues_again_and_again_the_newest_are_shown(tmp_p
         r'<li class="(?:pursued|suspended)"><i></i><span>(.*?)</span><span class="state">', shown
     )
     goals = [re.sub("<[^>]*>", "", each).replace("&quot;", '"') for each in found]
-    assert goals == ["!start", '!round("a,b", 7)  and 7 before it', '!round("a,b", 8)', "!round(9)"]
+    assert goals == ["!round(9)", '!round("a,b", 8)', '!round("a,b", 7)  and 7 before it', "!start"]
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+def test_each_intention_has_a_card_that_begins_with_what_is_done_now(tmp_path: Path) -> None:
+    recorder = Recorder()
+    for number, (goal, intention) in enumerate((("!tour", 1), ("!watch", 2), ("!go", 1), ("!turn", 1))):
+        told = {"agent": "a", "goal": goal, "state": "pursued", "id": number, "intention": intention}
+        recorder.event(number * 0.1, "goal", told)
+    recorder.event(0.5, "goal", {**told, "state": "achieved"})
+    recorder.close()
+    page = tmp_path / "replay.html"
+    write_replay(recorder.recording, page)
+    cards = re.findall(r'<ul class="intention">(.*?)</ul>', dom(page, "t=2"))
+    assert [re.findall(r"<span>(.*?)</span>", card) for card in cards] == [["!go", "!tour"], ["!watch"]]
 
 
 @pytest.mark.browser

@@ -124,20 +124,32 @@ def test_without_a_world_there_are_goals_and_prints() -> None:
     assert rendered(view).splitlines()[1:] == ["pursuing !go", "[a] on the way"]
 
 
-def test_each_agent_has_a_row_of_goals_the_newest_first() -> None:
+def test_each_intention_has_a_row_that_begins_with_what_is_done_now() -> None:
     view = TerminalView(Console(file=io.StringIO(), force_terminal=True, width=40), Wall())
-    for agent in ("b", "a"):
-        for goal in (
-            "!patrol([north,east,south,west],100)",
-            "!watch_over(storehouse,by_night)",
-            "!visit(north)",
-        ):
-            view.event(0.0, "goal", {"agent": agent, "goal": goal, "state": "pursued"})
+
+    def tell(agent: str, number: int, goal: str, intention: int, state: str = "pursued") -> None:
+        told = {"agent": agent, "goal": goal, "state": state, "id": number, "intention": intention}
+        view.event(0.0, "goal", told)
+
+    tell("b", 1, "!keep_charged", 3)
+    tell("a", 2, "!patrol([north,east,south,west],100)", 1)
+    tell("a", 3, "!watch_over(storehouse,by_night)", 2)
+    tell("a", 4, "!visit(north)", 1)
+    tell("a", 4, "!visit(north)", 1, "suspended")
+    tell("a", 5, "!visit(east)", 1)
+    tell("a", 5, "!visit(east)", 1, "achieved")
+    for number in range(6, 10):
+        tell("b", number, f"!wait({number})", number)
     view.frame(1.0, [])
     view.close()
     assert rendered(view).splitlines()[1:] == [
-        "a pursues !visit(north), !watch_over(storehouse,by_night), !patrol([north,east,…",
-        "b pursues !visit(north), !watch_over(storehouse,by_night), !patrol([north,east,…",
+        "a pursues !visit(north) (suspended) for !patrol([north,east,south,west],100)",
+        "a pursues !watch_over(storehouse,by_night)",
+        "b pursues !wait(9)",
+        "b pursues !wait(8)",
+        "b pursues !wait(7)",
+        "b pursues !wait(6)",
+        "b pursues 1 more",
     ]
 
 

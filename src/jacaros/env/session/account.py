@@ -1,7 +1,12 @@
-"""How a session tells what it waits for."""
+"""How a session tells what it waits for, and what it is at."""
 
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Protocol
+
+Observer = Callable[[str, str, object, str], None]
+"""Takes the state of something that is pursued (``executing``, ``achieved``, ``failed``, ``dropped``), its text, an object
+that is the same for all news of it, and of a failure the reason as people read it."""
 
 
 class Account(Protocol):

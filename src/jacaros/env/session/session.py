@@ -13,11 +13,11 @@ from jacaros.env.errors import OperationFailed, UnknownArtifact, WorkspaceError,
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import Workspace
-from jacaros.env.session.account import Account
+from jacaros.env.session.account import Account, Observer
 from jacaros.env.session.operation import SessionOperation
 from jacaros.env.session.perception import Perceiving
 from jacaros.env.session.workspaces import SessionWorkspaces
-from jacaros.env.values import Out, Structure, plain
+from jacaros.env.values import Atom, Out, Structure, plain, text
 
 
 class Session(Perceiving):
@@ -34,6 +34,9 @@ class Session(Perceiving):
         home: full path of the workspace that it begins in.
         account: told what it waits for.
 
+    Attributes:
+        observer: told of the operations that begin from now on, or None.
+
     Raises:
         UnknownWorkspace: there is none at *home*.
     """
@@ -45,6 +48,7 @@ class Session(Perceiving):
         self._workspaces = SessionWorkspaces(environment, home)
         self._watched: dict[Workspace, Callable[[], None]] = {}
         self._under_way: dict[SessionOperation, None] = {}
+        self.observer: Observer | None = None
 
     # ---- workspaces
 
@@ -284,6 +288,8 @@ class Session(Perceiving):
         self._under_way[handle] = None
         self._account.begin()
         handle.on_end(self._ended)
+        if self.observer is not None:
+            self._observe(handle, given)
         try:
             target = self._target(operation, len(given), artifact, workspace)
         except OperationFailed as failure:
@@ -297,6 +303,27 @@ class Session(Perceiving):
         """Cancel all operations under way."""
         for handle in tuple(self._under_way):
             handle.cancel()
+
+    def _observe(self, handle: SessionOperation, given: tuple[object, ...]) -> None:
+        def tell(state: str, why: str = "") -> None:
+            if self.observer is not None:
+                self.observer(state, call, handle, why)
+
+        shown = ", ".join("_" if isinstance(each, Out) else text(each, quoted=True) for each in given)
+        call = f"{handle.operation}({shown})" if given else handle.operation
+
+        def ended(handle: SessionOperation) -> None:
+            outcome = handle.outcome
+            assert outcome is not None
+            if outcome.ok:
+                tell("achieved")
+            elif outcome.reason == Atom("cancelled"):
+                tell("dropped")
+            else:
+                tell("failed", outcome.message or "")
+
+        tell("executing")
+        handle.on_end(ended)
 
     def _ended(self, handle: SessionOperation) -> None:
         del self._under_way[handle]

@@ -1,7 +1,8 @@
 """What runs an agent written in Python: its tasks, its messages, its place in the environment."""
 
 import asyncio
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from jacaros.asl.nodes import Literal as LiteralNode
@@ -10,6 +11,7 @@ from jacaros.bdi.options import Options
 from jacaros.bdi.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.env.errors import WorkspaceError
+from jacaros.env.session.account import Observer
 from jacaros.env.session.session import Session
 from jacaros.errors import JacarosError
 from jacaros.extension.literal import Literal
@@ -60,6 +62,7 @@ class PythonAgentHost(AgentHost):
         self._agent = agent
         self._handlers = Handlers(agent, self.mail, self.attendance, self.start)
         self._session: Session | None = None
+        self._observer: Observer | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
         self._leaving = self._closed = False
         agent._host = self
@@ -68,6 +71,12 @@ class PythonAgentHost(AgentHost):
     def agent(self) -> PythonAgent:
         """The object of the user's class."""
         return self._agent
+
+    def observe(self, observer: Observer) -> None:
+        """Have *observer* told of the agent's work from now on: its ``run``, its operations, and what its trees are at."""
+        self._observer = observer
+        if self._session is not None:
+            self._session.observer = observer
 
     # ---- its life
 
@@ -80,9 +89,27 @@ class PythonAgentHost(AgentHost):
         self.start(self._main(self._handlers.wanted))
 
     async def _main(self, stays: bool) -> None:
-        await self._agent.run()
+        with self._observed():
+            await self._agent.run()
         if not stays and not self._leaving:
             self.start(self._when_all_is_over())
+
+    @contextmanager
+    def _observed(self) -> Iterator[None]:
+        tell, told = self._observer, f"{type(self._agent).__name__}.run"
+        if tell is None:
+            yield
+            return
+        tell("executing", told, self, "")
+        try:
+            yield
+        except asyncio.CancelledError:
+            tell("dropped", told, self, "")
+            raise
+        except BaseException as error:
+            tell("failed", told, self, said(error))
+            raise
+        tell("achieved", told, self, "")
 
     async def _when_all_is_over(self) -> None:
         """Refuse messages as soon as nothing of the agent is left to read them."""
@@ -212,6 +239,7 @@ class PythonAgentHost(AgentHost):
                     "file gives it one)"
                 )
             self._session = self.open_session()
+            self._session.observer = self._observer
             self._handlers.listen(self._session)
         return self._session
 
