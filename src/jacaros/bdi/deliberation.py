@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.bdi import meta_events, option_selection, rescue, subplans
+from jacaros.bdi import lost_goals, meta_events, option_selection, rescue, subplans
 from jacaros.bdi.circumstance import CROWD, Circumstance
 from jacaros.bdi.event import EVENT_INTENTION, Event
 from jacaros.bdi.goal_failure import has_room, too_deep, unplanned
@@ -45,6 +45,8 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
             if trail:
                 trail.clear()
             if frame is None and not kind.kind and agent.usual_events:
+                if select is not None and agent.options.verbose > 1:
+                    _log_inapplicable(agent, goal, annotations)
                 continue
             if frame is None or frame[4].atomic or kind.failing:
                 if _begin(agent, event, frame, False):
@@ -117,6 +119,8 @@ def _begin(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool
     trigger = goal[0]
     if frame is None:
         if trigger.kind == "" or trigger.operator == "^":
+            if agent.options.verbose > 1 and not reacted and agent.selects[trigger] is not None:
+                _log_inapplicable(agent, goal, annotations)
             if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
                 agent.requeued.append(event)
             return reacted
@@ -135,6 +139,11 @@ def _begin(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool
         meta_events.frame_state(agent, intention, frame, "executing")
     agent.make_ready(intention)
     return True
+
+
+def _log_inapplicable(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> None:
+    """Log why no plan was taken for an event, for an agent whose details are wanted."""
+    agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())
 
 
 def _react(agent: Circumstance, event: Event) -> bool:
@@ -242,6 +251,8 @@ def go_without(
     False when the intention goes no further now.
     """
     if frame is None and goal[0].kind == "":
+        if agent.options.verbose > 1 and agent.selects[goal[0]] is not None:
+            _log_inapplicable(agent, goal, annotations)
         return True
     posted = unplanned(agent, intention, goal, annotations) if frame is None else too_deep(agent, intention)
     if posted is None:

@@ -99,6 +99,11 @@ def lost_in_handler(
     return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.span())
 
 
+def inapplicable(agent: Circumstance, event: tuple[Any, ...], annotations: Any) -> Loss:
+    """What is told of an event whose plans are not applicable."""
+    return Loss(f"no applicable plan for {shown_goal(event)}", _candidates(agent, event, annotations), None)
+
+
 def lost_question(asker: str, goal: tuple[Any, ...], reason: FailureReason) -> Loss | None:
     """What is told of a question from *asker* whose plan failed; its goals were noted in the reason.
 

@@ -4,6 +4,7 @@ from recording_host import mind
 
 from jacaros.bdi.act import Completion
 from jacaros.bdi.meta_events import observe_goals
+from jacaros.bdi.options import Options
 from jacaros.terms.values import String, structure
 
 
@@ -187,3 +188,28 @@ def test_a_question_without_applicable_plan_is_answered_without_a_warning() -> N
 
 def test_a_question_that_a_failure_plan_saves_is_not_told() -> None:
     assert told(ASKS + "+?door(X) <- .fail.\n-?door(X) <- X = shut.") == []
+
+
+def details(program: str, verbose: int = 2) -> list[str]:
+    """What an agent logs as details, line by line."""
+    host = mind(program, options=Options(verbose=verbose))
+    host.run()
+    return [line.strip() for level, logged in host.logged for line in logged.splitlines() if level == "debug"]
+
+
+WHY_NOT = [
+    "no applicable plan for +alarm(fire)",
+    "does not fit: +alarm(T) (tester.asl:1), stops at `zones(T)` with T=fire",
+]
+
+
+def test_details_tell_why_no_plan_was_taken_for_an_event() -> None:
+    plan = "+alarm(T) : zones(T).\n"
+    assert details(plan + "alarm(fire).") == WHY_NOT
+    assert details(plan + "!go.\n+!go <- +alarm(fire).") == WHY_NOT
+    assert details(plan + "!go.\n+!go <- +alarm(fire). { +other. }") == WHY_NOT
+
+
+def test_without_details_events_without_applicable_plan_are_skipped_in_silence() -> None:
+    assert details("+alarm(T) : zones(T). alarm(fire).", verbose=1) == []
+    assert details("+other. alarm(fire).") == []

@@ -245,6 +245,7 @@ class Goal(PursuedGoal):
 
     def _tell_failure(self) -> None:
         if not self._awaited:
+            self._mind.architecture.goal_lost()
             what, reason = f"the goal !{self._written}", self._watched.reason
             told = loss_of(what, reason).text() if reason is not None else f"{what} failed"
             self._mind.architecture.log("warning", told)
@@ -263,7 +264,10 @@ class Goal(PursuedGoal):
         others = ", ".join(text(term) for term in reason.terms if not _is_message(term))
         told = f"{who} failed{f': {message}' * bool(message)}{f' ({others})' * bool(others)}"
         told += f", in {where}" * bool(where and where != _RUN_TIME)
-        return GoalFailed(told, self._written, message, tuple(map(to_value, reason.annotations())))
+        failed = GoalFailed(told, self._written, message, tuple(map(to_value, reason.annotations())))
+        for candidate in reason.candidates:
+            failed.add_note(candidate)
+        return failed
 
 
 class _Ends:

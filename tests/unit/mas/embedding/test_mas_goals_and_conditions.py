@@ -127,6 +127,12 @@ def test_a_failed_goal_raises_with_its_reasons() -> None:
         assert Structure("blocked", (Atom("wall"),)) in failed.value.reasons
         assert failed.value.reason("blocked") == "wall"
         assert failed.value.reason("other") is None
+        mas.add_agent("eve", "+!open(D) : shut(D).")
+        with pytest.raises(GoalFailed) as failed:
+            await mas.agent("eve").achieve("open(hatch)")
+        assert failed.value.__notes__ == [
+            "does not fit: +!open(D) (<eve>:1), stops at `shut(D)` with D=hatch"
+        ]
         with pytest.raises(GoalFailed, match="no relevant plan for !missing"):
             await bob.achieve("missing")
         with pytest.raises(GoalFailed) as failed:
