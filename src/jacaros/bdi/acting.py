@@ -15,7 +15,7 @@ from jacaros.bdi.intention import Frame, Intention
 from jacaros.bdi.internal_action import Crashed
 from jacaros.bdi.rescue import note_lack_of_memory
 from jacaros.bdi.waiting import OWN_SUSPENSION
-from jacaros.compiler.outcomes import SUSPENDED, Fail
+from jacaros.compiler.outcomes import FAILED, SUSPENDED, Fail
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF
@@ -65,6 +65,8 @@ def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
         raise
     except Exception as fault:
         goal = _failed(agent, intention, fault)
+    if goal is FAILED:
+        goal = _failed(agent, intention)
     agent.trail.clear()
     return goal
 
@@ -73,7 +75,7 @@ def _pursue(agent: Circumstance, intention: Intention, goal: Any, fuel: int) -> 
     """A step has posted a goal or event; True when the intention goes on with it at once."""
     annotations: Any = BY_SELF
     if goal.__class__ is Posted:
-        goal, annotations = goal
+        goal, annotations = goal.goal, goal.annotations
     _announce(agent, intention, goal, annotations)
     if agent.urgency is not None:
         agent.urgency.note_goal(goal[0])
@@ -94,7 +96,7 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
     cycle to go on, which with empty queues comes to the same.
     """
     agent.current = intention
-    frames, trail, selects = intention.frames, agent.trail, agent.selects
+    frames, handlers, trail, selects = intention.frames, intention.handlers, agent.trail, agent.selects
     events, intentions = agent.events, agent.intentions
     option_filter, depth, tail_calls = agent.option_filter, agent.goal_depth, agent.options.tail_calls
     urgency = agent.urgency
@@ -113,18 +115,24 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
                 if goal is None:
                     break
             if trail:
-                trail.clear()
+                if goal is FAILED:
+                    undo(trail, 0)
+                else:
+                    trail.clear()
         if agent.stopped or intention.dropped:
             break
 
         if goal is None:
             if frame[0] is None:
-                if intention.handlers or agent.special:
+                if agent.special:
                     if not pop_finished(agent, intention):
                         break
                 else:
-                    while frames and frames[-1][0] is None:
-                        frames.pop()
+                    while frames and (top := frames[-1])[0] is None:
+                        if handlers and top[1][0].failing:
+                            del frames[handlers.pop() :]
+                        else:
+                            frames.pop()
                     if not frames:
                         if intention.waiting is None:
                             # `finish`, written out.
@@ -142,13 +150,17 @@ def execute_plainly(agent: Circumstance, intention: Intention, fuel: int) -> int
             frame = frames[-1]
             continue
 
-        if goal is SUSPENDED:
-            if agent.meta:
-                _tell_waiting(agent, intention)
-            break
         annotations: Any = BY_SELF
-        if goal.__class__ is Posted:
-            goal, annotations = goal
+        if goal.__class__ is not tuple:
+            if goal is SUSPENDED:
+                if agent.meta:
+                    _tell_waiting(agent, intention)
+                break
+            if goal is FAILED:
+                goal = fail_intention(agent, intention, failure.step_failure(frames[-1]))
+                if goal is None:
+                    break
+            goal, annotations = goal.goal, goal.annotations
         if urgency is not None and urgency.by_trigger[goal[0]]:
             urgency.rank()
         if intentions or events or agent.called or option_filter.rows or fuel <= 0:
@@ -194,11 +206,11 @@ def _is_called(agent: Circumstance) -> bool:
     return agent.atomic is not None and bool(agent.inbox or agent.tasks or agent.percepts)
 
 
-def _failed(agent: Circumstance, intention: Intention, fault: Exception) -> Any:
-    """A step raised an exception: the event for the nearest handler, None when there is none."""
+def _failed(agent: Circumstance, intention: Intention, fault: Exception | None = None) -> Posted | None:
+    """A step failed, or raised an exception: the event for the nearest handler, None when there is none."""
     if agent.trail:
         undo(agent.trail, 0)
-    if fault.__class__ is not Fail:
+    if fault is not None and fault.__class__ is not Fail:
         note_lack_of_memory(agent, fault)
         _report(agent, fault)
     frame: Frame = intention.frames[-1]

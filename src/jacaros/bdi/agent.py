@@ -40,7 +40,7 @@ from jacaros.bdi.speech_act import SpeechAct, message_id
 from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.compiler.literals import own_annotations
 from jacaros.compiler.lowering import lower_value
-from jacaros.compiler.outcomes import SUSPENDED, Fail, Failure
+from jacaros.compiler.outcomes import FAILED, SUSPENDED, Fail, Failure
 from jacaros.compiler.triggers import trigger
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import ArithmeticFault
@@ -392,7 +392,7 @@ class Agent(Circumstance):
         """``!!g``: a new intention that shares no variables with this one."""
         annotations: Any = BY_SELF
         if goal.__class__ is Posted:
-            goal, annotations = goal
+            goal, annotations = goal.goal, goal.annotations
         names: dict[Any, Any] = {}
         arguments = tuple(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:])
         current = self.current
@@ -439,7 +439,7 @@ class Agent(Circumstance):
     def finish_call(self, result: Any, frame: Frame, next_step: Any) -> Any:
         """What an internal action that may suspend gave: go on, fail, or wait."""
         if result is False:
-            raise Fail
+            return FAILED
         if result is SUSPENDED:
             return SUSPENDED
         if isinstance(result, Waiting) and not (result.ended and result.failure is None):

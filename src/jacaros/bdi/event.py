@@ -1,6 +1,6 @@
 """Events: what happened to goals and beliefs and may need a plan."""
 
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from jacaros.bdi.intention import Intention
 from jacaros.compiler.literals import literal_of
@@ -24,11 +24,13 @@ EVENT_ANNOTATIONS: Final = 2
 EVENT_CAUSE: Final = 3
 
 
-class Posted(NamedTuple):
+class Posted:
     """A goal or event with other annotations than ``source(self)``, on its way from a step to the queue."""
 
-    goal: tuple[Any, ...]
-    annotations: Any
+    __slots__ = ("annotations", "goal")
+
+    def __init__(self, goal: tuple[Any, ...], annotations: Any) -> None:
+        self.goal, self.annotations = goal, annotations
 
 
 Annotations = tuple[Term, ...]

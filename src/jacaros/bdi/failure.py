@@ -6,7 +6,7 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import Posted
-from jacaros.bdi.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, StepPlace, goal_text
+from jacaros.bdi.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
 from jacaros.bdi.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.internal_action import ActionError, WrongArguments
 from jacaros.bdi.search_budget import SearchLimit
@@ -16,7 +16,7 @@ from jacaros.compiler.outcomes import Fail, Failure
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
-from jacaros.terms.substitution import resolve
+from jacaros.terms.substitution import ATOMIC, resolve
 from jacaros.terms.text import display, text
 from jacaros.terms.values import List, String, Term, Var, atom, functor
 
@@ -45,8 +45,8 @@ def output_misfit(output: Term, value: Term) -> tuple[Term, ...]:
     return (*error_terms("action_failed", message), (_ENV_FAILURE_REASON, reason))
 
 
-def step_failure(frame: Frame, fault: Exception) -> FailureReason:
-    """The reason of a step that raised *fault*.
+def step_failure(frame: Frame, fault: Exception | None = None) -> FailureReason:
+    """The reason of a step that failed, or that raised *fault*.
 
     Raises:
         InternalError: when the fault is a defect of ours.
@@ -54,12 +54,12 @@ def step_failure(frame: Frame, fault: Exception) -> FailureReason:
     info: StepInfo | None = getattr(frame[STEP], "info", None)
     if info is None:
         raise InternalError(f"a step of plan {frame[PLAN]!r} is unknown") from fault
-    if fault.__class__ is not Fail:
-        return FailureReason(_terms_of(fault, info), StepPlace(frame, info))
+    if fault is not None and fault.__class__ is not Fail:
+        return FailureReason(_terms_of(fault, info), frame)
     terms = info.failure
     if terms is None:
         terms = info.failure = error_terms(*_plain_failure(info.node))
-    return FailureReason(terms, StepPlace(frame, info))
+    return FailureReason(terms, frame)
 
 
 def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
@@ -124,16 +124,20 @@ def no_plan(
     agent: Circumstance, goal: tuple[Any, ...], annotations: Any, caller: Frame | None
 ) -> FailureReason:
     """The reason of a goal that has no relevant or no applicable plan."""
-    relevant = agent.selects[goal[0]] is not None
-    shown = goal[0].kind + goal_text(goal)
-    if relevant and agent.refused_options:
+    if agent.selects[goal[0]] is None:
+        error, told = "no_relevant", "no relevant plan"
+    elif agent.refused_options:
         agent.refused_options = False
-        terms = error_terms("no_option", f"no option is selected for {shown}")
-    elif relevant:
-        terms = error_terms("no_applicable", f"no applicable plan for {shown}")
+        error, told = "no_option", "no option is selected"
     else:
-        terms = error_terms("no_relevant", f"no relevant plan for {shown}")
-    return FailureReason(terms, GoalPlace(goal, annotations, caller))
+        error, told = "no_applicable", "no applicable plan"
+
+    def terms() -> tuple[Term, ...]:
+        return error_terms(error, f"{told} for {goal[0].kind}{goal_text(goal)}")
+
+    # The values of variables are shown as they are now: they are released before a plan may ask.
+    at_once = not ATOMIC.issuperset(map(type, goal[1:]))
+    return FailureReason(terms() if at_once else terms, GoalPlace(goal, annotations, caller))
 
 
 def too_deep(goal: tuple[Any, ...], annotations: Any, caller: Frame, depth: int) -> FailureReason:
@@ -147,7 +151,10 @@ _MAY_BE_BOUND = frozenset({Var, tuple, List})
 
 def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
     """Give the variables of a failed goal back as they were when it was posted."""
-    stack: list[Term] = [a for a in goal if a.__class__ in _MAY_BE_BOUND]
+    stack: list[Term] = []
+    for argument in goal:
+        if argument.__class__ in _MAY_BE_BOUND:
+            stack.append(argument)
     while stack:
         term = stack.pop()
         if term.__class__ is Var:
@@ -186,7 +193,7 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
             goal = frame[1]
             release_bindings(goal, frame[3])
             intention.handlers.append(index)
-            return Posted((kind, *goal[1:]), reason.with_goal(frame[2]))
+            return Posted((kind, *goal[1:]), reason.for_goal(frame[2]))
         index -= 1
     return None
 

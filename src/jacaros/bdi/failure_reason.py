@@ -1,5 +1,6 @@
 """Why a goal failed: the annotations of its failure event, and what people are told of it."""
 
+from collections.abc import Callable
 from typing import Any
 
 from jacaros.asl import nodes
@@ -21,6 +22,7 @@ from jacaros.terms.values import Functor, String, Term, Var, functor, functor_of
 ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
 UNNAMED = Var("_")
+_Terms = tuple[Term, ...]
 _REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
 
 
@@ -28,34 +30,58 @@ class FailureReason:
     """The annotations of a failure event; they are put together when a plan first asks for them.
 
     Attributes:
-        terms: ``error(..)``, ``error_msg(..)`` and what else was given.
-        goal_annotations: those of the goal that failed.
+        goal_annotations: those of the goal whose failure event it is for; None before there is one.
         goal_number: by which observers know that goal, when it had no plan and so no frame on the stack.
         goals: those of the intention that was lost, as people read them, the one that failed first; noted when it ends.
         candidates: of a goal without applicable plan, the plans that there were and where their contexts fail, as lines for
             people; noted at the same time.
     """
 
-    __slots__ = ("_made", "_place", "candidates", "goal_annotations", "goal_number", "goals", "terms")
+    __slots__ = ("_at", "_made", "_terms", "candidates", "goal_annotations", "goal_number", "goals")
 
     def __init__(
         self,
-        terms: tuple[Term, ...],
-        place: Any,
-        goal_annotations: Any = (),
+        terms: _Terms | Callable[[], _Terms],
+        at: Any,
+        goal_annotations: Any = None,
         goal_number: int | None = None,
     ) -> None:
-        self.terms = terms
-        self._place = place
+        """Make a reason.
+
+        Args:
+            terms: ``error(..)``, ``error_msg(..)`` and what else was given; or what makes them.
+            at: the place; or the frame whose step failed, which stays as it is: its plan goes no further.
+            goal_annotations: of the goal that failed, when that is known already.
+            goal_number: see above.
+        """
+        self._terms = terms
+        self._at = at
         self.goal_annotations = goal_annotations
         self.goal_number = goal_number
         self.goals: tuple[str, ...] = ()
         self.candidates: tuple[str, ...] = ()
-        self._made: tuple[Term, ...] | None = None
+        self._made: _Terms | None = None
 
-    def with_goal(self, annotations: Any, number: int | None = None) -> "FailureReason":
-        """The same reason, for the failure event of another goal."""
-        return FailureReason(self.terms, self._place, annotations, number)
+    def for_goal(self, annotations: Any, number: int | None = None) -> "FailureReason":
+        """The same reason for the failure event of a goal: this very one, unless it is for another goal already."""
+        if self.goal_annotations is None:
+            self.goal_annotations = annotations
+            self.goal_number = number
+            return self
+        return FailureReason(self._terms, self._at, annotations, number)
+
+    @property
+    def _place(self) -> Any:
+        if self._at.__class__ is list:
+            self._at = StepPlace(self._at, self._at[STEP].info)
+        return self._at
+
+    @property
+    def terms(self) -> _Terms:
+        """``error(..)``, ``error_msg(..)`` and what else was given."""
+        if not isinstance(self._terms, tuple):
+            self._terms = self._terms()
+        return self._terms
 
     def annotations(self) -> tuple[Term, ...]:
         """All annotations, sorted."""
@@ -146,14 +172,13 @@ class _Nowhere:
 
 
 class StepPlace(_Nowhere):
-    """The formula of a step that failed.  The frame stays as it is: its plan goes no further."""
+    """The formula of a step that failed."""
 
-    __slots__ = ("_frame", "_info", "_slots")
+    __slots__ = ("_frame", "_info")
 
     def __init__(self, frame: Frame, info: StepInfo) -> None:
-        self._told = ""
+        super().__init__()
         self._frame, self._info = frame, info
-        self._slots = frame[PLAN].slots
 
     @property
     def node(self) -> nodes.Node:
@@ -182,7 +207,7 @@ class StepPlace(_Nowhere):
 
     def _value(self, name: str) -> Term:
         """The value of a variable, as far as it has one."""
-        slot = self._slots.get(name, len(self._frame))
+        slot = self.plan.slots.get(name, len(self._frame))
         value = self._frame[slot] if slot < len(self._frame) else None
         return Var(name) if value is None else value
 

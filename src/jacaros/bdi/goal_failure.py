@@ -73,7 +73,7 @@ def fail_goal(
             _tell_unplanned(agent, intention, (goal, annotations, number), reason)
             meta_events.observe_goal(agent, intention, goal, number, "executing")
             meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
-        return Posted((trigger.on_fail, *goal[1:]), reason.with_goal(annotations, number))
+        return Posted((trigger.on_fail, *goal[1:]), reason.for_goal(annotations, number))
     return fail_intention(agent, intention, reason, (goal, annotations, number))
 
 

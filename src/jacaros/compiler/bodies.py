@@ -2,7 +2,8 @@
 
 ``step(agent, frame)`` reads from the frame what it uses, does its formula, stores what it bound and sets ``frame[0]`` to
 the next step.  It returns None, or one goal (a tuple that begins with its trigger) to be handled for this intention, or
-`SUSPENDED`.  A failing formula raises `Fail` before ``frame[0]`` changes, so it is known which one failed.
+`SUSPENDED`.  A failing formula returns `FAILED`, or raises `Fail` or another exception, before ``frame[0]`` changes, so it
+is known which one failed.
 """
 
 from jacaros.asl import nodes
@@ -78,7 +79,7 @@ def _test(compiler: BodyCompiler, step: nodes.Test, name: str, next_name: str) -
             fn.line(f"frame[0] = {next_name}")
             fn.line("return posted")
         else:
-            fn.line("raise Fail")
+            fn.line("return FAILED")
     compiler.learn(bound)
     if asked:
         compiler.learn([n for n in names_in(step) if n not in bound], "maybe")
@@ -88,7 +89,7 @@ def _test(compiler: BodyCompiler, step: nodes.Test, name: str, next_name: str) -
 def _test_goal(compiler: BodyCompiler, fn: FunctionBuilder, formula: nodes.Literal, next_name: str) -> None:
     """No answer in the belief base: a plan for the test goal may find one."""
     symbol = functor_of_literal(formula)
-    fn.line(f"if not agent.may_handle({fn.constant(trigger('+', '?', symbol))}): raise Fail")
+    fn.line(f"if not agent.may_handle({fn.constant(trigger('+', '?', symbol))}): return FAILED")
     goal = _goal_expression(fn, "+", "?", formula)
     if formula.annotations is not None:
         items, tail = annotation_parts(fn, formula.annotations)
@@ -109,7 +110,7 @@ def _constraint(compiler: BodyCompiler, step: nodes.Constraint, name: str, next_
         fn.line("t = agent.trail")
         fn.load(compiler.frame, names_in(step))
         bound = compiler.success(fn, step.formula, next_name)
-        fn.line("raise Fail")
+        fn.line("return FAILED")
     compiler.learn(bound)
     compiler.unit.add(fn.writer)
 
@@ -151,7 +152,7 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
                     f"return agent.finish_call({fn.constant(action.function)}({call}), frame, {next_name})"
                 )
             else:
-                fn.line(f"if {fn.constant(action.function)}({call}) is False: raise Fail")
+                fn.line(f"if {fn.constant(action.function)}({call}) is False: return FAILED")
                 fn.store(compiler.frame)
                 fn.line(f"frame[0] = {next_name}")
     compiler.finish(fn)

@@ -25,3 +25,5 @@ class NextPlan(Exception):
 
 SUSPENDED = object()
 """What a step returns when its intention has to wait."""
+FAILED = object()
+"""What a step returns when its formula does not hold; the same as raising `Fail`, at a tenth of the price."""

@@ -26,7 +26,7 @@ from jacaros.compiler.literals import (
     positive,
     resolve_all,
 )
-from jacaros.compiler.outcomes import Fail, NextPlan
+from jacaros.compiler.outcomes import FAILED, NextPlan
 from jacaros.compiler.searching import (
     Remaining,
     deeper,
@@ -119,7 +119,7 @@ _FUNCTIONS = (
     unify_rows,
     unknown,
 )
-_CLASSES = (Annotated, Fail, InternalError, NextPlan, Remaining, Functor, List, String, Trail, Var)
+_CLASSES = (Annotated, InternalError, NextPlan, Remaining, Functor, List, String, Trail, Var)
 
 NAMES: dict[str, Any] = {
     **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},
@@ -127,6 +127,7 @@ NAMES: dict[str, Any] = {
     "BY_SELF": BY_SELF,
     "CLOSED": CLOSED,
     "CONS": CONS,
+    "FAILED": FAILED,
     "NESTED": NESTED,
     "copy": rename,
     "new": object.__new__,

@@ -8,7 +8,7 @@ from types import FrameType
 from jacaros.asl.formatter import format_term
 from jacaros.bdi import cycle
 from jacaros.bdi.agent import Agent
-from jacaros.compiler.outcomes import Fail
+from jacaros.compiler.outcomes import FAILED
 from jacaros.compiler.plan import Plan
 from jacaros.mas.agent_host import AgentHost
 
@@ -62,7 +62,7 @@ def _outwards(frame: FrameType | None) -> Iterator[FrameType]:
 def _is_generated(frame: FrameType) -> bool:
     """Whether the compiler made the function of a frame; its file and lines are those of the agent program."""
     names = frame.f_globals
-    return names.get("Fail") is Fail and "__name__" not in names
+    return names.get("FAILED") is FAILED and "__name__" not in names
 
 
 def _host(frame: FrameType) -> AgentHost | None:

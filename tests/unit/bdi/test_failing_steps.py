@@ -1,7 +1,14 @@
 """Steps and goals that fail: what is told, who handles it, and what goes on."""
 
+import sys
+from types import FrameType
+from typing import Any
+
+import pytest
 from recording_host import mind, printed
 
+from jacaros.bdi import failure
+from jacaros.bdi.failure_reason import goal_text
 from jacaros.bdi.meta_events import observe_goals
 
 
@@ -172,3 +179,48 @@ def test_a_goal_in_a_variable_has_a_deadline_too() -> None:
         -!late[error(E)] <- .print(late, E).
         """
     ) == ["latedeadline_reached", "adeadline_reached"]
+
+
+def test_a_reason_is_worded_only_when_a_plan_asks_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    worded = []
+    monkeypatch.setattr(failure, "goal_text", lambda goal: worded.append(goal) or goal_text(goal))
+    program = """
+        !try(1). !ask(2).
+        +!try(I) <- !sub(I).
+        -!try(I).
+        +!ask(I) <- !sub(I).
+        -!ask(I)[error_msg(M)] <- .print(M).
+        """
+    assert printed(program) == ["no relevant plan for !sub(2)"]
+    assert [arguments for _, *arguments in worded] == [[2.0]]
+
+
+def test_the_message_of_a_goal_without_plan_has_the_values_of_its_failure() -> None:
+    assert printed(
+        """
+        b(1). !try(_).
+        +!try(X) <- ?b(X); !sub(X).
+        -!try(X)[error_msg(M)] <- .print(M).
+        """
+    ) == ["no relevant plan for !sub(1)"]
+
+
+def test_a_step_that_fails_raises_no_exception() -> None:
+    host = mind(
+        "!g. +!g <- !a; !b; !c. +!a <- 1 > 2. +!b <- .fail. +!c <- ?d(_); .print(done). -!a. -!b. -!c <- .print(c)."
+    )
+    raised = []
+
+    def note(frame: FrameType, event: str, argument: Any) -> Any:
+        if event == "exception" and argument[0] is not StopIteration:
+            raised.append(argument)
+        return note
+
+    before = sys.gettrace()
+    sys.settrace(note)
+    try:
+        host.run()
+    finally:
+        sys.settrace(before)
+    assert host.printed == ["c"]
+    assert raised == []
