@@ -57,6 +57,7 @@ class InternalAction:
             with the agent itself and all arguments, bindings not applied, and never suspends.
         values: gives what the first argument is in each answer, called with the others while that one is a variable without
             value; None where this takes the function itself.  It must not look at beliefs.
+        result_hint: how its author gives it one argument more, for the result; empty when it has all or is not in Python.
     """
 
     name: str
@@ -67,6 +68,7 @@ class InternalAction:
     maximum: int | None = None
     direct: Callable[[Written], Function | None] | None = None
     values: Callable[..., Iterable[Term]] | None = None
+    result_hint: str = ""
 
 
 Registry = dict[str, InternalAction]

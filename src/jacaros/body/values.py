@@ -10,7 +10,7 @@ atom                       `Atom`, without the quotes of a quoted one
 structure                  `Structure`; ``~`` and a namespace are written in front of the functor
 list, set, queue           `list`, that of a set in the standard order
 map                        `dict`; lists in its keys are tuples
-annotated term             its term, without the annotations
+annotated structure        `Structure` with its annotations; other annotated terms lose theirs
 opaque reference           the object
 unbound variable           `Out`, one for each occurrence; from the environment None comes as a fresh variable
 formula, plan              its text
@@ -25,6 +25,7 @@ from weakref import WeakValueDictionary
 from jacaros.env.ids import ArtifactId
 from jacaros.env.values import Atom, Out, Structure, plain
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
 from jacaros.terms.values import (
     ARITHMETIC,
@@ -75,7 +76,7 @@ def to_value(term: Term, outputs: Outputs | None = None) -> Any:
     if kind is tuple:
         return _structure_to_value(term, outputs)
     if kind is Annotated:
-        return to_value(term.term, outputs)
+        return _annotated_to_value(term, outputs)
     return _object_to_value(term, outputs)
 
 
@@ -104,6 +105,14 @@ def _structure_to_value(term: Term, outputs: Outputs | None) -> object:
     if symbol.kind not in _CARRIED_AS_STRUCTURES:
         return text(term)
     return Structure(symbol_name(symbol), tuple(to_value(argument, outputs) for argument in term[1:]))
+
+
+def _annotated_to_value(term: Annotated, outputs: Outputs | None) -> object:
+    value = to_value(term.term, outputs)
+    if value.__class__ is not Structure:
+        return value
+    annotations = tuple(to_value(each, outputs) for each in term.annotations)
+    return Structure(value.functor, value.arguments, annotations)
 
 
 def _object_to_value(term: Term, outputs: Outputs | None) -> object:
@@ -214,9 +223,12 @@ def _is_word(name: str) -> bool:
 
 def _structure_to_term(value: Structure, references: References) -> Term:
     arguments = value.arguments
-    if not arguments:
-        return symbol_of(value.functor, 0)
-    return (symbol_of(value.functor, len(arguments)), *[to_term(a, references) for a in arguments])
+    term: Term = symbol_of(value.functor, len(arguments))
+    if arguments:
+        term = (term, *[to_term(argument, references) for argument in arguments])
+    if value.annotations:
+        return Annotated(term, annotation_set(tuple(to_term(each, references) for each in value.annotations)))
+    return term
 
 
 def _list_to_term(value: list[object], references: References) -> Term:

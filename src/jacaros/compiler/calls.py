@@ -85,7 +85,12 @@ def wrong_arity(action: Any, count: int) -> str:
         if most == action.minimum
         else f"{action.minimum} to {most if most is not None else 'any'}"
     )
-    return f"{action.name} takes {expected} arguments, not {count}"
+    given = f"{action.name} takes {expected} argument{'' if expected == '1' else 's'}, not {count}"
+    return (
+        f"{given}; {action.result_hint}"
+        if most is not None and count == most + 1 and action.result_hint
+        else given
+    )
 
 
 def refuse(action: Any, count: int) -> bool:

@@ -1,7 +1,7 @@
 """Artifacts: what authors of environments write."""
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
-from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
+from typing import Any, ClassVar, NoReturn, Protocol, TypeVar, overload
 
 from jacaros.clock import Clock
 from jacaros.env.errors import InvalidArtifact, OperationFailed
@@ -13,7 +13,7 @@ from jacaros.env.kernel.faults import text_of
 from jacaros.env.kernel.interface import Interface, interface_of
 from jacaros.env.kernel.linked_call import call_all
 from jacaros.env.kernel.steps import Steps
-from jacaros.env.kernel.unawaited import step_boundary
+from jacaros.env.kernel.unawaited import step_boundary, watch_operations
 from jacaros.env.operation import (
     OPERATION,
     Mark,
@@ -22,6 +22,7 @@ from jacaros.env.operation import (
     initializer,
     internal_operation,
     link,
+    marks_of,
     operation,
 )
 from jacaros.env.property import ObservableProperty, PropertySnapshot, plain_annotations
@@ -107,13 +108,30 @@ class Artifact:
                     f"{cls.__qualname__}.{attribute} would replace a part of Artifact; call it otherwise, "
                     f'such as @operation(name="{attribute}") def {attribute}_it(self)'
                 )
+        if isinstance(cls.ports, str) or not all(isinstance(port, str) for port in cls.ports):
+            raise InvalidArtifact(
+                f'{cls.__qualname__}.ports is {cls.ports!r}: write a tuple of names, such as ports = ("out",)'
+            )
         cls.interface = interface_of(cls)
+        watch_operations(cls)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name in _RESERVED:
+            raise InvalidArtifact(
+                f"self.{name} = ... would replace a part of Artifact: call the attribute otherwise, such as self.its_{name}"
+            )
+        object.__setattr__(self, name, value)
 
     def _join(self, steps: Steps, host: Host) -> None:
         """Be joined with the kernel; called once, before ``init``."""
-        self.name, self.id, self.workspace = steps.id.name, steps.id, host
-        self.clock, self.resources = steps.setting.clock, steps.setting.resources
-        self._steps = steps
+        self.__dict__.update(
+            name=steps.id.name,
+            id=steps.id,
+            workspace=host,
+            clock=steps.setting.clock,
+            resources=steps.setting.resources,
+            _steps=steps,
+        )
         steps.ending.hook = self.dispose
 
     def dispose(self) -> None:
@@ -185,6 +203,9 @@ class Artifact:
         self._steps.current("updating property", name)
         store = self._steps.publication.properties
         values = list(store.first(name, where).values)
+        if not -len(values) <= index < len(values):
+            has = f"{len(values)} value{'' if len(values) == 1 else 's'}"
+            raise IndexError(f"property {name} has {has}, and none at index {index}: the first is at 0")
         values[index] = value
         store.update(name, tuple(values), None, False, where)
 
@@ -223,13 +244,31 @@ class Artifact:
         """True when there is a property called *name*, with *values* one that has these values."""
         return self._steps.publication.properties.has(name, values)
 
-    def value(self, name: str, index: int = 0) -> Any:
+    @overload
+    def value(self, name: str, index: int = 0) -> Any: ...
+
+    @overload
+    def value(self, name: str, index: int = 0, *, kind: type[T]) -> T: ...
+
+    def value(self, name: str, index: int = 0, *, kind: type | None = None) -> Any:
         """A value of the first property called *name*; of a list or dictionary a copy.
+
+        Args:
+            name: name of the property.
+            index: which of its values.
+            kind: the class that it has, for type checkers as well: ``self.value("free", kind=int) > 0`` is a `bool`.
 
         Raises:
             UnknownProperty: there is none.
+            IndexError: it has fewer values.
+            TypeError: the value is not of that class.
         """
-        return plain(self._steps.publication.properties.first(name).values[index])
+        value = plain(self._steps.publication.properties.first(name).values[index])
+        if kind is not None and not isinstance(value, kind):
+            raise TypeError(
+                f"property {name} has {value!r} at index {index}, which is no {kind.__qualname__}"
+            )
+        return value
 
     def values(self, name: str) -> tuple[Any, ...]:
         """All values of the first property called *name*.
@@ -267,8 +306,17 @@ class Artifact:
         """Signal to all observers that something happened; changes made so far in the step go with it."""
         self._steps.signal(name, arguments, None)
 
-    def signal_to(self, agent: str, name: str, *arguments: object) -> None:
-        """Signal to one observer; changes made so far in the step go to all."""
+    def signal_to(self, agent: str | None, name: str, *arguments: object) -> None:
+        """Signal to one observer; changes made so far in the step go to all.
+
+        Raises:
+            InvalidArtifact: *agent* is None, as `caller` is in an internal operation.
+        """
+        if agent is None:
+            raise InvalidArtifact(
+                f"signal_to: no agent is given for {name}; self.caller is None in internal operations, so hand the "
+                "agent on: self.start(self.go, self.caller)"
+            )
         self._steps.signal(name, arguments, agent)
 
     def fail(self, message: str, functor: str | None = None, *arguments: object) -> NoReturn:
@@ -377,11 +425,15 @@ class Artifact:
         """
         declared = self._steps.interface.own(operation, len(arguments))
         if declared is None:
-            wanted = operation if isinstance(operation, str) else getattr(operation, "__name__", operation)
-            raise InvalidArtifact(
-                f"artifact {self.name} has no internal operation {wanted} with {len(arguments)} arguments"
-            )
+            raise InvalidArtifact(self._cannot_start(operation, len(arguments)))
         self._steps.start(declared, OperationRequest(self.id, declared.name, arguments, None, cause))
+
+    def _cannot_start(self, operation: str | Callable[..., object], count: int) -> str:
+        wanted = operation if isinstance(operation, str) else str(getattr(operation, "__name__", operation))
+        method = getattr(type(self), wanted, None)
+        if method is not None and not marks_of(method):
+            return f"{wanted} is no operation of artifact {self.name}: put @internal_operation above def {wanted}"
+        return f"artifact {self.name} has no internal operation {wanted} with {count} arguments"
 
     @step_boundary
     async def call_linked(self, port: str | ArtifactId | None, operation: str, *arguments: object) -> None:
@@ -393,8 +445,8 @@ class Artifact:
             arguments: inputs, and `Out` objects for its outputs.
 
         Raises:
-            OperationFailed: nothing is linked, or a linked operation failed (with its reason).
-            InvalidArtifact: the class has no such port.
+            OperationFailed: the class has no such port, nothing is linked to it, or a linked operation failed (with
+                its reason).
         """
         targets = (port,) if isinstance(port, ArtifactId) else self._behind(port)
         call = call_all(self.workspace.execute_linked, targets, operation, arguments, self.current)
@@ -403,15 +455,17 @@ class Artifact:
     def _behind(self, port: str | None) -> tuple[ArtifactId, ...]:
         if not self.ports or (port is not None and port not in self.ports):
             offered = f"its ports are {', '.join(self.ports)}" if self.ports else "it has none"
-            raise InvalidArtifact(f"{type(self).__qualname__} has no out port {port!r}; {offered}")
+            self._fail_call(f"{type(self).__qualname__} has no out port {port!r}; {offered}")
         port = port if port is not None else self.ports[0]
         targets = self.workspace.linked(self.id, port)
         if not targets:
-            # The reason of CArtAgO, in which every call that comes to nothing is an error of the operation.
-            request = self.current.request
-            key = f"{request.operation}/{len(request.arguments)}"
-            self.fail(f"nothing is linked to port {port} of artifact {self.name}", "operation_error", key)
+            self._fail_call(f"nothing is linked to port {port} of artifact {self.name}")
         return targets
+
+    def _fail_call(self, message: str) -> NoReturn:
+        # The reason of CArtAgO, in which every call that comes to nothing is an error of the operation.
+        request = self.current.request
+        self.fail(message, "operation_error", f"{request.operation}/{len(request.arguments)}")
 
     def external_session(self, cause: Cause | None = None) -> ExternalSession:
         """Have the artifact for oneself from elsewhere: ``with`` in another thread, ``async with`` in another task.

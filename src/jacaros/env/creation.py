@@ -7,6 +7,7 @@ from jacaros.env.errors import InvalidArtifact, OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
 from jacaros.env.kernel.faults import is_interruption, told
+from jacaros.env.kernel.interface import interface_of
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
 from jacaros.env.operation import INIT, Mark, OperationRequest
@@ -72,9 +73,23 @@ def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, s
             raise
         setting.log_error(artifact_id.name, f"the constructor of {artifact_type.__qualname__} failed:", error)
         raise init_failed(artifact_id, told(error)) from error
+    _settle_annotations(artifact_type, setting)
     steps = Steps(artifact_id, artifact, artifact_type.interface, tuple(artifact_type.ports), setting)
     artifact._join(steps, host)
     return steps
+
+
+def _settle_annotations(artifact_type: type[Artifact], setting: Setting) -> None:
+    """Read an interface again if it had annotations that named nothing yet, and tell of those that still do not."""
+    if artifact_type in setting.told or not any(artifact_type.interface.unknown_annotations()):
+        return
+    setting.told.add(artifact_type)
+    artifact_type.interface = interface_of(artifact_type)
+    for operation, parameter, written in artifact_type.interface.unknown_annotations():
+        setting.log(
+            f"[{artifact_type.__name__}] parameter {parameter} of {operation} accepts anything: its annotation "
+            f"{written!r} is not known; correct it, or import it outside of `if TYPE_CHECKING`"
+        )
 
 
 def init_of(artifact_type: type[Artifact], request: OperationRequest) -> DeclaredOperation:

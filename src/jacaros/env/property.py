@@ -225,10 +225,23 @@ class PropertyStore:
         return tuple(p for p in self._like(name, template) if not template or _fits(template, p.values))
 
     def _unknown(self, name: str, template: tuple[object, ...] = ()) -> UnknownProperty:
+        properties = self._by_name.get(name)
+        if properties:
+            return UnknownProperty(
+                self._unlike(name, template, [len(each.values) for each in properties.values()])
+            )
         names = [each for each, properties in self._by_name.items() if properties]
         known = f" (it has {', '.join(names)})" if names else " (it has none)"
-        wanted = f"{name} with values like {template}" if template else name
-        return UnknownProperty(f"no observable property {wanted}{known}{spelling_hint(name, names)}")
+        hint = spelling_hint(name, names) or f'; self.define_property("{name}", ...) makes one'
+        return UnknownProperty(f"no observable property {name}{known}{hint}")
+
+    @staticmethod
+    def _unlike(name: str, template: tuple[object, ...], counts: list[int]) -> str:
+        written = f"({', '.join(map(repr, template))}{',' if len(template) == 1 else ''})"
+        if len(template) in counts:
+            return f"no observable property {name} has the values {written}; None stands for any value"
+        wanted = " or ".join(map(str, sorted(set(counts))))
+        return f"property {name} has {wanted} values, not {len(template)} as {written}: give all, None for any value"
 
     def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
         """True when there is a property called *name* whose values fit *template*."""

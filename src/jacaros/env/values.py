@@ -9,7 +9,16 @@ import dataclasses
 from collections import deque
 from enum import Enum
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
+    T = TypeVar("T", default=Any)
+else:
+    from typing import TypeVar
+
+    T = TypeVar("T")
 
 
 class Atom(str):
@@ -29,13 +38,17 @@ class Atom(str):
 class Structure:
     """A compound term such as ``aborted(3)``.
 
+    Two structures are equal when functors and arguments are, whatever their annotations.
+
     Attributes:
         functor: the name in front of the brackets.
         arguments: plain values, at least one; without arguments it would be an `Atom`.
+        annotations: atoms and structures, those in the square brackets behind it.
     """
 
     functor: str
     arguments: tuple[object, ...]
+    annotations: tuple[object, ...] = dataclasses.field(default=(), compare=False, repr=False)
 
     def __str__(self) -> str:
         return text(self, quoted=True)
@@ -54,8 +67,10 @@ UNSET = Unset()
 """The value of an output parameter before an operation sets it; the agent's variable stays unbound."""
 
 
-class Out:
+class Out(Generic[T]):
     """An output parameter: the place where an operation leaves a result for its caller.
+
+    ``Out[int]`` tells type checkers, and readers, what it gives; ``Out`` is for anything.
 
     Attributes:
         variable: what the caller writes there; where it writes the same twice, both results have to be equal.
@@ -68,16 +83,16 @@ class Out:
         self.variable = variable
 
     @property
-    def value(self) -> object:
+    def value(self) -> T:
         """The plain value left here, or `UNSET`."""
-        return self._value
+        return self._value  # type: ignore[return-value]
 
     @property
     def is_set(self) -> bool:
         """True when a value was left here."""
         return self._value is not UNSET
 
-    def set(self, value: object) -> None:
+    def set(self, value: T) -> None:
         """Leave *value*, turned into a plain value (see `plain`); a later call replaces it."""
         self._value = plain(value)
 
@@ -167,7 +182,10 @@ def _plain_number_or_array(value: Any, room: int) -> object:
 def _plain_structure(value: Structure, room: int) -> Structure:
     if not isinstance(value.functor, str) or not value.functor:
         raise TypeError(f"the functor of a structure is a text, not {value.functor!r}")
-    return Structure(value.functor, tuple(_plain(argument, room) for argument in value.arguments))
+    arguments = tuple(_plain(argument, room) for argument in value.arguments)
+    if not value.annotations:
+        return Structure(value.functor, arguments)
+    return Structure(value.functor, arguments, tuple(_plain(each, room) for each in value.annotations))
 
 
 def _plain_key(key: Any, room: int) -> Any:
@@ -208,7 +226,8 @@ def text(value: object, quoted: bool = False) -> str:
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return str(int(value))
     if isinstance(value, Structure):
-        return f"{value.functor}({_joined(value.arguments)})"
+        annotations = f"[{_joined(value.annotations)}]" if value.annotations else ""
+        return f"{value.functor}({_joined(value.arguments)}){annotations}"
     if isinstance(value, (list, tuple)):
         return f"[{_joined(value)}]"
     if isinstance(value, str) and quoted and not isinstance(value, Atom):

@@ -37,15 +37,17 @@ def action_of(name: str, declared: Declared) -> InternalAction:
     callee = _Callee(name, declared.function)
     if inspect.isasyncgenfunction(declared.function):
         raise Undeclarable("an 'async def' with 'yield' cannot be an internal action; use one of the two")
-    if inspect.iscoroutinefunction(declared.function):
-        return InternalAction(
-            name, callee.begin, suspends=True, minimum=callee.minimum, maximum=callee.maximum
-        )
-    if inspect.isgeneratorfunction(declared.function):
-        return InternalAction(
-            name, callee.answers, backtracks=True, minimum=callee.minimum, maximum=callee.maximum
-        )
-    return InternalAction(name, callee.call, minimum=callee.minimum, maximum=callee.maximum)
+    suspends = inspect.iscoroutinefunction(declared.function)
+    backtracks = inspect.isgeneratorfunction(declared.function)
+    return InternalAction(
+        name,
+        callee.begin if suspends else callee.answers if backtracks else callee.call,
+        backtracks=backtracks,
+        suspends=suspends,
+        minimum=callee.minimum,
+        maximum=callee.maximum,
+        result_hint=callee.result_hint,
+    )
 
 
 class _Callee:
@@ -63,6 +65,13 @@ class _Callee:
         self.minimum = self._signature.fewest + self._gives_value
         most = len(self._signature.parameters) + self._gives_value
         self.maximum = None if self._signature.rest is not None else most
+        self.result_hint = ""
+        if not self._gives_value and "return" not in _hints(function):
+            written = "Iterator[str]" if inspect.isgeneratorfunction(function) else "str"
+            parameters = "..." if self._signature.parameters else ""
+            self.result_hint = (
+                f"to return a result, annotate it: def {function.__name__}({parameters}) -> {written}"
+            )
 
     # the three ways of being called
 

@@ -12,7 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from jacaros.asl.loader import parse_literal
 from jacaros.body.values import References, atom_of, to_term, to_value
+from jacaros.compiler.lowering import Names, lower_value
 from jacaros.env.values import Atom, Structure, plain
 from jacaros.terms.collections import MapValue, SetValue
 from jacaros.terms.substitution import equal
@@ -172,3 +174,10 @@ def test_the_name_of_a_functor_is_a_plain_text() -> None:
     assert type(term(Atom("neverNamedBefore")).name) is str
     assert type(term(Structure(Atom("norThis"), (1,)))[0].name) is str
     assert type(atom_of(Atom("andThis")).name) is str
+
+
+def test_the_annotations_of_structures_come_back_and_do_not_count_in_comparisons() -> None:
+    value = to_value(lower_value(parse_literal("ns(1, q(2)[b])[a(2), c]"), Names()))
+    assert value == Structure("ns", (1, Structure("q", (2,))))
+    assert str(value) == "ns(1,q(2)[b])[a(2),c]"
+    assert text(to_term(plain([value]), References())) == "[ns(1,q(2)[b])[a(2),c]]"

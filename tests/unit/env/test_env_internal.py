@@ -197,7 +197,7 @@ def test_an_unknown_process_is_a_mistake_in_the_artifact(play):
         call = stage.call(clock, "wrong")
         assert "no internal operation no_such with 0 arguments" in call.outcome.message
         call = stage.call(clock, "wrongMethod")
-        assert "no internal operation has_ticks with 0 arguments" in call.outcome.message
+        assert "put @internal_operation above def has_ticks" in call.outcome.message
 
     play(scene)
 

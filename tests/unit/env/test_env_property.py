@@ -168,7 +168,7 @@ def test_an_unknown_property_is_explained():
         store.update("cuont", (1,), None)
     with pytest.raises(UnknownProperty, match="it has none"):
         PropertyStore().first("p")
-    with pytest.raises(UnknownProperty, match=r"count with values like \(5,\)"):
+    with pytest.raises(UnknownProperty, match=r"count has the values \(5,\)"):
         store.remove("count", (5,))
 
 
@@ -228,7 +228,7 @@ def test_the_property_to_update_is_found_by_its_values(play):
             "-room('kitchen','dirty') +room('kitchen','clean')",
         ]
         call = stage.call(rooms, "clean", "cellar")
-        assert "no observable property room with values like ('cellar', None)" in call.outcome.message
+        assert "no observable property room has the values ('cellar', None)" in call.outcome.message
 
     play(scene)
 

@@ -1,7 +1,7 @@
 """Internal actions: their names, numbers of arguments, and where they stand."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
@@ -26,6 +26,10 @@ class Signature(Protocol):
     @property
     def maximum(self) -> int | None:
         """The greatest number of arguments."""
+
+    @property
+    def result_hint(self) -> str:
+        """How its author gives it one argument more, for a result; empty when that is not the mistake."""
 
     @property
     def suspends(self) -> bool:
@@ -102,7 +106,10 @@ def wrong_arguments(found: Sequence[nodes.Node], known: KnownActions) -> Iterato
             if signature is not None and not (
                 signature.minimum <= count and (signature.maximum is None or count <= signature.maximum)
             ):
-                yield _arguments_message(node, signature.minimum, signature.maximum, "the internal action")
+                told = _arguments_message(node, signature.minimum, signature.maximum, "the internal action")
+                if signature.maximum is not None and count == signature.maximum + 1 and signature.result_hint:
+                    told = replace(told, hint=f"{told.hint}; {signature.result_hint}")
+                yield told
 
 
 def _arguments_message(node: nodes.InternalAction, least: int, most: int | None, what: str) -> Diagnostic:

@@ -24,6 +24,8 @@ def kind_of(annotation: Any) -> Kind:
         return alternatives([kind_of(member) for member in members])
     if origin is typing.Literal:
         return _choice(members)
+    if origin is Out:
+        return _SIMPLE[Out]
     container = origin if origin is not None else annotation
     made = _CONTAINERS.get(container) if _hashable(container) else None
     if made is not None:

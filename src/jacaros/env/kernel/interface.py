@@ -110,7 +110,7 @@ class Interface:
         if isinstance(operation, str):
             found = self.internals.find(operation, arity)
             return found if found is not None else self.operations.find(operation, arity)
-        function = getattr(operation, "__func__", operation)
+        function = _unwatched(getattr(operation, "__func__", operation))
         usual = self.internals.find(getattr(function, "__name__", ""), arity)
         if usual is not None and usual.function is function:
             return usual
@@ -118,6 +118,12 @@ class Interface:
             if declared.function is function and declared.signature.takes(arity):
                 return declared
         return None
+
+    def unknown_annotations(self) -> Iterator[tuple[str, str, str]]:
+        """Operation, parameter and text of the annotations that name nothing."""
+        for declared in chain(self.operations, self.links, self.internals, self.inits):
+            for parameter, written in declared.signature.unknown.items():
+                yield name_of(declared.source), parameter, written
 
     def copy(self) -> "Interface":
         """An interface that can be changed by itself."""
@@ -142,10 +148,16 @@ def interface_of(artifact_type: type) -> Interface:
                 marks[attribute] = (depth, (*others, Mark(INIT)))
     interface = Interface(OperationTable(), OperationTable(), OperationTable(), OperationTable())
     for attribute, (depth, declared) in sorted(marks.items(), key=_depth):
-        function = getattr(artifact_type, attribute)
+        function = _unwatched(getattr(artifact_type, attribute))
         for mark in declared if callable(function) else ():
             interface.table(mark.kind).add(declare_method(mark, attribute, function, artifact_type, depth))
     return interface
+
+
+def _unwatched(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The author's own function, see `jacaros.env.kernel.unawaited.watch_operations`."""
+    plain: Callable[..., Any] = getattr(function, "plain", function)
+    return plain
 
 
 def _depth(item: tuple[str, tuple[int, Any]]) -> int:

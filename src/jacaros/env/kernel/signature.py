@@ -2,9 +2,10 @@
 
 import inspect
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from jacaros.env.errors import InvalidArtifact
@@ -13,6 +14,8 @@ from jacaros.env.kernel.kinds import Accept, Unsuitable, shown
 from jacaros.env.values import Atom, Out, Structure
 
 _ANY_OUTPUT = kind_of(Out).expected
+_NOTHING = object()
+"""What an annotation is that names nothing."""
 
 
 class WrongArguments(Exception):
@@ -43,13 +46,19 @@ class Signature:
     Attributes:
         parameters: those with a place of their own.
         rest: stands for any number of further arguments (``*args``); None when there are no more.
+        unknown: annotations that name nothing, by parameter: it accepts anything.
         fewest: least number of arguments.
     """
 
-    __slots__ = ("_accepts", "fewest", "parameters", "rest")
+    __slots__ = ("_accepts", "fewest", "parameters", "rest", "unknown")
 
-    def __init__(self, parameters: tuple[Parameter, ...], rest: Parameter | None) -> None:
-        self.parameters, self.rest = parameters, rest
+    def __init__(
+        self,
+        parameters: tuple[Parameter, ...],
+        rest: Parameter | None,
+        unknown: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
+        self.parameters, self.rest, self.unknown = parameters, rest, unknown
         self._accepts = tuple(parameter.accept for parameter in parameters)
         self.fewest = sum(not parameter.optional for parameter in parameters)
 
@@ -82,6 +91,8 @@ class Signature:
             position = len(bound)
             parameter = self._parameter(position)
             part = f": {unsuitable}" if str(unsuitable) else ""
+            if isinstance(arguments[position], Out) and not parameter.output:
+                part += f"; to give a result, annotate it: `{parameter.name}: Out`"
             raise WrongArguments(
                 f"parameter {parameter.name} (number {position + 1}) wants {parameter.expected}, "
                 f"got {shown(arguments[position])}{part}"
@@ -119,7 +130,7 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
             raise InvalidArtifact(f"{function.__qualname__}: its first parameter must be self")
         if listed[0].kind is not inspect.Parameter.VAR_POSITIONAL:
             del listed[0]
-    kinds = _annotations(function)
+    kinds, unknown = _annotations(function)
     parameters, rest = [], None
     for each in listed:
         if each.kind in (each.KEYWORD_ONLY, each.VAR_KEYWORD):
@@ -131,21 +142,26 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
             rest = _parameter(each, annotation, takes_outputs=annotation is object)
         else:
             parameters.append(_parameter(each, annotation, takes_outputs=False))
-    return Signature(tuple(parameters), rest)
+    return Signature(tuple(parameters), rest, unknown)
 
 
-def _annotations(function: Callable[..., object]) -> dict[str, Any]:
-    """The annotations, with those written as text resolved; what cannot be resolved accepts anything."""
+def _annotations(function: Callable[..., object]) -> tuple[dict[str, Any], dict[str, str]]:
+    """The annotations, with those written as text resolved; and those that cannot be, which accept anything."""
     while isinstance(function, partial):
         function = function.func
     if not inspect.isroutine(function):
         function = type(function).__call__
     try:
-        return {name: _known(kind) for name, kind in typing.get_type_hints(function).items()}
+        return {name: _known(kind) for name, kind in typing.get_type_hints(function).items()}, {}
     except Exception:
         names = {**vars(typing), "Out": Out, "Atom": Atom, "Structure": Structure}
         names.update(getattr(function, "__globals__", {}))
-        return {name: _resolved(kind, names) for name, kind in written_annotations(function).items()}
+        written = written_annotations(function)
+        found = {name: _resolved(kind, names) for name, kind in written.items()}
+        unknown = {
+            name: written[name] for name, kind in found.items() if kind is _NOTHING and name != "return"
+        }
+        return {name: object if kind is _NOTHING else kind for name, kind in found.items()}, unknown
 
 
 def written_annotations(function: Callable[..., object]) -> dict[str, Any]:
@@ -165,7 +181,7 @@ def _resolved(kind: Any, names: dict[str, Any]) -> Any:
     try:
         return _known(eval(kind, names))  # it is the author's own code
     except Exception:
-        return _known(names.get(kind.rpartition(".")[2], object))
+        return _known(names.get(kind.rpartition(".")[2], _NOTHING))
 
 
 def _known(kind: Any) -> Any:
@@ -176,7 +192,8 @@ def _parameter(each: inspect.Parameter, annotation: Any, takes_outputs: bool) ->
     kind = kind_of(annotation)
     optional = each.default is not each.empty
     accept = _anything if takes_outputs else kind.accept
-    return Parameter(each.name, kind.expected, annotation is Out, optional, accept)
+    output = annotation is Out or typing.get_origin(annotation) is Out
+    return Parameter(each.name, kind.expected, output, optional, accept)
 
 
 def _anything(argument: object) -> object:

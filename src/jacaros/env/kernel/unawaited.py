@@ -7,6 +7,7 @@ from functools import wraps
 from typing import Any, Protocol, TypeVar, cast
 
 from jacaros.env.errors import InvalidArtifact
+from jacaros.env.operation import marks_of
 
 F = TypeVar("F", bound=Callable[..., Coroutine[Any, Any, Any]])
 
@@ -43,7 +44,10 @@ def step_boundary(method: F) -> F:
     @wraps(method)
     def asking(artifact: Any, *arguments: Any, **options: Any) -> Coroutine[Any, Any, Any]:
         coroutine = method(artifact, *arguments, **options)
-        execution: Asking | None = artifact._steps.turns.holder
+        steps = getattr(
+            artifact, "_steps", None
+        )  # a test may call a method of an artifact that is in no workspace
+        execution: Asking | None = steps.turns.holder if steps is not None else None
         if execution is not None:
             caller = sys._getframe(1)
             asked = AskedFor(coroutine, method.__name__, (caller.f_code.co_filename, caller.f_lineno))
@@ -52,6 +56,18 @@ def step_boundary(method: F) -> F:
         return coroutine
 
     return cast(F, asking)
+
+
+def watch_operations(artifact_type: type) -> None:
+    """Have calls of the operations that a class declares itself watched in the same way, when its methods make them.
+
+    The kernel runs the plain functions, which its interface has by now.
+    """
+    for attribute, member in list(vars(artifact_type).items()):
+        if marks_of(member) and inspect.iscoroutinefunction(member):
+            watched = step_boundary(member)
+            watched.plain = member
+            setattr(artifact_type, attribute, watched)
 
 
 def forgotten(execution: Asking) -> InvalidArtifact | None:

@@ -78,7 +78,7 @@ async def run(self):
         "3a",
     ]
     assert result.of("a")[0] == 'tell [p(1),"x"] bob'
-    assert result.of("a")[4] == "achieve g(f(2)) bob"
+    assert result.of("a")[4] == "achieve g(f(2)[s]) bob"
     assert result.errors == []
 
 

@@ -1,0 +1,169 @@
+"""Mistakes of an artifact's author that once were silent, or told without their cure."""
+
+import asyncio
+
+import pytest
+
+from jacaros.env import Artifact, InvalidArtifact, OperationFailed, Out, internal_operation, operation
+
+
+def made(**members):
+    return type("Made", (Artifact,), {"__module__": __name__, **members})
+
+
+@pytest.mark.parametrize("ports", ["out", (1,)])
+def test_ports_are_a_tuple_of_names(ports):
+    with pytest.raises(InvalidArtifact, match=r'write a tuple of names, such as ports = \("out",\)'):
+        made(ports=ports)
+
+
+class Careless(Artifact):
+    def init(self):
+        self.define_property("room", "k", 1)
+
+    @operation
+    def hide(self):
+        self.value = 3
+
+    @operation
+    async def forget(self):
+        self.rest()
+
+    @operation
+    async def rest(self):
+        await self.sleep(1)
+
+    @operation
+    def begin(self):
+        self.start(self.tell)
+
+    @internal_operation
+    def tell(self):
+        self.signal_to(self.caller, "x")
+
+    @operation
+    def where(self):
+        self.update_property("room", "h", 5, where=("h",))
+
+    @operation
+    def index(self):
+        self.update_value("room", 5, 1)
+
+    @operation
+    def get(self, x): ...
+
+    @operation
+    def begin_unmarked(self):
+        self.start(self.unmarked)
+
+    async def unmarked(self): ...
+
+    @operation
+    def undefined(self):
+        self.update_property("on", True)
+
+
+@pytest.mark.parametrize(
+    ("operation_name", "arguments", "told"),
+    [
+        ("hide", (), "self.value = ... would replace a part of Artifact: call the attribute otherwise"),
+        ("where", (), "property room has 2 values, not 1 as ('h',): give all, None for any value"),
+        ("index", (), "property room has 2 values, and none at index 5: the first is at 0"),
+        ("get", (Out(),), "to give a result, annotate it: `x: Out`"),
+        ("begin_unmarked", (), "put @internal_operation above def unmarked"),
+        ("undefined", (), 'self.define_property("on", ...) makes one'),
+    ],
+)
+def test_the_mistake_of_an_author_is_told_with_its_cure(play, operation_name, arguments, told):
+    async def scene(stage):
+        call = stage.call(await stage.make(Careless), operation_name, *arguments)
+        assert told in call.outcome.message
+
+    play(scene)
+
+
+def test_an_operation_that_an_artifact_calls_without_await_is_told(play):
+    async def scene(stage):
+        careless = await stage.make(Careless)
+        outcome = await stage.call(careless, "forget").wait()
+        assert "self.rest(...) does nothing without await" in outcome.message
+        assert (await stage.call(careless, "rest").wait()).ok
+
+    play(scene)
+
+
+def test_a_signal_to_nobody_is_told(play):
+    async def scene(stage):
+        careless = await stage.make(Careless)
+        assert stage.call(careless, "begin").ok
+        await asyncio.sleep(0)
+        assert any("self.caller is None in internal operations" in line for line in stage.lines)
+
+    play(scene)
+
+
+def test_an_annotation_that_names_nothing_is_told_once_and_one_that_comes_later_counts(play):
+    names = {"__name__": __name__, "Artifact": Artifact, "operation": operation}
+    exec(
+        "class Late(Artifact):\n"
+        "    @operation\n    def put(self, x: 'NoSuch'): ...\n"
+        "    @operation\n    def place(self, x: 'Room'): ...\n"
+        "Room = int\n",
+        names,
+    )
+
+    async def scene(stage):
+        for name in ("a", "b"):
+            made = await stage.make(names["Late"], name=name)
+        (told,) = [line for line in stage.lines if "accepts anything" in line]
+        assert told.startswith(
+            "[Late] parameter x of Late.put accepts anything: its annotation 'NoSuch' is not known;"
+        )
+        assert "wants an integer" in stage.call(made, "place", "hall").outcome.message
+        assert stage.call(made, "put", "hall").ok
+
+    play(scene)
+
+
+def test_a_missing_port_can_be_caught(play):
+    class Speaker(Artifact):
+        ports = ("out",)
+
+        @operation
+        async def say(self, result: Out[str]):
+            try:
+                await self.call_linked("outt", "on")
+            except OperationFailed as failure:
+                result.set(f"{failure.message} {failure.reason}")
+
+    async def scene(stage):
+        result = Out()
+        assert (await stage.call(await stage.make(Speaker), "say", result).wait()).ok
+        assert result.value.endswith("has no out port 'outt'; its ports are out operation_error(\"say/1\")")
+
+    play(scene)
+
+
+def test_a_value_is_of_the_class_that_is_asked_for(play):
+    class Typed(Artifact):
+        def init(self):
+            self.define_property("free", 3)
+
+        @operation
+        def ask(self, free: Out[bool]):
+            free.set(self.value("free", kind=int) > 0)
+
+        @operation
+        def ask_wrongly(self):
+            self.value("free", kind=str)
+
+    async def scene(stage):
+        typed, free = await stage.make(Typed), Out()
+        assert stage.call(typed, "ask", free).ok
+        assert free.value is True
+        assert (
+            "property free has 3 at index 0, which is no str"
+            in stage.call(typed, "ask_wrongly").outcome.message
+        )
+
+    play(scene)
