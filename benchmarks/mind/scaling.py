@@ -63,6 +63,11 @@ def stamps(size: int) -> Workload:
     return single(f"beliefs with {size:,} annotations", "stamps", 20_000 // size, lambda n, k: n * k, k=size)
 
 
+def growing(size: int) -> Workload:
+    """Lists in a belief that grow to *size* elements, 20,000 in all."""
+    return single(f"lists of {size:,} elements", "growing", 20_000 // size, lambda n, k: n * k, k=size)
+
+
 def forks(size: int) -> Workload:
     """Loops that fork *size* times, 20,000 forks in all."""
     return single(f"loops of {size:,} forks", "forks", 20_000 // size, lambda n, k: n * k, k=size)
@@ -98,6 +103,10 @@ CURVES = (
     Curve(
         "conditions", "A wait for a condition, while others are awaited", "wait", "awaited conditions", TO_10_000,
         (), conditions, lambda size: 0,
+    ),
+    Curve(
+        "growing", "An element added to a list in a belief", "element", "elements", TO_10_000,
+        (), growing, lambda size: 0,
     ),
     Curve("forks", "A fork in a loop", "fork", "rounds of the loop", TO_10_000, (), forks, lambda size: 0),
 )  # fmt: skip

@@ -117,7 +117,10 @@ WORKLOADS = (
         "1000 intentions", "intentions", 100, lambda n, k: k * n + 7 * k + 8, k=1000,
         faster=15, sizes={"agentspeak": 50},
     ),
-    single("failures", "failures", 50_000, lambda n, k: 5 * n + 5, lacks={"agentspeak": "plans for failure"}),
+    single(
+        "failures", "failures", 50_000, lambda n, k: 5 * n + 5,
+        faster_jason=1.4, lacks={"agentspeak": "plans for failure"},
+    ),
     single("list of 1000", "lists", 100, lambda n, k: n * (k + 3) + k + 5, k=1000),
     Workload(
         "messages", (("ping", "ping", 1), ("pong", "pong", 1)), 50_000, lambda n, k: n,
@@ -152,6 +155,26 @@ WORKLOADS = (
     single(
         "forks", "forks", 10, lambda n, k: n * k, k=1000, unit="fork", goal=None, faster=None, faster_jason=1,
         lacks={"agentspeak": "|&|"},
+    ),
+    single(
+        "list in a belief", "growing", 10, lambda n, k: n * k, k=1000, unit="element", goal=None, faster=None,
+        faster_jason=1, lacks={"agentspeak": ".range with three arguments"}, sizes={"jason": 2},
+    ),
+    single(
+        "operations on lists of 2000", "list_operations", 100, lambda n, k: 9 * n, k=2000, unit="operation", goal=None,
+        faster=None, faster_jason=1, lacks={"agentspeak": ".nth"},
+    ),
+    single(
+        "strings", "strings", 5_000, lambda n, k: 7 * n, unit="operation", goal=None, faster=None, faster_jason=1.1,
+        lacks={"agentspeak": ".term2string"},
+    ),
+    single(
+        "deconstruction", "deconstruction", 20_000, lambda n, k: 2 * n, unit="term", goal=None, faster=None,
+        faster_jason=1.1, lacks={"agentspeak": "=.. in both directions"},
+    ),
+    single(
+        "random", "random", 20_000, lambda n, k: 3 * n, unit="number", goal=None, faster=None, faster_jason=1.1,
+        lacks={"agentspeak": "random elements of a list"},
     ),
     single(
         "namespaces", "namespaces", 50_000, lambda n, k: 3 * n + 8,
