@@ -1,11 +1,18 @@
 """The loop for plain agents (`execute_plainly`) and the one for all others (`execute`) do the same."""
 
+import sys
 from pathlib import Path
+from random import Random
 
 import pytest
 
 from jacaros.bdi import cycle
+from jacaros.compiler import conditions
 from jacaros.testing import run_project
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "tools"))
+
+from running_programs import Writer
 
 CASES = Path(__file__).parents[2] / "conformance"
 PROGRAMS = sorted(
@@ -54,3 +61,22 @@ def test_both_loops_make_the_same_cycles(monkeypatch, tmp_path):
     plainly = cycles()
     monkeypatch.setattr(cycle, "is_plain", lambda agent: False)
     assert cycles() == plainly
+
+
+def test_random_programs_do_the_same_in_both_loops_and_with_searched_contexts(monkeypatch, tmp_path):
+    differing = []
+    for seed in range(12):
+        for name, text in Writer(Random(seed)).files().items():
+            (tmp_path / name).write_text(text, encoding="utf-8")
+        results = []
+        for path in ("plain", "general", "searched"):
+            with monkeypatch.context() as patch:
+                if path == "general":
+                    patch.setattr(cycle, "is_plain", lambda agent: False)
+                elif path == "searched":
+                    patch.setattr(conditions, "_MAX_LOOPS", 0)
+                result = run_project(tmp_path / "random.jcm", seconds=30, until_idle=True)
+            results.append((result.lines, result.errors, result.exit_code))
+        if results.count(results[0]) < len(results):
+            differing.append(seed)
+    assert differing == []
