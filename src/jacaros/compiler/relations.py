@@ -2,9 +2,9 @@
 
 from jacaros.asl import nodes
 from jacaros.compiler.answers import undoing
-from jacaros.compiler.building import as_name, build, is_number
+from jacaros.compiler.building import as_name, build, is_number, tuple_of
 from jacaros.compiler.function import FunctionBuilder
-from jacaros.compiler.matching import Then
+from jacaros.compiler.matching import Then, match_all
 from jacaros.compiler.variables import names_in
 
 _COMPARE = {
@@ -24,11 +24,48 @@ def relation(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
     elif node.operator == "=.." and isinstance(node.left, nodes.Variable) and node.left.namespace is not None:
         _deconstruction_in_namespace(fn, node, node.left, then)
     elif node.operator == "=..":
-        left, right = build(fn, node.left), build(fn, node.right)
-        undoing(fn, f"deconstruct({left}, {right}, t)", [], then)
+        _deconstruction(fn, node, then)
     else:
         with fn.writer.block(f"if {comparison(fn, node)}:"):
             then()
+
+
+def _deconstruction(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
+    """``X =.. [F, A, N]``: what is met for the first time is neither a term with variables nor unified."""
+    left, right = node.left, node.right
+    parts = right.items if isinstance(right, nodes.ListTerm) and right.tail is None else ()
+    found = fn.local("d")
+    if (
+        len(parts) in (3, 4)
+        and isinstance(left, nodes.Variable)
+        and _is_unbound(fn, left)
+        and left.name not in names_in(right)
+    ):
+        fn.line(f"{found} = constructed({tuple_of([build(fn, part) for part in parts])})")
+        with fn.writer.block(f"if {found} is not None:"):
+            fn.bind(left.name, found)
+            then()
+        return
+    known = build(fn, left)
+    if len(parts) in (3, 4) and _take_anything(fn, parts):
+        values = [fn.local("p") for _ in parts]
+        fn.line(f"{found} = deconstructed({known}, {len(parts)})")
+        with fn.writer.block(f"if {found} is not None:"):
+            fn.line(f"{tuple_of(values)} = {found}")
+            match_all(fn, list(parts), values, then)
+        return
+    undoing(fn, f"deconstruct({known}, {build(fn, right)}, t)", [], then)
+
+
+def _take_anything(fn: FunctionBuilder, patterns: tuple[nodes.Term, ...]) -> bool:
+    """Whether all are variables, different ones that are met here for the first time."""
+    variables = [each for each in patterns if isinstance(each, nodes.Variable) and _is_plain(each)]
+    named = [each.name for each in variables if not each.unnamed]
+    return (
+        len(variables) == len(patterns)
+        and len(set(named)) == len(named)
+        and not any(name in fn.values for name in named)
+    )
 
 
 def _deconstruction_in_namespace(
@@ -66,10 +103,8 @@ def _unification(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
 
 
 def _is_unbound(fn: FunctionBuilder, node: nodes.Variable) -> bool:
-    return (
-        not node.unnamed
-        and node.annotations is None
-        and node.namespace is None
-        and not node.negated
-        and node.name not in fn.values
-    )
+    return _is_plain(node) and not node.unnamed and node.name not in fn.values
+
+
+def _is_plain(node: nodes.Variable) -> bool:
+    return node.annotations is None and node.namespace is None and not node.negated

@@ -15,7 +15,7 @@ from jacaros.compiler.calls import (
     unknown,
     values_of,
 )
-from jacaros.compiler.deconstruction import deconstruct, deconstruct_in
+from jacaros.compiler.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
 from jacaros.compiler.literals import (
     annotations_of_event,
     literal_in,
@@ -76,8 +76,10 @@ _FUNCTIONS = (
     at_most,
     binary,
     cannot_wait,
+    constructed,
     deconstruct,
     deconstruct_in,
+    deconstructed,
     deeper,
     bare,
     deref,

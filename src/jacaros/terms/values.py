@@ -44,7 +44,9 @@ class Functor:
         kind: what the structure is, see the constants above.
     """
 
-    __slots__ = ("__weakref__", "arity", "kind", "name", "namespace", "negated")
+    __slots__ = ("__weakref__", "_atom", "arity", "kind", "name", "namespace", "negated")
+
+    _atom: "Functor"
 
     def __init__(self, name: str, arity: int, negated: bool, namespace: str | None, kind: int) -> None:
         self.name, self.arity, self.negated, self.namespace, self.kind = name, arity, negated, namespace, kind
@@ -52,6 +54,16 @@ class Functor:
     def __repr__(self) -> str:
         prefix = f"{self.namespace}::" if self.namespace else ""
         return f"{prefix}{'~' if self.negated else ''}{self.name}/{self.arity}"
+
+    def as_atom(self) -> "Functor":
+        """The atom of that name in the default namespace, negated if this is; it lives as long as this does."""
+        if not (self.arity or self.namespace or self.kind):
+            return self
+        try:
+            return self._atom
+        except AttributeError:
+            self._atom = functor(self.name, 0, self.negated)
+            return self._atom
 
     def __reduce__(self) -> tuple[Any, ...]:
         return functor, (self.name, self.arity, self.negated, self.namespace, self.kind)

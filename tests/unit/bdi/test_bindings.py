@@ -5,6 +5,8 @@ from collections.abc import Callable
 import pytest
 from recording_host import mind, printed
 
+from jacaros.compiler import deconstruction
+
 
 def test_a_failed_goal_gives_its_variables_back_to_the_handler_and_the_caller() -> None:
     assert printed(
@@ -154,3 +156,59 @@ def test_a_round_of_a_loop_over_numbers_takes_few_calls(
         return calls_of(lambda: printed(f"!s. +!s <- for (.range(I, 1, {rounds})) {{ Y = I }}; .print(end)."))
 
     assert (work(300) - work(100)) / 200 < 5
+
+
+@pytest.mark.parametrize(
+    "term",
+    [
+        "p(1, [b])",
+        "a",
+        "~q(2)",
+        "n::r(3)",
+        "n::~s",
+        "p(4)[x, y]",
+        "_",
+        "[1]",
+        "[]",
+        "5",
+        '"s"',
+        "{+!g(1) : c <- d}",
+    ],
+)
+@pytest.mark.parametrize("parts", ["[F, A, N]", "[S, F, A, N]", "[_, F, A, _]", "[F, F, N]"])
+def test_a_term_is_taken_apart_alike_by_a_list_of_new_variables_and_by_one_with_values(
+    term: str, parts: str
+) -> None:
+    def shown(test: str) -> list[str]:
+        return printed(f"!go. +!go <- T = {term}; {test}; .print(F, A, N). -!go <- .print(no).")
+
+    assert shown(f"T =.. {parts}") == shown(f"L = {parts}; T =.. L")
+    if "S" in parts:
+        assert shown(f"T =.. {parts}") == shown(f"T =.. L; L = {parts}")
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        "[p, [1, Y], [x]]",
+        "[n, p, [], []]",
+        "[default, ~p, [1], []]",
+        "[default, p, Y, Y]",
+        "[Y, [], []]",
+        "[p, []]",
+        "[p, [X], []]",
+    ],
+)
+def test_a_term_is_made_alike_for_a_new_variable_and_for_one_without_value(parts: str) -> None:
+    def shown(before: str) -> list[str]:
+        return printed(f"!go. +!go <- {before} X =.. {parts}; Y = 2; .print(X). -!go <- .print(no).")
+
+    assert shown("") == shown("L = [X];")
+
+
+def test_a_term_is_taken_apart_without_unification(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(deconstruction, "unify", None)
+    program = (
+        "!go(p(1, a)). +!go(T) <- T =.. [F, A, N]; M =.. [q, A, [F]]; M =.. [_, G, _, O]; .print(G, A, N, O)."
+    )
+    assert printed(program) == ["q[1,a][][p]"]
