@@ -192,7 +192,8 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
         ):
             goal = frame[1]
             release_bindings(goal, frame[3])
-            intention.handlers.append(index)
+            # Handlers above it have failed with the goals that they handled.
+            intention.handlers[handlers:] = (index,)
             return Posted((kind, *goal[1:]), reason.for_goal(frame[2]))
         index -= 1
     return None

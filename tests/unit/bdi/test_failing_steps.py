@@ -224,3 +224,11 @@ def test_a_step_that_fails_raises_no_exception() -> None:
         sys.settrace(before)
     assert host.printed == ["c"]
     assert raised == []
+
+
+def test_a_handler_runs_once_although_the_handler_of_an_inner_goal_failed() -> None:
+    goals = "!a. +!a <- !x. +!x <- .fail. -!x <- !b; {}. +!b <- !f. +!f <- .fail. -!f <- .fail."
+    outer = "-!a <- .print(a)."
+    assert printed(f"{goals.format('.print(x)')} -!b <- .print(b); .fail. {outer}") == ["b", "a"]
+    assert printed(f"{goals.format('.print(x)')} -!b <- .print(b). {outer}") == ["b", "x"]
+    assert printed(f"{goals.format('.fail')} -!b <- .print(b). {outer}") == ["b", "a"]
