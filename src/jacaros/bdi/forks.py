@@ -109,6 +109,4 @@ def _drop_branches(agent: Circumstance, point: Fork, survivor: Intention) -> Non
     point.open.clear()
     for other in list(agent.alive.values()):
         if other is not survivor and any(fork_point is point for fork_point, _ in other.forks):
-            while other.forks[-1][0] is not point:
-                other.forks = other.forks[:-1]
             agent.finish(other)

@@ -186,5 +186,5 @@ def _lost_in_handler(
     if number is not None:
         meta_events.observe_goal(agent, intention, goal, number, "failed")
         meta_events.observe_goal(agent, intention, goal, number, "finished")
-    observe_failed(agent, intention, 0, reason)
+    observe_failed(agent, intention, meta_events.shared(agent, intention), reason)
     agent.finish(intention)

@@ -130,8 +130,8 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
     """An intention vanishes without failure events; what it waits for is cancelled."""
     if agent.meta:
         for frame in intention.frames:
-            meta_events.frame_state(agent, intention, frame, "dropped")
-            meta_events.frame_state(agent, intention, frame, "finished")
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
     event = pending_event(agent, intention)
     if event is not None:
         remove_event(agent, event)

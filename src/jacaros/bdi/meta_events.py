@@ -75,10 +75,19 @@ def failed_number(annotations: Any) -> int | None:
 
 
 def observe_rest(agent: Circumstance, intention: Intention) -> None:
-    """Tell the observer that goals are over because their intention is, with those of a fork's branch only."""
-    first = intention.forks[-1][0].depth + 1 if intention.forks else 0
-    for frame in reversed(intention.frames[first:]):
+    """Tell the observer that goals are over because their intention is."""
+    for frame in reversed(intention.frames[shared(agent, intention) :]):
         observe(agent, intention, frame, "finished")
+
+
+def shared(agent: Circumstance, intention: Intention) -> int:
+    """The number of frames, from the bottom of the stack, whose goals other branches of a fork pursue, too."""
+    for point, _ in reversed(intention.forks):
+        for other in agent.alive.values():
+            if other is not intention and any(each is point for each, _ in other.forks):
+                depth: int = point.depth
+                return depth + 1
+    return 0
 
 
 def post_new_goal(agent: Circumstance, event: Event) -> None:

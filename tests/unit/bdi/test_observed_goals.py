@@ -2,13 +2,16 @@
 
 from collections import Counter
 from pathlib import Path
+from random import Random
 
 import pytest
 from recording_host import mind
 
 from jacaros.bdi.act import Act, Completion
-from jacaros.bdi.intention import SERIAL
-from jacaros.bdi.meta_events import observe_goals
+from jacaros.bdi.event import EVENT_ANNOTATIONS, EVENT_GOAL
+from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL
+from jacaros.bdi.meta_events import failed_number, observe_goals
+from jacaros.bdi.stack import pending_event
 from jacaros.inspector.goal_news import GoalNews
 
 CASES = Path(__file__).parents[2] / "conformance"
@@ -91,30 +94,101 @@ def test_goals_that_are_steered_end():
     ]
 
 
+class Watched:
+    """A program with a watcher of its goals."""
+
+    def __init__(self, program, **arguments):
+        self.host = mind(program, **arguments)
+        self._ends, self._last = Counter(), {}
+        self._news = GoalNews(self._hear)
+        observe_goals(self.host.agent, lambda *change: self._news("bob", *change))
+
+    def _hear(self, goal):
+        number, state = goal["id"], goal["state"]
+        assert not self._ends[number], goal
+        self._last[number] = state
+        self._ends[number] += state not in (*BEGUN, "failed")
+
+    def check(self):
+        """Compare the goals that are open for the watcher with those on the stacks."""
+        begun = {which for _, which in self._news._goals}
+        agent = self.host.agent
+        assert begun == {number for each in agent.alive.values() for number in pursued(agent, each)}
+        assert len([state for state in self._last.values() if state in BEGUN]) == len(begun)
+
+
+def pursued(agent, intention):
+    """The numbers of the goals on a stack; a handler stands for the goal whose failure it deals with."""
+    frames, handlers = list(intention.frames), list(intention.handlers)
+    event = pending_event(agent, intention)
+    if event is not None and event[EVENT_GOAL][0].failing:  # the handler is not on the stack yet
+        frames.append([None, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], 0])
+    height = len(frames) - 1
+    while height >= 0:
+        frame = frames[height]
+        if frame[GOAL][0].failing and handlers:
+            height = handlers.pop()
+            number = failed_number(frame[ANNOTATIONS])
+            frame = frames[height]
+            if number is not None and frame[GOAL][0].kind == "!":
+                yield number
+        if frame[GOAL][0].kind == "!" and not frame[GOAL][0].failing:
+            yield frame[SERIAL]
+        height -= 1
+
+
 @pytest.mark.parametrize(
     "case", sorted(CASES.rglob("*.asl")), ids=lambda path: f"{path.parent.name}/{path.stem}"
 )
 def test_every_goal_ends_once_unless_it_is_pursued_still(case: Path) -> None:
     if "syntax_errors" in case.parts or not case.with_suffix(".expected").exists():
         return
-    ends: Counter[int] = Counter()
-    last: dict[int, str] = {}
+    watched = Watched(case.read_text(), name=case.stem, path=str(case), complete=no_environment)
+    watched.host.run()
+    watched.check()
 
-    def tell(goal: dict[str, object]) -> None:
-        number, state = goal["id"], goal["state"]
-        assert isinstance(number, int)
-        assert not ends[number], goal
-        last[number] = str(state)
-        ends[number] += state not in (*BEGUN, "failed")
 
-    host = mind(case.read_text(), name=case.stem, path=str(case), complete=no_environment)
-    news = GoalNews(tell)
-    observe_goals(host.agent, lambda *change: news("bob", *change))
-    host.run()
-    begun = {which for _, which in news._goals}
-    alive = {frame[SERIAL] for intention in host.agent.alive.values() for frame in intention.frames}
-    assert begun <= alive
-    assert len([state for state in last.values() if state in BEGUN]) == len(begun)
+def any_step(random):
+    """A step of a plan: goals, actions that end later or fail, and what ends, suspends and resumes goals."""
+    goal = random.choice("abcdef")
+    argument = random.choice(("1", "2", "X", "_"))
+    return random.choice(
+        (
+            *(f"!{goal}({argument})",) * 6,
+            *(f"!!{goal}({argument})", f"{{ !{goal}(1) |&| !b(2) }}", f"{{ .wait(1) ||| !{goal}(2) }}"),
+            *("act", ".wait(5)", ".wait(1)", ".fail", "X = 1", "+p(1)", "?p(X)", "!unknown", ".done"),
+            *(f".drop_intention({goal}(_))", f".drop_desire({goal}(_))", f".succeed_goal({goal}(_))"),
+            *(f".fail_goal({goal}(_))", f".suspend({goal}(_))", f".resume({goal}(_))"),
+            *(f"for (.member(Y, [1, 2])) {{ !{goal}(Y) }}", f"!{goal}(1)[hard_deadline(3)]"),
+        )
+    )
+
+
+def any_program(random):
+    """A program of goals that fail, wait, fork, replace and end one another."""
+    plans = []
+    for goal in "abcdef":
+        for _ in range(random.randint(1, 2)):
+            context = random.choice(("true", "p(X)", "X < 2", "not p(2)"))
+            body = "; ".join(any_step(random) for _ in range(random.randint(1, 4)))
+            plans.append(f"{random.choice(('', '', '', '@[atomic] '))}+!{goal}(X) : {context} <- {body}.\n")
+        if random.random() < 0.5:
+            plans.append(f"-!{goal}(X) : {random.choice(('true', 'p(1)'))} <- {any_step(random)}.\n")
+    handler = random.choice(("", "-!unknown <- .wait(2).\n", "-!unknown <- !a(1).\n"))
+    return f"!a(1). !b(2).\n+!unknown : false.\n{handler}+p(X) <- {any_step(random)}.\n{''.join(plans)}"
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_every_goal_of_a_random_program_ends_once(seed):
+    random = Random(seed)
+    program = any_program(random)
+    outcomes = iter([random.choice((Completion(True), Completion(False), None)) for _ in range(400)])
+    watched = Watched(program, complete=lambda act: next(outcomes, None))
+    host = watched.host
+    for _ in range(300):
+        if not host.agent.run(1) and not host.ring_next(host.time + 100):
+            break
+        watched.check()
 
 
 def no_environment(act: Act) -> Completion:
