@@ -56,6 +56,7 @@ KINDS: Final[dict[str, Kind]] = {
     "no-effect": Kind("warning", "something in a project file that has no effect here"),
     "non-ascii-name": Kind("error", "a name with other letters than a to z"),
     "not-imported": Kind("note", "names that only running the Python code of the project can tell"),
+    "ordered-atom": Kind("warning", "an atom is compared with a number"),
     "not-a-belief": Kind("error", "a clause that is neither belief, rule, goal nor plan"),
     "not-a-number": Kind("error", "arithmetic with something that is no number"),
     "not-a-step": Kind("error", "a term where a step is expected"),

@@ -318,12 +318,13 @@ def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
 
 
 def _code(term: Term, span: Any, file: str) -> tuple[Term, ...]:
-    found: list[Term] = [(CODE, term)]
-    if file:
-        found.append((CODE_SRC, String(f"file:{file}")))
-    if span is not None:
-        found.append((CODE_LINE, float(span.line)))
-    return tuple(found)
+    return (CODE, term), *code_place(span, file)
+
+
+def code_place(span: Span | None, file: str) -> tuple[Term, ...]:
+    """``code_src`` and ``code_line`` of a place in a program, as far as they are known."""
+    source = ((CODE_SRC, String(f"file:{file}")),) if file else ()
+    return source if span is None else (*source, (CODE_LINE, float(span.line)))
 
 
 def goal_text(goal: tuple[Any, ...]) -> str:

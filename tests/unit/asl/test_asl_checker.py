@@ -267,6 +267,12 @@ def test_handlers_that_all_have_conditions_are_worth_a_note():
 def test_comparisons_with_variables_without_a_value():
     assert codes("+!g <- X == 3; a(X).") == ["comparison-without-value"]
     assert codes("+!g : X == 3 & p(X) <- a.") == ["comparison-without-value"]
+
+
+def test_an_atom_that_is_compared_with_a_number_is_told() -> None:
+    assert codes("+!g : x > 3 <- a.") == ["ordered-atom"]
+    assert codes("+!g : p(X) <- if (2*X <= limit) { a }.") == ["ordered-atom"]
+    assert codes("+!g : p(X) & X > a & x == 3 <- a.") == []
     assert codes("+!g(X) <- X == 3. +!h <- ?p(X); X == 3. +!i <- .findall(X, p(X) & X == 2, _).") == []
     assert codes("+!g <- F = (X == 2); X = 1; ?F.") == []
 

@@ -161,3 +161,16 @@ def test_a_wait_says_what_it_waits_for() -> None:
    .suspend(a); .suspended(a, wait(_)[time(U)]); .print(I, " ", T, N, M, U).
 """
     assert printed(program) == ["1 30012300"]
+
+
+def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it() -> None:
+    program = """
+        !g.
+        +!g <- if (true) { !h(X, 3) } else { !h(1, Y) }; .print(end).
+        +!h(A, B) <- ?k(A); .print(A).
+        +?k(7)
+          <- .current_intention(intention(_, L));
+             .findall(at(N, Body), .member(im(_[code_line(N)], _, Body, _), L), Found);
+             .nth(1, Found, Inner); .print(Inner); .nth(2, Found, Outer); .print(Outer).
+        """
+    assert printed(program)[:2] == ["at(4,{ ?k(7); .print(7) })", "at(3,{ !h(X,3); .print(end) })"]

@@ -12,6 +12,7 @@ from jacaros.asl.spelling import MOST_ASKED, close_matches
 from jacaros.asl.walk import walk
 
 _WORD: Final = re.compile(r"\b[A-Z]\w*")
+_ORDERING = frozenset({"<", "<=", ">", ">="})
 _CONSTANTS: Final = {
     "True": "true is written in lower case",
     "TRUE": "true is written in lower case",
@@ -100,13 +101,31 @@ def _meant_variable(name: str, occurrences: Counter[str]) -> str:
 
 
 def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:
-    """``X == 3`` where X has no value yet, and ``X = X + 1``: neither ever holds."""
+    """``X == 3`` where X has no value yet, ``X = X + 1``, which never hold; ``x > 3``, which does not depend on x."""
     met: set[str] = set()
     for node, asked in in_order(clause):
+        if isinstance(node, nodes.Relation) and node.operator in _ORDERING:
+            yield from _ordered_atom(node)
         if isinstance(node, nodes.Variable):
             met.add(node.name)
         elif asked and isinstance(node, nodes.Relation) and isinstance(node.left, nodes.Variable):
             yield from _vain(node, node.left, met)
+
+
+def _ordered_atom(relation: nodes.Relation) -> Iterator[Diagnostic]:
+    for atom, other in ((relation.left, relation.right), (relation.right, relation.left)):
+        if (
+            isinstance(atom, nodes.Literal)
+            and not atom.arguments
+            and isinstance(other, nodes.Number | nodes.Arithmetic)
+        ):
+            yield Diagnostic(
+                "warning",
+                f"{atom.functor} is an atom, and an atom is greater than any number",
+                atom.span,
+                f"a variable begins with a capital: {atom.functor[:1].upper()}{atom.functor[1:]}",
+                "ordered-atom",
+            )
 
 
 def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> Iterator[Diagnostic]:

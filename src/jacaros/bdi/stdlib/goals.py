@@ -9,15 +9,16 @@ from jacaros.bdi import goals
 from jacaros.bdi.body_terms import is_body_frame
 from jacaros.bdi.context import Context
 from jacaros.bdi.event import EVENT_GOAL
-from jacaros.bdi.failure_reason import nowhere, shown_goal
+from jacaros.bdi.failure_reason import code_place, nowhere, shown_goal
 from jacaros.bdi.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
 from jacaros.bdi.internal_action import WrongArguments, internal_action
 from jacaros.bdi.plan_terms import bindings_of, variables_of
-from jacaros.bdi.stack import achieve
+from jacaros.bdi.stack import achieve, pending_event
 from jacaros.bdi.waiting import OWN_SUSPENSION, Waiting
 from jacaros.compiler.literals import literal_of
 from jacaros.compiler.lowering import lower
 from jacaros.compiler.outcomes import SUSPENDED, Failure
+from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
@@ -90,7 +91,7 @@ def intention(
             continue
         pairs = [(number, float(candidate.id)), (state, _state(candidate))]
         if stack is not None:
-            pairs.append((stack, make_list([_means(ctx, f) for f in reversed(candidate.frames)])))
+            pairs.append((stack, _stack(ctx, candidate)))
         if ctx.unify_all(*pairs):
             yield
 
@@ -105,21 +106,61 @@ def _state(candidate: Intention) -> Term:
     return Annotated(atom("waiting"), ((REASON, reason),))
 
 
-def _means(ctx: Context, frame: Any) -> Term:
-    """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done."""
-    plan = frame[4]
+def _stack(ctx: Context, intention: Intention) -> Term:
+    """The list of an intention's plans, the one at work first."""
+    frames = intention.frames
+    called = [frame[GOAL][0] for frame in frames[1:]]
+    event = pending_event(ctx.agent, intention)
+    called.append(event[EVENT_GOAL][0] if event is not None else None)
+    return make_list([_means(ctx, frame, above) for frame, above in zip(frames, called, strict=True)][::-1])
+
+
+def _means(ctx: Context, frame: Any, called: Any) -> Term:
+    """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done.
+
+    *called* is the trigger of the goal that it waits for, which is part of the body as long as that is so, or None.
+    """
+    plan = frame[PLAN]
     values = variables_of(frame)
     kind = frame[GOAL][0]
     goal = resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))
     rest = make_body(
         [
             lower(node, lambda name: values[name] if name in values else Var(name))
-            for node in _remaining(frame[STEP])
+            for node in (*_calling(frame, called), *_remaining(frame[STEP]))
         ],
         symbol=BODY_TERM,
     )
     event = trigger(kind.operator + kind.kind, goal)
-    return structure("im", ctx.agent.library.label(plan), event, resolve(rest), bindings_of(frame))
+    label = ctx.agent.library.label(plan)
+    span = plan.node.span
+    if span is not None:
+        label = Annotated(label.term, annotation_set((*label.annotations, *code_place(span, span.file.name))))
+    return structure("im", label, event, resolve(rest), bindings_of(frame))
+
+
+def _calling(frame: Any, called: Any) -> Iterator[Any]:
+    """The step of a plan for whose goal it waits."""
+    if called is None or called.failing or not called.kind:
+        return
+    after = frame[STEP].__name__ if frame[STEP] is not None else "None"
+    for info in getattr(frame[PLAN].first, "steps", {}).values():
+        if info.next == after and _posts(info.node, called):
+            yield info.node
+            return
+
+
+def _posts(node: Any, called: Any) -> bool:
+    """Whether a step may be the one that posted a goal."""
+    if called.kind == "!":
+        posted: nodes.Node | None = (
+            node.goal if isinstance(node, nodes.Achieve) and not node.separate else None
+        )
+    else:
+        posted = node.formula if isinstance(node, nodes.Test) else None
+    return isinstance(posted, nodes.Variable) or (
+        isinstance(posted, nodes.Literal) and posted.functor == called.functor.name
+    )
 
 
 def _remaining(step: Any) -> Iterator[Any]:
@@ -138,7 +179,7 @@ def current_intention(ctx: Context, target: Term) -> bool:
     current = ctx.intention
     if current is None:
         return False
-    stack = make_list([_means(ctx, f) for f in reversed(current.frames)])
+    stack = _stack(ctx, current)
     return ctx.unify(target, structure("intention", float(current.id), stack))
 
 
