@@ -28,7 +28,7 @@ def random(ctx: Context, first: Term, second: Term = 1.0, third: Term = 1.0) -> 
         raise WrongArguments(
             f".random needs a list or a variable, and a variable behind a list, not {text(result)}"
         )
-    draws = whole(amount, "the number of answers of .random")
+    draws = 1 if amount == 1.0 else whole(amount, "the number of answers of .random")
     if choices == []:
         return
     for _ in range(draws) if draws else count():
