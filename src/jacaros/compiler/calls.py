@@ -57,7 +57,7 @@ def values_of(context: Any, action: Any, *arguments: Term) -> Iterable[Term]:
 def first_answer_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
     """The first answer of a backtracking internal action that is a step of its own: errors fail the step."""
     del trail
-    for _ in action.function(context, *arguments):  # noqa: SIM110 - `any` takes a generator of its own
+    for _ in action.function(context, *arguments):
         return True
     return False
 
