@@ -186,5 +186,7 @@ def _lost_in_handler(
     if number is not None:
         meta_events.observe_goal(agent, intention, goal, number, "failed")
         meta_events.observe_goal(agent, intention, goal, number, "finished")
+    while intention.forks and branch_failed(agent, intention):
+        pass  # the others would wait for this branch for ever
     observe_failed(agent, intention, meta_events.shared(agent, intention), reason)
     agent.finish(intention)

@@ -77,6 +77,12 @@ def test_the_goals_of_a_branch_end_with_it_and_those_around_the_fork_go_on():
     assert goals_at_the_end(program) == ["achieved !a(1)", "achieved !b(1)", "failed !c(3)", "failed !d"]
 
 
+def test_a_branch_that_is_lost_in_a_handler_ends_the_fork_that_waits_for_it():
+    program = "!a. +!a <- !b {} !c; .print(joined). +!b <- .fail. -!b : p. +!c <- .wait(10)."
+    assert goals_at_the_end(program.format("|&|")) == ["failed !a", "failed !b", "dropped !c"]
+    assert goals_at_the_end(program.format("|||")) == ["achieved !a", "failed !b", "achieved !c"]
+
+
 def test_goals_that_are_steered_end():
     program = "!a. +!a <- !b; .print(x). +!b <- !c. +!c <- .wait(1000). !k. +!k <- .wait(5); .{}."
     assert goals_at_the_end(program.format("drop_intention(a)"))[:2] == ["dropped !a", "achieved !k"]
