@@ -69,6 +69,7 @@ class Circumstance:
         abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
         meta: whether plans or an observer want to hear of changes of goal states.
         goal_observer: told of each goal that changes, or None, see `jacaros.bdi.meta_events.observe_goals`.
+        parsed: texts that were read lately (`jacaros.bdi.context.Parsed`), by text and number of functions.
         on_finish: called with each intention that ends with goals on its stack, or None.
         probe: the test that looks on, or None.
         intentions_made: number of intentions so far.
@@ -148,6 +149,7 @@ class Circumstance:
         "option_filter",
         "options",
         "outer_frame",
+        "parsed",
         "pending_acts",
         "pending_asks",
         "percepts",
@@ -221,6 +223,7 @@ class Circumstance:
         self.meta = False
         self.goal_observer: Callable[[str, str, int, int, str], None] | None = None
         self.on_finish: Callable[[Intention], None] | None = None
+        self.parsed: dict[tuple[str, int], Any] = {}
         self.probe: Probe | None = None
         self.goal_conditions = False
         self.subplans = False

@@ -3,7 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
+from jacaros.asl import nodes
 from jacaros.asl.loader import parse_term
+from jacaros.asl.walk import walk
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.formulas import solve_formula
@@ -16,6 +18,26 @@ from jacaros.compiler.searching import run
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term, atom
+
+_SHORT, _KEPT = 200, 200
+"""Characters of a text whose syntax is kept, and how many of them are."""
+_CONSTANTS = (nodes.Literal, nodes.Number, nodes.String, nodes.ListTerm)
+
+
+class Parsed:
+    """A text that was read; short ones are kept, for agents read the same ones again and again.
+
+    Attributes:
+        node: its syntax.
+        term: what it denotes, if it has neither variables nor anything to be evaluated; else None.
+    """
+
+    __slots__ = ("node", "term")
+
+    def __init__(self, node: nodes.Term) -> None:
+        self.node = node
+        constant = all(isinstance(part, _CONSTANTS) for part in walk(node))
+        self.term: Term = lower_value(node, Names().__getitem__) if constant else None
 
 
 class Context:
@@ -75,13 +97,25 @@ class Context:
         Raises:
             AslError: when the text is no term.
         """
+        agent = self.agent
+        key = text, len(agent.functions)
+        known: Parsed | None = agent.parsed.get(key)
+        if known is None:
+            known = Parsed(parse_term(text, functions=known_names(agent)))
+            if len(text) <= _SHORT:
+                if len(agent.parsed) >= _KEPT:
+                    agent.parsed.clear()
+                agent.parsed[key] = known
+        return known.term if known.term is not None else lower_value(known.node, self._names().__getitem__)
+
+    def _names(self) -> Names:
+        """The variables of the running plan by their names."""
         names = Names()
         current = self.intention
         if current is not None and current.frames:
             frame = current.frames[-1]
-            slots = frame[4].slots
-            names.update({n: frame[s] for n, s in slots.items() if frame[s] is not None})
-        return lower_value(parse_term(text, functions=known_names(self.agent)), names.__getitem__)
+            names.update({n: frame[s] for n, s in frame[4].slots.items() if frame[s] is not None})
+        return names
 
     def report(self, action: str, fault: object) -> None:
         """Tell people of an internal action that could not be done in a condition."""

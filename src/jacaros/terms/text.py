@@ -24,6 +24,7 @@ from jacaros.terms.values import (
     LOGIC,
     NEGATED,
     NIL,
+    PLAIN,
     PLAN,
     RELATION,
     Annotated,
@@ -37,11 +38,16 @@ from jacaros.terms.values import (
     parted,
 )
 
+_LEAST, _GREATEST = -(2.0**63), 2.0**63
+"""Of the whole numbers that Java's ``long`` can have."""
+
 
 def number_text(value: float) -> str:
     """A number: integral values without a fraction, others in the shortest form of Java's doubles."""
-    if -(2.0**63) <= value <= 2.0**63 and value == math.trunc(value):
-        return str(min(int(value), 2**63 - 1))
+    if _LEAST <= value <= _GREATEST:
+        whole = int(value)
+        if whole == value:
+            return str(min(whole, 2**63 - 1))
     return double_text(value)
 
 
@@ -90,7 +96,10 @@ def quoted(text: str) -> str:
 
 def text(term: Term) -> str:
     """The term with all bindings applied, strings in quotes."""
-    return _write(resolve(term))
+    if term.__class__ is float:
+        return number_text(term)
+    term = resolve(term)
+    return (term.__class__ is tuple and _flat(term)) or _write(term)
 
 
 def display(term: Term) -> str:
@@ -133,7 +142,11 @@ def _write(term: Term) -> str:
         elif kind is String:
             written.append(f'"{piece}"')
         elif kind is tuple:
-            todo.extend(reversed(_structure(piece)))
+            flat = _flat(piece)
+            if flat:
+                written.append(flat)
+            else:
+                todo.extend(reversed(_structure(piece)))
         elif kind is List:
             todo.extend(reversed(_list(piece)))
         elif kind is Annotated:
@@ -167,6 +180,25 @@ def _name(symbol: Functor) -> str:
 def _annotated(term: Annotated) -> _Pieces:
     tail = [] if term.tail is None else ["|", term.tail]
     return [term.term, "[", *_separated(term.annotations), *tail, "]"]
+
+
+def _flat(term: tuple[Term, ...]) -> str:
+    """A structure whose arguments are numbers, strings and atoms, as most are; empty when it is not one."""
+    symbol = term[0]
+    if symbol.kind != PLAIN or symbol is CONS:
+        return ""
+    arguments = []
+    for argument in term[1:]:
+        kind = argument.__class__
+        if kind is float:
+            arguments.append(number_text(argument))
+        elif kind is String:
+            arguments.append(f'"{argument}"')
+        elif kind is Functor and argument is not BODY_END:
+            arguments.append(_name(argument))
+        else:
+            return ""
+    return f"{_name(symbol)}({','.join(arguments)})"
 
 
 def _structure(term: tuple[Term, ...]) -> _Pieces:

@@ -212,3 +212,19 @@ def test_a_term_is_taken_apart_without_unification(monkeypatch: pytest.MonkeyPat
         "!go(p(1, a)). +!go(T) <- T =.. [F, A, N]; M =.. [q, A, [F]]; M =.. [_, G, _, O]; .print(G, A, N, O)."
     )
     assert printed(program) == ["q[1,a][][p]"]
+
+
+def test_a_text_that_is_read_again_has_the_values_of_then() -> None:
+    assert printed(
+        """
+        !go. +!go <- !g(1); !g(2).
+        +!g(X)
+          <- .term2string(T, "f(X,a,[1])"); .print(T);
+             .term2string(U, "h(_,_)"); U = h(X, V); V = 5; .print(U);
+             .term2string(C, "c([1,b],\\"s\\")"); .print(C);
+             .term2string(S, "1 + 2"); .print(S).
+        """
+    ) == [
+        *("f(1,a,[1])", "h(1,5)", 'c([1,b],"s")', "3"),
+        *("f(2,a,[1])", "h(2,5)", 'c([1,b],"s")', "3"),
+    ]
