@@ -38,7 +38,7 @@ def test_running_plans_for_every_goal_show_what_is_left_of_each() -> None:
     +!c.
     +!show <- .intention(_, _, S, current); .reverse(S, [im(_, _, B, _)|_]); .print(B).
     """
-    assert printed(program) == ["{ .print(rest) }", "rest"]
+    assert printed(program) == ["{ !show; .print(rest) }", "rest"]
 
 
 def test_an_initial_belief_or_goal_without_value_is_left_out_and_told() -> None:
