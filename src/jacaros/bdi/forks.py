@@ -102,6 +102,13 @@ def branch_failed(agent: Circumstance, intention: Intention) -> bool:
     return True
 
 
+def leave(agent: Circumstance, intention: Intention, index: int) -> None:
+    """The stack of a branch is cut at *index*: forks at this frame and above are over, with their other branches."""
+    while intention.forks and intention.forks[-1][0].depth >= index:
+        _drop_branches(agent, intention.forks[-1][0], intention)
+        intention.forks = intention.forks[:-1]
+
+
 def _drop_branches(agent: Circumstance, point: Fork, survivor: Intention) -> None:
     """The other branches of a fork are over, with all that they forked themselves."""
     if not point.open:

@@ -271,6 +271,8 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
     """End matching goals as achieved: their callers go on.  True when the running intention is concerned."""
     own = False
     for intention in intentions_for(agent, goal):
+        if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
+            continue
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
         queued = agent.is_in_turn(intention)
@@ -305,6 +307,8 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
     reason = reason or nowhere()
     own = False
     for intention in intentions_for(agent, goal):
+        if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
+            continue
         index = frame_of(agent, intention, goal)
         if index is None:
             _fail_pending(agent, intention, reason)

@@ -3,6 +3,7 @@
 from jacaros.bdi import meta_events
 from jacaros.bdi.circumstance import Circumstance
 from jacaros.bdi.event import EVENT_INTENTION, Event
+from jacaros.bdi.forks import leave
 from jacaros.bdi.intention import GOAL, Intention
 
 
@@ -30,6 +31,7 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
         remove_event(agent, event)
     intention.parked = False
     intention.suspended = None
+    leave(agent, intention, index)
     del intention.frames[index:]
     while intention.handlers and intention.handlers[-1] >= index:
         intention.handlers.pop()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from recording_host import printed
 
 
@@ -74,3 +75,20 @@ def test_branches_share_the_answers_of_the_loop_around_them(
 
     least = work(1)
     assert work(400) - least < 5 * (work(100) - least)
+
+
+@pytest.mark.parametrize("operator", ["|&|", "|||"])
+def test_a_goal_that_is_ended_while_it_is_forked_ends_once(operator: str) -> None:
+    program = """
+        !m. !k.
+        +!m <- !a; .print(once).
+        +!a <- !b OPERATOR !c OPERATOR { !d |&| !b }; .print(never).
+        -!a <- .print(failed).
+        +!b <- .wait(100); .print(never).
+        +!c <- .wait(100); .print(never).
+        +!d <- .wait(50); .print(never).
+        +!k <- .wait(10); .END(a).
+        """.replace("OPERATOR", operator)
+    assert printed(program.replace("END", "succeed_goal")) == ["once"]
+    assert printed(program.replace("END", "fail_goal")) == ["failed", "once"]
+    assert printed(program.replace("+!a <-", "+!a <: done <-").replace(".END(a)", "+done")) == ["once"]
