@@ -175,9 +175,11 @@ def test_the_robot_is_left_still(folder: Path, options: tuple[str, ...]) -> None
         """
     code, _, _ = interrupted(folder, program, options=options)
     assert code == 130
-    velocities = (folder / "velocities.txt").read_text().split()
-    assert float(velocities[-2]) > 0
-    assert float(velocities[-1]) == 0
+    velocities = [float(line) for line in (folder / "velocities.txt").read_text().split()]
+    assert velocities[-1] == 0
+    while velocities and velocities[-1] == 0:  # a publisher that left late is followed by a second one
+        del velocities[-1]
+    assert len(velocities) > 3
 
 
 @pytest.mark.slow
