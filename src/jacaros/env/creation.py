@@ -5,6 +5,7 @@ from collections.abc import Callable
 from jacaros.env.artifact import Artifact, Host
 from jacaros.env.errors import InvalidArtifact, OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
+from jacaros.env.kernel.changed_copies import changed_copies
 from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
 from jacaros.env.kernel.faults import is_interruption, told
 from jacaros.env.kernel.interface import interface_of
@@ -73,17 +74,23 @@ def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, s
             raise
         setting.log_error(artifact_id.name, f"the constructor of {artifact_type.__qualname__} failed:", error)
         raise init_failed(artifact_id, told(error)) from error
-    _settle_annotations(artifact_type, setting)
+    if artifact_type not in setting.told:
+        setting.told.add(artifact_type)
+        _tell_author(artifact_type, setting)
     steps = Steps(artifact_id, artifact, artifact_type.interface, tuple(artifact_type.ports), setting)
     artifact._join(steps, host)
     return steps
 
 
-def _settle_annotations(artifact_type: type[Artifact], setting: Setting) -> None:
-    """Read an interface again if it had annotations that named nothing yet, and tell of those that still do not."""
-    if artifact_type in setting.told or not any(artifact_type.interface.unknown_annotations()):
+def _tell_author(artifact_type: type[Artifact], setting: Setting) -> None:
+    """Tell of mistakes that can be seen in a class, when the first artifact of it is made: all its module is there then."""
+    for call in changed_copies(artifact_type):
+        setting.log(
+            f"[{artifact_type.__name__}] in {call} changes a copy of the value, and nothing else: keep it in a variable, "
+            "change that, and give it to self.update_property"
+        )
+    if not any(artifact_type.interface.unknown_annotations()):
         return
-    setting.told.add(artifact_type)
     artifact_type.interface = interface_of(artifact_type)
     for operation, parameter, written in artifact_type.interface.unknown_annotations():
         setting.log(

@@ -167,3 +167,35 @@ def test_a_value_is_of_the_class_that_is_asked_for(play):
         )
 
     play(scene)
+
+
+class Copying(Artifact):
+    def init(self):
+        self.define_property("path", [])
+
+    @operation
+    async def add(self, x):
+        self.value("path").append(x)
+
+    @operation
+    def add_rightly(self, x):
+        path = self.value("path")
+        path.append(x)
+        self.update_property("path", path)
+
+    @operation
+    def look(self, last: Out):
+        last.set(self.value("path").pop())
+
+
+def test_a_change_of_a_copy_is_told_once(play):
+    async def scene(stage):
+        await stage.make(Copying, name="a")
+        copying = await stage.make(Copying, name="b")
+        (told,) = [line for line in stage.lines if "changes a copy" in line]
+        assert told.startswith("[Copying] in Copying.add (line ")
+        assert "): self.value('path').append(x) changes a copy of the value, and nothing else" in told
+        assert stage.call(copying, "add_rightly", 3).ok
+        assert stage.property(copying, "path") == ([3],)
+
+    play(scene)
