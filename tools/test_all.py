@@ -95,7 +95,7 @@ def parts() -> list[Part]:
         Part("format", (f"{BIN}/ruff", "format", "--check", ".")),
         Part("types", (PYTHON, "-m", "mypy"), budget=30),
         Part("layers", (f"{BIN}/lint-imports", "--no-logo")),
-        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), budget=190),
+        Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), budget=210),
         Part("wheel", ("tools/test_wheel.sh",)),
         # The checker prints at its end.
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language"), budget=120, quiet_minutes=30),
