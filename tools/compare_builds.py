@@ -29,8 +29,8 @@ PATIENCE = 8.0
 
 def work(path: str) -> None:
     """Be a worker: read projects as lines, run each on one *path*, write what came of it as lines."""
-    from jacaros.bdi import cycle
-    from jacaros.compiler import conditions
+    from jacaros.bdi.fast.generated import conditions
+    from jacaros.bdi.rules import cycle
     from jacaros.testing import run_project
 
     if path == "general":

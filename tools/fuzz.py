@@ -39,9 +39,9 @@ from jacaros.asl.formatter import format_plan, format_term  # noqa: E402
 from jacaros.asl.loader import read_program  # noqa: E402
 from jacaros.asl.nodes import Program  # noqa: E402
 from jacaros.asl.source import SourceFile  # noqa: E402
-from jacaros.bdi.act import Act, Completion  # noqa: E402
+from jacaros.bdi.actions.internal_action import STANDARD  # noqa: E402
 from jacaros.bdi.agent import Agent  # noqa: E402
-from jacaros.bdi.internal_action import STANDARD  # noqa: E402
+from jacaros.bdi.state.act import Act, Completion  # noqa: E402
 
 CORPUS = [
     path.read_text(encoding="utf-8")

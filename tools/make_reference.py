@@ -14,13 +14,13 @@ from pathlib import Path
 
 import click
 
-import jacaros.bdi.stdlib
+import jacaros.bdi.actions.standard
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.artifacts.ros.wheels import WheeledArtifact
 from jacaros.asl.acting import NOT_IN_CONDITIONS
 from jacaros.asl.functions import ARITIES
-from jacaros.bdi.internal_action import STANDARD
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.env import Artifact, describe
 

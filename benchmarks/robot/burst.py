@@ -6,7 +6,7 @@ from typing import Any
 
 from yardstick import call
 
-from jacaros.bdi.act import Percept
+from jacaros.bdi.state.act import Percept
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import SOURCE_PERCEPT, atom, structure
 from jacaros.testing import AgentHarness

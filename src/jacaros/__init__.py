@@ -14,7 +14,7 @@ TYPE_CHECKING = (
 
 if TYPE_CHECKING:
     from jacaros.asl.errors import AslError
-    from jacaros.bdi.internal_action import ActionError, WrongArguments
+    from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
     from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
     from jacaros.errors import InternalError, JacarosError, UsageError
@@ -71,7 +71,7 @@ __all__ = [
 
 _PLACES = {
     "Action": "jacaros.extension.architecture",
-    "ActionError": "jacaros.bdi.internal_action",
+    "ActionError": "jacaros.bdi.actions.internal_action",
     "Agent": "jacaros.extension.agent",
     "AgentArch": "jacaros.extension.architecture",
     "AgentEnded": "jacaros.mas.embedding.errors",
@@ -98,7 +98,7 @@ _PLACES = {
     "Structure": "jacaros.env.values",
     "UnknownAgent": "jacaros.extension.errors",
     "UsageError": "jacaros.errors",
-    "WrongArguments": "jacaros.bdi.internal_action",
+    "WrongArguments": "jacaros.bdi.actions.internal_action",
     "arithmetic_function": "jacaros.extension.declaring",
     "internal_action": "jacaros.extension.declaring",
     "run": "jacaros.mas.embedding.main",

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import pytest
 from pages import ROOT
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.acting import NOT_IN_CONDITIONS
 from jacaros.asl.functions import ARITIES
-from jacaros.bdi.internal_action import STANDARD
+from jacaros.bdi.actions.internal_action import STANDARD
 
 FOLDER = ROOT / "docs" / "reference" / "internal_actions"
 FUNCTIONS = FOLDER / "functions.md"

@@ -10,8 +10,8 @@ from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 from jacaros.asl.loader import parse_term
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.compiler.lowering import lower_value
+from jacaros.asl.lowering import lower_value
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.env import ports
 from jacaros.env.artifact import Artifact
 from jacaros.env.errors import UnknownArtifact

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.bdi.internal_action import STANDARD, InternalAction
+from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
 from jacaros.mas.system import OUT_OF_MEMORY, System
 from jacaros.testing import run_project
 

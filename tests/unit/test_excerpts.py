@@ -9,7 +9,7 @@ from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import Diagnostic, render_all
 from jacaros.asl.loader import read_program
 from jacaros.asl.source import SourceFile, Span
-from jacaros.bdi.internal_action import STANDARD
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.excerpts import LONGEST, MOST, WIDTH, escaped, marked, printable
 from jacaros.yaml_nodes import Problem, YamlFileError
 

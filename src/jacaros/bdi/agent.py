@@ -6,7 +6,10 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.loader import include_program
-from jacaros.bdi import (
+from jacaros.asl.lowering import lower_value
+from jacaros.bdi.actions.internal_action import STANDARD, ActionError, InternalAction
+from jacaros.bdi.architecture import Architecture
+from jacaros.bdi.rules import (
     belief_update,
     body_terms,
     cloning,
@@ -21,27 +24,24 @@ from jacaros.bdi import (
     plan_changes,
     uptake,
 )
-from jacaros.bdi.act import Act, Completion, Percept
-from jacaros.bdi.answers import AnswerByPlan
-from jacaros.bdi.architecture import Architecture
-from jacaros.bdi.belief_base import parts
-from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.context import Context
-from jacaros.bdi.event import Posted
-from jacaros.bdi.failure import error_terms, output_misfit, step_failure
-from jacaros.bdi.finishing import pop_finished
-from jacaros.bdi.goal_failure import fail_intention
-from jacaros.bdi.intention import Frame
-from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
-from jacaros.bdi.options import Options
-from jacaros.bdi.program_plans import ProgramPlans
-from jacaros.bdi.rules import OpenFact, Rule
-from jacaros.bdi.speech_act import SpeechAct, message_id
-from jacaros.bdi.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
-from jacaros.compiler.literals import own_annotations
-from jacaros.compiler.lowering import lower_value
-from jacaros.compiler.outcomes import FAILED, SUSPENDED, Fail, Failure
-from jacaros.compiler.triggers import trigger
+from jacaros.bdi.rules.answers import AnswerByPlan
+from jacaros.bdi.rules.context import Context
+from jacaros.bdi.rules.failure import error_terms, output_misfit, step_failure
+from jacaros.bdi.rules.finishing import pop_finished
+from jacaros.bdi.rules.goal_failure import fail_intention
+from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED, Fail, Failure
+from jacaros.bdi.state.act import Act, Completion, Percept
+from jacaros.bdi.state.belief_base import parts
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Posted
+from jacaros.bdi.state.intention import Frame
+from jacaros.bdi.state.literals import own_annotations
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.program_plans import ProgramPlans
+from jacaros.bdi.state.rule import OpenFact, Rule
+from jacaros.bdi.state.speech_act import SpeechAct, message_id
+from jacaros.bdi.state.triggers import trigger
+from jacaros.bdi.state.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.plans import is_body

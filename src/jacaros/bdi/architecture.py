@@ -8,8 +8,8 @@ from collections.abc import Callable, Coroutine, Mapping, Sequence
 from random import Random
 from typing import Any, Protocol
 
-from jacaros.bdi.act import Act
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.act import Act
+from jacaros.bdi.state.speech_act import SpeechAct
 
 
 class Timer(Protocol):

@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
 
-from jacaros.bdi.act import Completion
+from jacaros.bdi.state.act import Completion
 from jacaros.body.call import Call, name_of
 from jacaros.body.completion import failed, of_operation, refused, succeeded
 from jacaros.body.filtering import Filter, filter_of

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Protocol
 
-from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.body.actions import ACTIONS, Action, Situation, keys
 from jacaros.body.call import Call, Direction, read
 from jacaros.body.completion import SUCCEEDED, of_operation, refused, succeeded

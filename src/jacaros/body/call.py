@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from jacaros.bdi.act import Act
+from jacaros.bdi.state.act import Act
 from jacaros.body.undelivered import unknown_annotation, unreachable
 from jacaros.body.values import symbol_name, unquoted
 from jacaros.env.errors import OperationFailed, spelling_hint

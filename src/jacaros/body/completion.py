@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from jacaros.bdi.act import Completion
+from jacaros.bdi.state.act import Completion
 from jacaros.body.undelivered import Undelivered
 from jacaros.body.values import Outputs, References, to_term
 from jacaros.env.errors import OperationFailed

@@ -5,7 +5,7 @@ Operations of artifacts are given their time in the request (`jacaros.env.operat
 
 from collections.abc import Callable
 
-from jacaros.bdi.act import Completion
+from jacaros.bdi.state.act import Completion
 from jacaros.body.call import Call
 from jacaros.body.completion import failed
 from jacaros.body.values import References

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from jacaros.bdi.act import Percept
+from jacaros.bdi.state.act import Percept
 from jacaros.body.filtering import Filter, FilteredObserver
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.values import References, atom_of

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from jacaros.bdi.act import Percept
+from jacaros.bdi.state.act import Percept
 from jacaros.body.values import References, atom_of, number_to_term, symbol_of, to_term
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation

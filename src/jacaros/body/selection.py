@@ -9,7 +9,7 @@ agent's home, then the others that it has joined (see `jacaros.env.choice` for s
 import difflib
 from collections.abc import Sequence
 
-from jacaros.bdi.internal_action import STANDARD
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.body.call import ANYWHERE, Call
 from jacaros.body.focus import FocusedArtifacts
 from jacaros.body.undelivered import nobody_offers, unreachable

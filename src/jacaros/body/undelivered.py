@@ -13,7 +13,7 @@ A plan that wants to know more finds it in another annotation, which is ours: ``
 ``unknown_operation("fly/2")``, ``workspace_not_joined("attic")``, ``unknown_annotation("heigth(2)")``...
 """
 
-from jacaros.bdi.act import Act
+from jacaros.bdi.state.act import Act
 from jacaros.body.values import unquoted
 from jacaros.env.errors import OperationFailed
 from jacaros.env.values import Atom, Structure

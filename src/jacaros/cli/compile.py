@@ -6,14 +6,14 @@ from pathlib import Path
 
 import click
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import bounded
-from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.bdi.fast.generated.listing import Piece, listing, pieces
+from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.program_plans import ProgramPlans
 from jacaros.cli.check import tell
 from jacaros.cli.files import existing
-from jacaros.compiler.listing import Piece, listing, pieces
-from jacaros.compiler.plan import Plan
 from jacaros.errors import UsageError
 from jacaros.mas.checking import check_files
 from jacaros.mas.programs import Programs

@@ -5,11 +5,11 @@ from random import Random
 from typing import Any
 
 from jacaros.asl.loader import parse_formula
-from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.asl.lowering import Names, lower
+from jacaros.bdi.rules.searching import run
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
-from jacaros.compiler.lowering import Names, lower
-from jacaros.compiler.searching import run
 from jacaros.extension.literal import Literal, literal_of, literal_term, term_of
 from jacaros.extension.views import Event, Intention, Message, Option, Percept
 from jacaros.terms.substitution import rename, resolve

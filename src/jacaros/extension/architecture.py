@@ -3,9 +3,9 @@
 from collections.abc import Awaitable, Iterable
 from typing import Any, Protocol
 
-from jacaros.bdi.act import Act, Completion, Percept
-from jacaros.bdi.belief_base import parts
-from jacaros.bdi.failure_reason import ERROR_MSG
+from jacaros.bdi.explaining.failure_reason import ERROR_MSG
+from jacaros.bdi.state.act import Act, Completion, Percept
+from jacaros.bdi.state.belief_base import parts
 from jacaros.body.values import Outputs, symbol_name, to_value
 from jacaros.env.values import Out
 from jacaros.extension.agent import Agent

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
-from jacaros.bdi import belief_base
-from jacaros.bdi.belief_base import Row, Table, parts
-from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.option_selection import SELECT_OPTION
+from jacaros.bdi.rules.option_selection import SELECT_OPTION
+from jacaros.bdi.state import belief_base
+from jacaros.bdi.state.belief_base import Row, Table, parts
+from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from, literal_of, literal_term

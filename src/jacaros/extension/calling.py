@@ -5,9 +5,9 @@ import typing
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from jacaros.bdi.context import Context
-from jacaros.bdi.failure import error_terms
-from jacaros.bdi.internal_action import ActionError, Crashed, InternalAction, WrongArguments
+from jacaros.bdi.actions.internal_action import ActionError, Crashed, InternalAction, WrongArguments
+from jacaros.bdi.rules.context import Context
+from jacaros.bdi.rules.failure import error_terms
 from jacaros.body.values import Outputs, to_value
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel import signature as operations

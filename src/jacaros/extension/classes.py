@@ -4,8 +4,8 @@ from typing import Any
 
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import parse_literal
+from jacaros.asl.lowering import lower_value
 from jacaros.body.values import to_value
-from jacaros.compiler.lowering import lower_value
 from jacaros.errors import JacarosError
 from jacaros.extension.agent import Agent
 from jacaros.extension.architecture import AgentArch

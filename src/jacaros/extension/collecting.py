@@ -6,7 +6,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from jacaros.bdi.internal_action import InternalAction
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.errors import JacarosError
 from jacaros.extension.calling import Undeclarable, action_of, function_of
 from jacaros.extension.declaring import ACTION, Declared, declarations

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.asl.loader import parse_term
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.asl.lowering import fresh_names, lower
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
-from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.extension.literal import term_of
 from jacaros.extension.views import Message, value_of
 from jacaros.terms.substitution import resolve

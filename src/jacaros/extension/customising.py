@@ -7,17 +7,17 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Generic, TypeVar
 
-from jacaros.bdi import act, event
 from jacaros.bdi import agent as mind
-from jacaros.bdi.belief_base import literal, parts
-from jacaros.bdi.failure import error_terms
-from jacaros.bdi.intention import PLAN, Frame
-from jacaros.bdi.internal_action import ActionError
-from jacaros.bdi.option_selection import options
-from jacaros.bdi.plan_library import PlanLibrary, Selects
-from jacaros.compiler.outcomes import Failure
-from jacaros.compiler.triggers import Trigger
-from jacaros.compiler.unit import Select
+from jacaros.bdi.actions.internal_action import ActionError
+from jacaros.bdi.fast.generated.unit import Select
+from jacaros.bdi.rules.failure import error_terms
+from jacaros.bdi.rules.option_selection import options
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.state import act, event
+from jacaros.bdi.state.belief_base import literal, parts
+from jacaros.bdi.state.intention import PLAN, Frame
+from jacaros.bdi.state.plan_library import PlanLibrary, Selects
+from jacaros.bdi.state.triggers import Trigger
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from
@@ -72,7 +72,7 @@ class CustomMind(mind.Agent):
         accepts = overridden(self.face, "kill_acc")
         return accepts is None or ask(self, accepts, bool, True, killer)
 
-    # changes of beliefs, see `jacaros.bdi.belief_update`
+    # changes of beliefs, see `jacaros.bdi.rules.belief_update`
 
     def add_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
         """``+b``."""

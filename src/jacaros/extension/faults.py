@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from jacaros.bdi.internal_action import ActionError, Crashed, WrongArguments
+from jacaros.bdi.actions.internal_action import ActionError, Crashed, WrongArguments
 from jacaros.env.values import Atom, Structure
 from jacaros.errors import InternalError
 from jacaros.extension.literal import Literal, term_of

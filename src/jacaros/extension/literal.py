@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 from jacaros.asl.loader import parse_literal
+from jacaros.asl.lowering import fresh_names, lower
 from jacaros.body.values import Outputs, References, symbol_name, to_term, to_value
-from jacaros.compiler.lowering import fresh_names, lower
 from jacaros.env.values import Atom, Structure
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve

@@ -5,7 +5,7 @@ from inspect import iscoroutinefunction
 from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
 
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.env.session.observed import PropertyChange
 from jacaros.env.session.session import Session

@@ -9,8 +9,8 @@ from typing import Any
 
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_literal
+from jacaros.asl.lowering import lower_value
 from jacaros.asl.nodes import Rule
-from jacaros.compiler.lowering import lower_value
 from jacaros.env.values import Atom, Out, Structure
 from jacaros.errors import JacarosError
 from jacaros.extension.belief_base import BeliefBase, Keeper

@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from jacaros.bdi import act, event, intention, speech_act
-from jacaros.bdi.intention import GOAL, PLAN, Frame
+from jacaros.bdi.state import act, event, intention, speech_act
+from jacaros.bdi.state import plan as compiled
+from jacaros.bdi.state.intention import GOAL, PLAN, Frame
+from jacaros.bdi.state.literals import annotations_of_event, literal_of
 from jacaros.body.values import to_value
-from jacaros.compiler import plan as compiled
-from jacaros.compiler.literals import annotations_of_event, literal_of
 from jacaros.env.values import Structure
 from jacaros.extension.literal import Literal
 from jacaros.extension.literal import literal_of as as_literal

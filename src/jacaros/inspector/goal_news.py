@@ -6,7 +6,7 @@ from functools import partial
 from itertools import count
 
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.meta_events import observe_goals
+from jacaros.bdi.rules.meta_events import observe_goals
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.directory import Directory
 from jacaros.mas.python_agents.host import PythonAgentHost
@@ -66,7 +66,7 @@ class GoalNews:
             observe_goals(host.mind, partial(self, host.name))
 
     def __call__(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:
-        """Be told by a mind, see `jacaros.bdi.meta_events.observe_goals`."""
+        """Be told by a mind, see `jacaros.bdi.rules.meta_events.observe_goals`."""
         if goal.startswith("!"):
             self.take(agent, state, goal, which, intention, why)
 

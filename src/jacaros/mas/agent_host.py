@@ -5,10 +5,10 @@ from random import Random
 from typing import Any, Protocol
 
 from jacaros.asl.nodes import Literal
-from jacaros.bdi.act import Act, Completion, Percept
 from jacaros.bdi.architecture import Timer
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.act import Act, Completion, Percept
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.console import Console

@@ -8,7 +8,7 @@ from typing import Final
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import Span
 from jacaros.asl.spelling import close_matches
-from jacaros.bdi.options import Options
+from jacaros.bdi.state.options import Options
 
 _EVENT: Final = re.compile(r"(\w+::)?~?[a-z]\w*")
 _TRUTH: Final = ("true", "false")

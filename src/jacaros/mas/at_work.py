@@ -6,10 +6,10 @@ from pathlib import Path
 from types import FrameType
 
 from jacaros.asl.formatter import format_term
-from jacaros.bdi import cycle
 from jacaros.bdi.agent import Agent
-from jacaros.compiler.outcomes import FAILED
-from jacaros.compiler.plan import Plan
+from jacaros.bdi.rules import cycle
+from jacaros.bdi.rules.outcomes import FAILED
+from jacaros.bdi.state.plan import Plan
 from jacaros.mas.agent_host import AgentHost
 
 _LOOP = "asyncio.events"

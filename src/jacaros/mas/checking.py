@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl import nodes
 from jacaros.asl.checker import check, place
 from jacaros.asl.checks.actions import KnownActions
@@ -375,7 +375,7 @@ def _check_program(
 
 def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     """Plans that are left out because Python does not compile them."""
-    from jacaros.bdi.program_plans import ProgramPlans, look_at_large_plans  # here: see `_of_artifacts`
+    from jacaros.bdi.state.program_plans import ProgramPlans, look_at_large_plans  # here: see `_of_artifacts`
 
     plans = ProgramPlans(program.plans, code.actions)
     for plan, fault in look_at_large_plans(plans.plans, plans.actions):

@@ -5,9 +5,9 @@ from functools import partial
 from inspect import isawaitable
 from typing import Any
 
-from jacaros.bdi.act import Act
 from jacaros.bdi.architecture import Timer
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.act import Act
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.extension.architecture import Action, AgentArch, Perception
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.views import Message

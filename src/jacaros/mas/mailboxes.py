@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from contextlib import suppress
 
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.compiler.outcomes import Failure
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.mas.ports import Mailbox
 from jacaros.terms.detaching import detached, holds_collection
 from jacaros.terms.substitution import is_ground, rename

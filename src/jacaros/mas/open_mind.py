@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from jacaros.asl.loader import parse_formula, parse_literal
-from jacaros.bdi import belief_update, goals
-from jacaros.bdi.act import Percept
+from jacaros.asl.lowering import Names, lower_value
 from jacaros.bdi.agent import Agent
+from jacaros.bdi.rules import belief_update, goals
+from jacaros.bdi.state.act import Percept
 from jacaros.body.values import to_value
-from jacaros.compiler.lowering import Names, lower_value
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import is_ground, resolve
 from jacaros.terms.text import text

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.bdi.state.program_plans import ProgramPlans
 from jacaros.errors import JacarosError
 from jacaros.mas.activity import AgentTimer
 from jacaros.mas.agent_classes import AgentClasses

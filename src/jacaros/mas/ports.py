@@ -8,7 +8,7 @@ what is known here.
 from collections.abc import Sequence
 from typing import Protocol
 
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.speech_act import SpeechAct
 
 
 class Mailbox(Protocol):

@@ -5,9 +5,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.bdi.circumstance import Circumstance
-from jacaros.bdi.context import Context
-from jacaros.bdi.internal_action import STANDARD, ActionError, InternalAction
+from jacaros.bdi.actions.internal_action import STANDARD, ActionError, InternalAction
+from jacaros.bdi.rules.context import Context
+from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.terms.values import Term
 

@@ -9,8 +9,8 @@ import importlib
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from jacaros.bdi.context import Context
-from jacaros.bdi.internal_action import ActionError, InternalAction, Registry
+from jacaros.bdi.actions.internal_action import ActionError, InternalAction, Registry
+from jacaros.bdi.rules.context import Context
 from jacaros.body.body import AgentBody
 from jacaros.body.call import name_of
 from jacaros.body.values import to_term, to_value

@@ -5,9 +5,9 @@ As in Jason it is an agent, ``df``, made at its first use: what it knows are its
 
 from collections.abc import Callable, Sequence
 
-from jacaros.bdi import belief_update
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.rules import belief_update
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import BY_SELF, Annotated, String, Term, atom, functor
 
 NAME = "df"

@@ -8,7 +8,7 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.nodes import Program
 from jacaros.bdi.agent import Agent
 from jacaros.clock import Clock

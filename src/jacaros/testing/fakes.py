@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from jacaros.bdi.act import Act, Completion
+from jacaros.bdi.state.act import Act, Completion
 from jacaros.terms.substitution import free_variables, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify

@@ -17,17 +17,17 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills the table of internal actions
+import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_term
-from jacaros.bdi import goals
-from jacaros.bdi.act import Act
+from jacaros.asl.lowering import lower_value
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.bdi.watched import WatchedGoal
+from jacaros.bdi.rules import goals
+from jacaros.bdi.rules.watched import WatchedGoal
+from jacaros.bdi.state.act import Act
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Timer
-from jacaros.compiler.lowering import lower_value
 from jacaros.mas.embedding.pursued_goal import PursuedGoal
 from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs

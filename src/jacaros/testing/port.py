@@ -6,9 +6,9 @@ from pathlib import Path
 from random import Random
 from typing import Any, Protocol
 
-from jacaros.bdi.act import Act
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.act import Act
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Timer, VirtualClock, run
 from jacaros.mas.coroutines import Ended, without_exit
 from jacaros.mas.programs import Programs

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 from jacaros.asl.loader import parse_term
-from jacaros.bdi.act import Act, Completion
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.asl.lowering import lower_value
+from jacaros.bdi.state.act import Act, Completion
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import References, to_term, to_value
-from jacaros.compiler.lowering import lower_value
 from jacaros.terms.substitution import free_variables
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var

@@ -12,17 +12,17 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from jacaros.asl.lowering import lower_value
 from jacaros.asl.source import Span
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.failure_reason import FailureReason
-from jacaros.bdi.goals import describe
-from jacaros.bdi.intention import PLAN, STEP, Intention
-from jacaros.bdi.lost_goals import details
-from jacaros.bdi.probe import Assertion
-from jacaros.bdi.waiting import is_action
-from jacaros.bdi.watched import WatchedGoal
+from jacaros.bdi.explaining.failure_reason import FailureReason
+from jacaros.bdi.explaining.lost_goals import details
+from jacaros.bdi.rules.goals import describe
+from jacaros.bdi.rules.watched import WatchedGoal
+from jacaros.bdi.state.intention import PLAN, STEP, Intention
+from jacaros.bdi.state.probe import Assertion
+from jacaros.bdi.state.waiting import is_action
 from jacaros.clock import Clock, VirtualClock, WallClock, run
-from jacaros.compiler.lowering import lower_value
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment, ProjectError

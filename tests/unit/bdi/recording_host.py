@@ -6,12 +6,12 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from random import Random
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills the registry of internal actions
+import jacaros.bdi.actions.standard  # noqa: F401 - fills the registry of internal actions
 from jacaros.asl.loader import load_program
-from jacaros.bdi.act import Act, Completion
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.act import Act, Completion
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.text import text
 
 

@@ -3,7 +3,7 @@
 import pytest
 from recording_host import printed
 
-from jacaros.bdi.act import Act, Completion
+from jacaros.bdi.state.act import Act, Completion
 from jacaros.testing import ActionFailed, AgentHarness
 
 MOVE = "!g. !other. +!g <- move(1, X); .print(moved(X)). +!other <- .wait(5); .print(other). -!g[R] <- .print(bad)."

@@ -2,8 +2,8 @@
 
 from recording_host import mind, printed
 
-from jacaros.bdi.deliberation import event_of, is_ready
-from jacaros.compiler.triggers import trigger
+from jacaros.bdi.rules.deliberation import event_of, is_ready
+from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.values import BY_SELF, atom, functor
 
 

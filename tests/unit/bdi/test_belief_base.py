@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from recording_host import printed
 
-from jacaros.bdi import belief_base, mixed_beliefs
-from jacaros.bdi.belief_base import BeliefBase, Table
-from jacaros.bdi.rules import OpenFact
+from jacaros.bdi.state import belief_base, mixed_beliefs
+from jacaros.bdi.state.belief_base import BeliefBase, Table
+from jacaros.bdi.state.rule import OpenFact
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import BY_SELF, Var, atom, functor

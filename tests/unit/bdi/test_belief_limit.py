@@ -3,12 +3,12 @@
 import pytest
 from recording_host import RecordingHost, believed, mind
 
-from jacaros.bdi import circumstance
-from jacaros.bdi.act import Percept
-from jacaros.bdi.belief_base import BeliefBase
-from jacaros.bdi.bounded_beliefs import BoundedBeliefs
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state import circumstance
+from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.belief_base import BeliefBase
+from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import SOURCE_PERCEPT, structure
 
 GROW = """

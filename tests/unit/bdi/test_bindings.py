@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 from recording_host import mind, printed
 
-from jacaros.compiler import deconstruction
+from jacaros.bdi.rules import deconstruction
 
 
 def test_a_failed_goal_gives_its_variables_back_to_the_handler_and_the_caller() -> None:

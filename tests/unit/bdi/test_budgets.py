@@ -5,12 +5,12 @@ from itertools import pairwise
 import pytest
 from recording_host import RecordingHost, mind
 
-from jacaros.bdi import circumstance
-from jacaros.bdi.act import Percept
-from jacaros.bdi.internal_action import STANDARD, InternalAction
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.compiler.outcomes import Failure
+from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.state import circumstance
+from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import SOURCE_PERCEPT, atom, structure
 
 
@@ -99,7 +99,7 @@ FORK_BOMB = """
 
 
 def test_goals_without_end_leave_the_other_plans_their_turns(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jacaros.bdi.deliberation.CROWD", 50)
+    monkeypatch.setattr("jacaros.bdi.rules.deliberation.CROWD", 50)
     monkeypatch.setattr(circumstance, "CROWD", 50)
     host = limited(FORK_BOMB, intention_limit=5000)
     turns = []
@@ -127,7 +127,7 @@ def test_goals_without_end_are_logged_now_and_then() -> None:
 def test_an_intention_that_waits_behind_the_crowd_has_its_turn_even_if_the_others_never_end(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("jacaros.bdi.deliberation.CROWD", 10)
+    monkeypatch.setattr("jacaros.bdi.rules.deliberation.CROWD", 10)
     monkeypatch.setattr(circumstance, "CROWD", 10)
     host = limited(
         """
@@ -145,7 +145,7 @@ def test_an_intention_that_waits_behind_the_crowd_has_its_turn_even_if_the_other
 
 
 def test_a_dropped_goal_behind_the_crowd_does_not_begin(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jacaros.bdi.deliberation.CROWD", 3)
+    monkeypatch.setattr("jacaros.bdi.rules.deliberation.CROWD", 3)
     monkeypatch.setattr(circumstance, "CROWD", 3)
     host = limited(
         """

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 from recording_host import believed, mind, printed
 
-from jacaros.bdi.act import Percept
+from jacaros.bdi.state.act import Percept
 from jacaros.terms.values import SOURCE_PERCEPT, atom, structure
 
 

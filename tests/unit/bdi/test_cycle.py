@@ -30,7 +30,7 @@ def test_staying_with_an_intention_changes_nothing_a_program_can_see(case: Path,
 
 
 def no_environment(act: object) -> object:
-    from jacaros.bdi.act import Completion
+    from jacaros.bdi.state.act import Completion
 
     del act
     return Completion(success=False)

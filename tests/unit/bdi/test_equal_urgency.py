@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.bdi import urgency
+from jacaros.bdi.rules import urgency
 from jacaros.testing import RunResult, run_project
 
 CASES = Path(__file__).parents[2] / "conformance"

@@ -2,8 +2,8 @@
 
 from recording_host import mind
 
-from jacaros.bdi.event_waits import EventWait, EventWaits
-from jacaros.compiler.triggers import trigger
+from jacaros.bdi.state.event_waits import EventWait, EventWaits
+from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.values import functor
 
 ADDED = trigger("+", "", functor("a", 1))

@@ -5,9 +5,9 @@ from random import Random
 import pytest
 from recording_host import RecordingHost, mind
 
-from jacaros.bdi.failing_context import REPEATABLE
-from jacaros.bdi.internal_action import STANDARD
-from jacaros.bdi.meta_events import observe_goals
+from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.bdi.explaining.failing_context import REPEATABLE
+from jacaros.bdi.rules.meta_events import observe_goals
 
 
 def candidates(program: str, **arguments: object) -> list[str]:
@@ -157,13 +157,13 @@ def test_a_limit_of_searches_is_left_as_it_was() -> None:
 
 
 def _limited() -> object:
-    from jacaros.bdi.options import Options
+    from jacaros.bdi.state.options import Options
 
     return Options(search_limit=50)
 
 
 def test_nothing_is_searched_for_goals_that_are_saved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jacaros.bdi.lost_goals.FailingContexts", None)
+    monkeypatch.setattr("jacaros.bdi.explaining.lost_goals.FailingContexts", None)
     host = _run(
         "!go.\n+!go : ready.\n-!go <- .print(saved).\n!outer.\n+!outer <- !go(1).\n+!go(X) : ready.\n-!outer."
     )

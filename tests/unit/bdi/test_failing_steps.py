@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from recording_host import mind, printed
 
-from jacaros.bdi import failure
-from jacaros.bdi.failure_reason import goal_text
-from jacaros.bdi.meta_events import observe_goals
+from jacaros.bdi.explaining.failure_reason import goal_text
+from jacaros.bdi.rules import failure
+from jacaros.bdi.rules.meta_events import observe_goals
 
 
 def test_an_exception_in_an_internal_action_fails_that_step_only() -> None:

@@ -55,7 +55,7 @@ def test_a_goal_that_ends_itself_goes_on_behind() -> None:
     ],
 )
 def test_the_failure_of_a_waiting_step_has_a_message(step: str, error: str) -> None:
-    from jacaros.bdi.act import Completion
+    from jacaros.bdi.state.act import Completion
 
     host = mind(
         f'p(1). !begin. +!begin <- {step}. -!begin[error(E), error_msg(M)] <- .print(E, " ", M).',

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from recording_host import RecordingHost, mind
 
 from jacaros.asl.loader import load_program
-from jacaros.bdi import goals
-from jacaros.bdi.act import Completion
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.belief_update import tell
-from jacaros.bdi.internal_action import STANDARD
-from jacaros.bdi.program_plans import ProgramPlans
+from jacaros.bdi.rules import goals
+from jacaros.bdi.rules.belief_update import tell
+from jacaros.bdi.state.act import Completion
+from jacaros.bdi.state.program_plans import ProgramPlans
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var, atom, structure
 

@@ -2,9 +2,9 @@
 
 from recording_host import mind
 
-from jacaros.bdi.act import Completion
-from jacaros.bdi.meta_events import observe_goals
-from jacaros.bdi.options import Options
+from jacaros.bdi.rules.meta_events import observe_goals
+from jacaros.bdi.state.act import Completion
+from jacaros.bdi.state.options import Options
 from jacaros.terms.values import String, structure
 
 

@@ -7,11 +7,11 @@ from random import Random
 import pytest
 from recording_host import mind
 
-from jacaros.bdi.act import Act, Completion
-from jacaros.bdi.event import EVENT_ANNOTATIONS, EVENT_GOAL
-from jacaros.bdi.intention import ANNOTATIONS, GOAL, SERIAL
-from jacaros.bdi.meta_events import failed_number, observe_goals
-from jacaros.bdi.stack import pending_event
+from jacaros.bdi.rules.meta_events import failed_number, observe_goals
+from jacaros.bdi.rules.stack import pending_event
+from jacaros.bdi.state.act import Act, Completion
+from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL
 from jacaros.inspector.goal_news import GoalNews
 
 CASES = Path(__file__).parents[2] / "conformance"

@@ -2,7 +2,7 @@
 
 from recording_host import RecordingHost, believed, mind
 
-from jacaros.bdi.act import Percept
+from jacaros.bdi.state.act import Percept
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import SOURCE_PERCEPT, String, Term, atom, make_list, structure
 

@@ -4,10 +4,10 @@ import pytest
 from recording_host import RecordingHost, mind, printed
 
 from jacaros.asl.loader import load_program, parse_literals
+from jacaros.asl.lowering import lower_value
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.internal_action import STANDARD
-from jacaros.bdi.program_plans import ProgramPlans
-from jacaros.compiler.lowering import lower_value
+from jacaros.bdi.state.program_plans import ProgramPlans
 
 PROGRAM = """
 +!greet(X) <- .print("hello ", X).

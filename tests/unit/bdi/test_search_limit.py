@@ -3,7 +3,7 @@
 import pytest
 from recording_host import mind
 
-from jacaros.bdi.options import Options
+from jacaros.bdi.state.options import Options
 
 ENDLESS = {
     "range": "e :- .range(I, 1, 1e15) & I < 0.",

@@ -4,9 +4,9 @@ import pytest
 from recording_host import RecordingHost, believed, mind
 
 from jacaros.asl.loader import parse_term
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.compiler.lowering import lower_value
+from jacaros.asl.lowering import lower_value
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.substitution import is_flat
 from jacaros.terms.text import text
 

@@ -5,9 +5,9 @@ import gc
 import pytest
 from recording_host import believed, mind, printed
 
-from jacaros.bdi.internal_action import STANDARD, InternalAction
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import String, Term, Var, atom, structure
 
 

@@ -6,8 +6,8 @@ from random import Random
 
 import pytest
 
-from jacaros.bdi import cycle
-from jacaros.compiler import conditions
+from jacaros.bdi.fast.generated import conditions
+from jacaros.bdi.rules import cycle
 from jacaros.testing import run_project
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools"))

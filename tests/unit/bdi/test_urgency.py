@@ -4,10 +4,10 @@ from collections import deque
 
 from recording_host import RecordingHost, mind, printed
 
-from jacaros.bdi.act import Percept
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.bdi.urgency import UrgentQueue
+from jacaros.bdi.rules.urgency import UrgentQueue
+from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import SOURCE_PERCEPT, Term, atom, structure
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Coroutine
 
-from jacaros.bdi.act import Act, Completion, Percept
+from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.body.body import AgentBody
 from jacaros.body.percepts import PerceptWriter
 from jacaros.body.values import References

@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jacaros.asl.loader import parse_literal
+from jacaros.asl.lowering import Names, lower_value
 from jacaros.body.values import References, atom_of, to_term, to_value
-from jacaros.compiler.lowering import Names, lower_value
 from jacaros.env.values import Atom, Structure, plain
 from jacaros.terms.collections import MapValue, SetValue
 from jacaros.terms.substitution import equal

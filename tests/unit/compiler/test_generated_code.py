@@ -10,10 +10,10 @@ from types import FrameType
 from typing import Any
 
 from jacaros.asl.loader import load_program
-from jacaros.bdi.internal_action import InternalAction
-from jacaros.compiler.plan import Plan, label_of
-from jacaros.compiler.triggers import trigger
-from jacaros.compiler.unit import compile_select
+from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.fast.generated.unit import compile_select
+from jacaros.bdi.state.plan import Plan, label_of
+from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import BY_SELF, atom, functor
 from jacaros.testing import run_project

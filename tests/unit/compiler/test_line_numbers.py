@@ -5,7 +5,7 @@ from types import CodeType
 
 import pytest
 
-from jacaros.compiler import line_numbers
+from jacaros.bdi.fast.generated import line_numbers
 
 TEXT = """def first(x):
     if x:

@@ -3,7 +3,7 @@
 import pytest
 from recording_host import mind, printed
 
-from jacaros.compiler import selection
+from jacaros.bdi.fast.generated import selection
 
 PLANS = """
 +!do(a, X) : X > 10 <- .print(a_large, X).

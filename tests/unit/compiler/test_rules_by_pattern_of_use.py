@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from recording_host import mind, printed
 
-from jacaros.bdi.options import Options
+from jacaros.bdi.state.options import Options
 from jacaros.testing import run_project
 
 PROGRAM = """

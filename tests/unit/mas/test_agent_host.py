@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from jacaros.bdi.act import Act, Completion, Percept
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.act import Act, Completion, Percept
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import VirtualClock, run
 from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost

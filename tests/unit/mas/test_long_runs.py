@@ -4,7 +4,7 @@ import gc
 from pathlib import Path
 from typing import Any
 
-from jacaros.bdi.act import Percept
+from jacaros.bdi.state.act import Percept
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.steps import Steps
 from jacaros.env.property import ObservableProperty

@@ -2,8 +2,8 @@
 
 import pytest
 
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.compiler.outcomes import Failure
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.mas.directory import Directory
 from jacaros.mas.mailboxes import Mailboxes
 from jacaros.terms.collections import SetValue

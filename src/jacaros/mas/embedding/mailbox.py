@@ -5,9 +5,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from jacaros.asl.loader import parse_term
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.asl.lowering import lower_value
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import References, to_term
-from jacaros.compiler.lowering import lower_value
 from jacaros.errors import UsageError
 from jacaros.extension.views import Message
 from jacaros.mas.embedding.errors import UnknownAgent

@@ -1,7 +1,7 @@
 """A goal that Python code has given to an agent."""
 
-from jacaros.bdi import goals
-from jacaros.bdi.watched import WatchedGoal
+from jacaros.bdi.rules import goals
+from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.terms.text import text
 from jacaros.terms.values import Term
 

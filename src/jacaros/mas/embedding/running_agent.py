@@ -5,14 +5,14 @@ from collections.abc import Callable, Generator
 from typing import Any
 
 from jacaros.asl.loader import parse_term
-from jacaros.bdi import goals
+from jacaros.asl.lowering import lower_value
 from jacaros.bdi.agent import Agent
-from jacaros.bdi.condition_waits import ConditionWait, asked_by
-from jacaros.bdi.lost_goals import loss_of
-from jacaros.bdi.speech_act import SpeechAct
-from jacaros.bdi.watched import WatchedGoal
+from jacaros.bdi.explaining.lost_goals import loss_of
+from jacaros.bdi.rules import goals
+from jacaros.bdi.rules.watched import WatchedGoal
+from jacaros.bdi.state.condition_waits import ConditionWait, asked_by
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
-from jacaros.compiler.lowering import lower_value
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.embedding.errors import AgentEnded, GoalFailed

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from jacaros.bdi.speech_act import SpeechAct, message_id
+from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.clock import Clock
 from jacaros.extension.conversation import ReceivedMessage
 from jacaros.extension.errors import UnknownAgent

@@ -6,9 +6,9 @@ from contextlib import contextmanager
 from typing import Any
 
 from jacaros.asl.nodes import Literal as LiteralNode
-from jacaros.bdi.act import Completion, Percept
-from jacaros.bdi.options import Options
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.act import Completion, Percept
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.env.errors import WorkspaceError
 from jacaros.env.session.account import Observer

@@ -4,7 +4,7 @@ import asyncio
 from collections import deque
 from collections.abc import Callable
 
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.speech_act import SpeechAct
 
 
 class Inbox:

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from random import Random
 from types import SimpleNamespace
 
-import jacaros.bdi.stdlib  # noqa: F401 - fills STANDARD
-from jacaros.bdi.internal_action import STANDARD
-from jacaros.bdi.options import Options
+import jacaros.bdi.actions.standard  # noqa: F401 - fills STANDARD
+from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.bdi.state.options import Options
 from jacaros.errors import JacarosError
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text

@@ -3,7 +3,7 @@ from collections.abc import Callable
 import pytest
 from fake_context import FakeContext, term
 
-from jacaros.bdi.internal_action import STANDARD, WrongArguments
+from jacaros.bdi.actions.internal_action import STANDARD, WrongArguments
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var

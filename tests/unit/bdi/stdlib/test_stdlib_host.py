@@ -7,7 +7,7 @@ import pytest
 from fake_context import FakeContext, term
 
 from jacaros import __version__
-from jacaros.bdi.internal_action import STANDARD, ActionError, WrongArguments
+from jacaros.bdi.actions.internal_action import STANDARD, ActionError, WrongArguments
 from jacaros.terms.text import text
 from jacaros.terms.values import String, Var
 

@@ -1,7 +1,7 @@
 import pytest
 from fake_context import FakeContext, term
 
-from jacaros.bdi.internal_action import ActionError, WrongArguments
+from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, String, Term, Var, atom, make_list

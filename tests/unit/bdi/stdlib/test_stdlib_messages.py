@@ -3,8 +3,8 @@
 import pytest
 from recording_host import RecordingHost, mind
 
-from jacaros.bdi.internal_action import STANDARD
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.text import text
 from jacaros.terms.values import Var, atom, functor
 

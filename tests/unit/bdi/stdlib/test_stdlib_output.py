@@ -3,8 +3,8 @@ from types import SimpleNamespace
 import pytest
 from fake_context import FakeContext
 
-from jacaros.bdi.internal_action import ActionError, WrongArguments
-from jacaros.bdi.stdlib.java_format import java_format
+from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
+from jacaros.bdi.actions.java_format import java_format
 from jacaros.terms.values import String, Var
 
 

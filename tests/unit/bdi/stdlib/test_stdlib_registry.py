@@ -1,7 +1,7 @@
 import pytest
 from fake_context import FakeContext
 
-from jacaros.bdi.internal_action import STANDARD
+from jacaros.bdi.actions.internal_action import STANDARD
 
 ARITIES = {
     (0, None): ".print .println",

@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 import jacaros
-from jacaros.bdi.speech_act import SpeechAct
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import clock_of
 from jacaros.mas.activity import Activity
 from jacaros.mas.python_agents.attendance import Attendance

@@ -1,0 +1,1 @@
+"""The internal actions of the language, by family."""

@@ -1,0 +1,77 @@
+"""Internal actions on files: programs that are included, saved, and looked for."""
+
+from jacaros.bdi.actions.arguments import characters, elements, string
+from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.actions.java_regex import matches_whole
+from jacaros.bdi.rules.agent_text import agent_text
+from jacaros.bdi.rules.context import Context
+from jacaros.errors import JacarosError
+from jacaros.terms.text import text
+from jacaros.terms.values import Functor, String, Term, Var, atom, make_list
+
+
+@internal_action(".list_files", arity=(2, 3))
+def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
+    """``.list_files(Folder[, Regex], L)``: *L* is the sorted list of the files in a folder and the folders in it.
+
+    They are strings, paths that begin with *Folder*.  With *Regex*, only those that it matches as a whole.  A
+    folder that is not absolute is one of the project.
+
+    Raises:
+        WrongArguments: the folder or the regular expression is no string, or it is wrong.
+        ActionError: the folder cannot be read.
+    """
+    path = string(folder, "the first argument of .list_files")
+    pattern = string(rest[0], "the second argument of .list_files") if len(rest) == 2 else None
+    try:
+        found = ctx.architecture.list_files(path)
+        if pattern is not None:
+            found = [name for name in found if matches_whole(pattern, name)]
+    except OSError as fault:
+        raise ActionError(f".list_files: {path} cannot be read: {fault.strerror or fault}") from fault
+    except ValueError as fault:
+        raise WrongArguments(f".list_files: {fault}") from fault
+    return ctx.unify(rest[-1], make_list([String(name) for name in found]))
+
+
+@internal_action(".save_agent", arity=(1, 2))
+def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
+    """``.save_agent(File[, Goals])`` writes the beliefs, rules and plans of the agent as a program.
+
+    *Goals* is a list of the initial goals that the program is to have.  A path that is not absolute is one of
+    the project's folder.
+
+    Raises:
+        WrongArguments: *Goals* is no list.
+        ActionError: the file cannot be written.
+    """
+    wanted = [] if goals is None else elements(goals, "the second argument of .save_agent")
+    path = characters(file)
+    try:
+        ctx.architecture.write_file(path, agent_text(ctx.agent, wanted))
+    except OSError as fault:
+        raise ActionError(f".save_agent: {path} cannot be written: {fault.strerror or fault}") from fault
+
+
+@internal_action(".include", arity=(1, 2))
+def include(ctx: Context, file: Term, namespace: Term = None) -> bool:
+    """``.include(File[, Namespace])`` takes the beliefs, goals and plans of a program file in.
+
+    With a namespace (an atom; a variable is bound to a new one) all of it is put there.
+
+    Raises:
+        WrongArguments: *File* is no string, or the namespace is neither atom nor variable.
+        ActionError: the file is not there, or its program is wrong.
+    """
+    path = string(file, "the first argument of .include")
+    if namespace is not None and not isinstance(namespace, (Functor, Var)):
+        raise WrongArguments(f"a namespace is an atom or a variable, not {text(namespace)}")
+    fresh = namespace.__class__ is Var
+    name: str = ctx.agent.fresh_namespace() if fresh else getattr(namespace, "name", "default")
+    try:
+        ctx.agent.include(path, None if name == "default" else name)
+    except FileNotFoundError as fault:
+        raise ActionError(f".include: the file {path} is not found") from fault
+    except (OSError, UnicodeError, JacarosError) as fault:
+        raise ActionError(f".include: {path} cannot be included: {fault}") from fault
+    return not fresh or ctx.unify(namespace, atom(name))

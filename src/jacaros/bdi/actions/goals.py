@@ -1,0 +1,378 @@
+"""Internal actions about goals and intentions."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.asl.lowering import lower
+from jacaros.asl.walk import walk
+from jacaros.bdi.actions.internal_action import WrongArguments, internal_action
+from jacaros.bdi.explaining.failure_reason import code_place, nowhere, shown_goal
+from jacaros.bdi.rules import goals
+from jacaros.bdi.rules.body_terms import is_body_frame
+from jacaros.bdi.rules.context import Context
+from jacaros.bdi.rules.outcomes import SUSPENDED, Failure
+from jacaros.bdi.rules.plan_terms import bindings_of, variables_of
+from jacaros.bdi.rules.stack import achieve, pending_event
+from jacaros.bdi.state.event import EVENT_GOAL
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
+from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.waiting import OWN_SUSPENSION, Waiting
+from jacaros.terms.order import annotation_set
+from jacaros.terms.plans import BODY_TERM, make_body, trigger
+from jacaros.terms.substitution import rename, resolve
+from jacaros.terms.text import text
+from jacaros.terms.values import (
+    Annotated,
+    String,
+    Term,
+    Var,
+    atom,
+    bare,
+    functor,
+    functor_of,
+    make_list,
+    structure,
+)
+
+ERROR, ERROR_MSG, REASON = functor("error", 1), functor("error_msg", 1), functor("reason", 1)
+
+
+def _on_goal(ctx: Context, goal: Term, act: Callable[[Term], Any]) -> Any:
+    """Do something to all goals that match; the variables of *goal* are bound as in the first one.
+
+    Gives what *act* gives: true when the calling intention itself has lost its place.
+    """
+    wanted = _goal(goal)
+    first = goals.first_match(ctx.agent, wanted)
+    own = act(wanted)
+    if first is not None and not own:
+        ctx.unify(goal, first)
+    return own
+
+
+def _goal(term: Term) -> Term:
+    if functor_of(term) is None:
+        raise WrongArguments(f"a goal must be a literal, not {text(term)}")
+    return term
+
+
+def _matches_goal(ctx: Context, goal: Term, literal: Term, identity: Term, number: int | None) -> bool:
+    if identity is None:
+        return ctx.unify(goal, literal)
+    return number is not None and ctx.unify_all((goal, literal), (identity, float(number)))
+
+
+@internal_action(".desire", arity=(1, 2), backtracks=True)
+def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
+    """``.desire(G [,Id])``: each goal the agent has, begun or not."""
+    for literal, number in list(goals.desires(ctx.agent)):
+        if _matches_goal(ctx, goal, literal, identity, number):
+            yield
+
+
+@internal_action(".intend", arity=(1, 2), backtracks=True)
+def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
+    """``.intend(G [,Id])``: each goal on the stack of an intention that is not suspended."""
+    for literal, number in list(goals.intended(ctx.agent)):
+        if _matches_goal(ctx, goal, literal, identity, number):
+            yield
+
+
+@internal_action(".intention", arity=(2, 4), backtracks=True)
+def intention(
+    ctx: Context, number: Term, state: Term, stack: Term = None, which: Term = None
+) -> Iterator[None]:
+    """``.intention(Id, State [,Stack [,current]])``: each intention, its state and its stack."""
+    only_current = which is not None and bare(which) is atom("current")
+    for candidate in list(ctx.agent.alive.values()):
+        running = candidate is ctx.agent.current
+        if only_current and not running:
+            continue
+        pairs = [(number, float(candidate.id)), (state, _state(candidate))]
+        if stack is not None:
+            pairs.append((stack, _stack(ctx, candidate)))
+        if ctx.unify_all(*pairs):
+            yield
+
+
+def _state(candidate: Intention) -> Term:
+    name, reason = goals.describe(candidate)
+    if name != "waiting":
+        return atom(name)
+    inner = bare(reason)
+    if inner.__class__ is tuple and inner[0].name == "action":
+        return Annotated(atom("waiting"), (inner,))
+    return Annotated(atom("waiting"), ((REASON, reason),))
+
+
+def _stack(ctx: Context, intention: Intention) -> Term:
+    """The list of an intention's plans, the one at work first."""
+    frames = intention.frames
+    called = [frame[GOAL][0] for frame in frames[1:]]
+    event = pending_event(ctx.agent, intention)
+    called.append(event[EVENT_GOAL][0] if event is not None else None)
+    return make_list([_means(ctx, frame, above) for frame, above in zip(frames, called, strict=True)][::-1])
+
+
+def _means(ctx: Context, frame: Any, called: Any) -> Term:
+    """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done.
+
+    *called* is the trigger of the goal that it waits for, which is part of the body as long as that is so, or None.
+    """
+    plan = frame[PLAN]
+    values = variables_of(frame)
+    kind = frame[GOAL][0]
+    goal = resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))
+    rest = make_body(
+        [
+            lower(node, lambda name: values[name] if name in values else Var(name))
+            for node in (*_calling(frame, called), *_remaining(frame[STEP]))
+        ],
+        symbol=BODY_TERM,
+    )
+    event = trigger(kind.operator + kind.kind, goal)
+    label = ctx.agent.library.label(plan)
+    span = plan.node.span
+    if span is not None:
+        label = Annotated(label.term, annotation_set((*label.annotations, *code_place(span, span.file.name))))
+    return structure("im", label, event, resolve(rest), bindings_of(frame))
+
+
+def _calling(frame: Any, called: Any) -> Iterator[Any]:
+    """The step of a plan for whose goal it waits."""
+    if called is None or called.failing or not called.kind:
+        return
+    after = frame[STEP].__name__ if frame[STEP] is not None else "None"
+    for info in getattr(frame[PLAN].first, "steps", {}).values():
+        if info.next == after and _posts(info.node, called):
+            yield info.node
+            return
+
+
+def _posts(node: Any, called: Any) -> bool:
+    """Whether a step may be the one that posted a goal."""
+    if called.kind == "!":
+        posted: nodes.Node | None = (
+            node.goal if isinstance(node, nodes.Achieve) and not node.separate else None
+        )
+    else:
+        posted = node.formula if isinstance(node, nodes.Test) else None
+    return isinstance(posted, nodes.Variable) or (
+        isinstance(posted, nodes.Literal) and posted.functor == called.functor.name
+    )
+
+
+def _remaining(step: Any) -> Iterator[Any]:
+    """The formulae from a step on, each once."""
+    by_name = dict(getattr(step, "steps", {}))
+    name = step.__name__ if step is not None else "None"
+    while name in by_name:
+        info = by_name.pop(name)
+        yield info.node
+        name = info.next
+
+
+@internal_action(".current_intention", arity=1)
+def current_intention(ctx: Context, target: Term) -> bool:
+    """``.current_intention(I)``: the calling intention as ``intention(Id, Stack)``."""
+    current = ctx.intention
+    if current is None:
+        return False
+    stack = _stack(ctx, current)
+    return ctx.unify(target, structure("intention", float(current.id), stack))
+
+
+@internal_action(".drop_intention", arity=(0, 1), suspends=True)
+def drop_intention(ctx: Context, goal: Term = None) -> Any:
+    """``.drop_intention [(G)]``: the own intention, or all that have the goal, vanish without failure."""
+    if goal is None:
+        assert ctx.intention is not None
+        goals.drop_intention(ctx.agent, ctx.intention)
+    else:
+        _on_goal(ctx, goal, lambda wanted: goals.drop_goal(ctx.agent, wanted))
+
+
+@internal_action(".drop_future_intention", arity=1, suspends=True)
+def drop_future_intention(ctx: Context, goal: Term) -> None:
+    """``.drop_future_intention(G)``: intentions whose plan on top has ``!G`` (or ``!!G``) in its body vanish."""
+    wanted = _goal(goal)
+    for candidate in list(ctx.agent.alive.values()):
+        if candidate.frames and any(goals.matches(ctx.agent, wanted, g) for g in _goals_in(candidate)):
+            goals.drop_intention(ctx.agent, candidate)
+
+
+def _goals_in(candidate: Intention) -> Iterator[Term]:
+    """The goals that stand in the body of the plan on top."""
+    frame = candidate.frames[-1]
+    values = variables_of(frame)
+    for node in walk(frame[PLAN].node.body):
+        if isinstance(node, nodes.Achieve):
+            yield resolve(lower(node.goal, lambda name: values[name] if name in values else Var(name)))
+
+
+@internal_action(".drop_event", arity=1, suspends=True)
+def drop_event(ctx: Context, goal: Term) -> None:
+    """``.drop_event(G)``: goals that were posted and not taken up yet vanish."""
+    _on_goal(ctx, goal, lambda wanted: goals.drop_events(ctx.agent, wanted))
+
+
+@internal_action(".drop_desire", arity=1, suspends=True)
+def drop_desire(ctx: Context, goal: Term) -> None:
+    """``.drop_desire(G)``: `.drop_event` and `.drop_intention` together."""
+    _on_goal(ctx, goal, lambda wanted: goals.drop_desire(ctx.agent, wanted))
+
+
+@internal_action(".drop_all_intentions", arity=0, suspends=True)
+def drop_all_intentions(ctx: Context) -> None:
+    """All intentions but the calling one vanish."""
+    goals.drop_all_intentions(ctx.agent)
+
+
+@internal_action(".drop_all_events", arity=0, suspends=True)
+def drop_all_events(ctx: Context) -> None:
+    """All pending events vanish."""
+    goals.drop_all_events(ctx.agent)
+
+
+@internal_action(".drop_all_desires", arity=0, suspends=True)
+def drop_all_desires(ctx: Context) -> None:
+    """All events and all intentions but the calling one vanish."""
+    goals.drop_all_goal_events(ctx.agent)
+    goals.drop_all_intentions(ctx.agent)
+
+
+@internal_action(".suspend", arity=(0, 1), suspends=True)
+def suspend(ctx: Context, goal: Term = None) -> Any:
+    """``.suspend [(G)]``: the intentions with the goal (or the own one) stop until `.resume`."""
+    current = ctx.intention
+    if goal is None:
+        assert current is not None
+        goals.suspend_intention(ctx.agent, current, OWN_SUSPENSION)
+    else:
+        reason = structure("suspended", rename(goal))
+        _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted, reason))
+    if current is None or current.suspended is None:
+        return None
+    # The step lasts until the intention is resumed: a last step does not end its goal before.
+    held = Waiting(ctx.agent, current, OWN_SUSPENSION)
+    held.on_resume = held.resume
+    return held
+
+
+@internal_action(".resume", arity=1, suspends=True)
+def resume(ctx: Context, goal: Term) -> None:
+    """``.resume(G)``: suspended intentions with the goal go on."""
+    _on_goal(ctx, goal, lambda wanted: goals.resume_goal(ctx.agent, wanted))
+
+
+@internal_action(".suspended", arity=2, backtracks=True)
+def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
+    """``.suspended(G, R)``: whether an intention with the goal is suspended or waits, and why (``act`` for an action)."""
+    for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
+        why = candidate.suspended
+        waiting = candidate.waiting
+        if waiting is not None and waiting.reason is not OWN_SUSPENSION:
+            # As in Jason: one that is suspended while it waits for something is told with that.
+            why = waiting.reason
+            why = atom("act") if why.__class__ is tuple and why[0].name == "action" else why
+        found = goals.goal_of(ctx.agent, candidate, goal)
+        if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):
+            yield
+    for _ in goals.goal_events(ctx.agent, goal):
+        if any(goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.suspended_events) and ctx.unify(
+            reason, atom("suspended")
+        ):
+            yield
+            return
+
+
+def _event(event: Any) -> Term:
+    goal = event[EVENT_GOAL]
+    symbol = goal[0].functor
+    return (symbol, *goal[1:]) if len(goal) > 1 else symbol
+
+
+@internal_action(".succeed_goal", arity=1, suspends=True)
+def succeed_goal(ctx: Context, goal: Term) -> Any:
+    """``.succeed_goal(G)``: matching goals end as achieved."""
+    own = _on_goal(ctx, goal, lambda wanted: goals.succeed_goal(ctx.agent, wanted))
+    return _ended(ctx, own)
+
+
+@internal_action(".fail_goal", arity=1, suspends=True)
+def fail_goal(ctx: Context, goal: Term) -> Any:
+    """``.fail_goal(G)``: matching goals end as failed; the failure event carries no ``error``."""
+    reason = nowhere(told=f".fail_goal{_caller(ctx)} ended it")
+    own = _on_goal(ctx, goal, lambda wanted: goals.fail_goal(ctx.agent, wanted, reason))
+    return SUSPENDED if own else None
+
+
+def _caller(ctx: Context) -> str:
+    """Of which plan the calling step is, for people."""
+    if ctx.intention is None or not ctx.intention.frames:
+        return ""
+    return f" in the plan of {shown_goal(ctx.intention.frames[-1][GOAL])}"
+
+
+def _ended(ctx: Context, own: bool) -> Any:
+    """The calling intention was cut: its rest goes on in the next cycle, not with this step."""
+    if not own:
+        return None
+    agent, current = ctx.agent, ctx.intention
+    assert current is not None
+    if goals.goes_on(agent, current):
+        agent.make_ready(current)
+    return SUSPENDED
+
+
+@internal_action(".done", arity=0, suspends=True)
+def done(ctx: Context) -> Any:
+    """End the own goal as achieved."""
+    current = ctx.intention
+    assert current is not None
+    if current.outer is not None and not any(frame[GOAL][0].kind for frame in current.frames):
+        return _outer_done(ctx, current)
+    achieve(ctx.agent, current, _own_goal(current))
+    return _ended(ctx, own=True)
+
+
+def _own_goal(current: Intention) -> int:
+    """Index of the frame that `.done` ends: of the plan that calls it, of the goal around a reacting sub-plan, of the
+    failed goal when a handler calls it."""
+    top = next(
+        i for i in reversed(range(len(current.frames))) if i == 0 or not is_body_frame(current.frames[i])
+    )
+    frame = current.frames[top]
+    if frame[GOAL][0].failing and current.handlers:
+        return current.handlers[-1]
+    if not frame[GOAL][0].kind and frame[PLAN].scope is not None:
+        return next((i for i, other in enumerate(current.frames) if other[PLAN] is frame[PLAN].scope), top)
+    return top
+
+
+def _outer_done(ctx: Context, current: Intention) -> Any:
+    """In a sub-plan that reacts to something, the goal is that of the plan around it."""
+    assert current.outer is not None
+    owner, frame = current.outer
+    if not owner.dropped and any(frame is other for other in owner.frames):
+        queued = ctx.agent.is_in_turn(owner)
+        achieve(ctx.agent, owner, next(i for i, other in enumerate(owner.frames) if other is frame))
+        if goals.goes_on(ctx.agent, owner) and not queued:
+            ctx.agent.make_ready(owner)
+    ctx.agent.finish(current)
+    return SUSPENDED
+
+
+@internal_action(".fail", suspends=True)
+def fail(ctx: Context, *annotations: Term) -> Any:
+    """``.fail(a, b…)``: fail, with these annotations on the failure event.
+
+    An ``error(internal_action)`` and an ``error_msg`` are added where none of that name is given.
+    """
+    del ctx
+    if not annotations:
+        return False
+    given = {functor_of(bare(a)) for a in annotations}
+    defaults = ((ERROR, atom("internal_action")), (ERROR_MSG, String("fail")))
+    raise Failure(*annotations, *(each for each in defaults if each[0] not in given))

@@ -1,0 +1,348 @@
+"""Internal actions on lists; several of them take strings, sets and queues as well."""
+
+from collections.abc import Iterator
+
+from jacaros.bdi.actions.arguments import characters, elements, members, number, whole
+from jacaros.bdi.actions.beliefs import best
+from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.actions.java_regex import replace_all
+from jacaros.bdi.rules.context import Context
+from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.deep import as_key
+from jacaros.terms.order import compare, ordered_by_python, sorted_terms
+from jacaros.terms.substitution import ATOMIC, equal, is_ground
+from jacaros.terms.text import text
+from jacaros.terms.unifier import Trail, undo, unify
+from jacaros.terms.values import (
+    NIL,
+    Functor,
+    List,
+    String,
+    Term,
+    Var,
+    is_list,
+    list_items,
+    list_length,
+    make_list,
+    parted,
+)
+
+
+@internal_action(".length", arity=2)
+def length(ctx: Context, collection: Term, result: Term) -> bool:
+    """``.length(C, N)``: *N* is the number of elements of a list, set, map or queue, or of characters.
+
+    Fails for any other term.
+    """
+    size = _size(collection)
+    return size is not None and ctx.unify(result, float(size))
+
+
+@internal_action(".empty", arity=1)
+def empty(_ctx: Context, collection: Term) -> bool:
+    """``.empty(C)``: the list, string, set, map or queue has no elements.  Fails for any other term."""
+    return collection is NIL or _size(collection) == 0
+
+
+def _size(collection: Term) -> int | None:
+    if isinstance(collection, (String, SetValue, MapValue, QueueValue)):
+        return len(collection)
+    return list_length(collection) if is_list(collection) else None
+
+
+@internal_action(".member", arity=2, backtracks=True)
+def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
+    """``.member(X, C)``: *X* is an element of a list, set or queue; one answer for each that unifies.
+
+    A ground *X* is an element of a set or queue once, its annotations being compared as well.
+
+    Raises:
+        WrongArguments: *collection* is none of these.
+    """
+    if isinstance(collection, (SetValue, QueueValue)) and is_ground(item):
+        if _holds(collection, item):
+            yield
+        return
+    if (
+        collection.__class__ is List
+        and item.__class__ in ATOMIC
+        and item == item  # not a number is in no list
+        and collection.is_settled()
+        and collection.depth == 1
+    ):
+        for _ in range(collection.from_bottom().count(item)):
+            yield
+        return
+    for candidate in members(collection, "the second argument of .member"):
+        if ctx.unify(item, candidate):
+            yield
+
+
+def _holds(collection: SetValue | QueueValue, item: Term) -> bool:
+    if isinstance(collection, SetValue):
+        return as_key(item) in collection.items
+    return any(equal(item, other) for other in collection)
+
+
+@internal_action(".nth", arity=3, backtracks=True)
+def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[None]:
+    """``.nth(I, L, X)``: the element at position *I* (from 0) of a list, or character of a string, is *X*.
+
+    With *I* unbound there is an answer for each position whose element unifies with *X*.
+
+    Raises:
+        WrongArguments: *index* is no number or variable, or *collection* no list or string.
+        ActionError: there is no such position.
+    """
+    if collection.__class__ is List and index.__class__ is float and 0 <= index < collection.size:
+        if ctx.unify(item, collection.stack[collection.size - 1 - int(index)]):
+            yield
+        return
+    if collection.__class__ is String:
+        values: list[Term] = [String(character) for character in collection]
+    else:
+        values = elements(collection, "the second argument of .nth")
+    if index.__class__ is Var:
+        for position, value in enumerate(values):
+            if ctx.unify(make_list((item, index)), make_list((value, float(position)))):
+                yield
+        return
+    position = whole(index, "the first argument of .nth")
+    if not 0 <= position < len(values):
+        raise ActionError(f".nth: there is no position {position} in {len(values)} elements")
+    if ctx.unify(item, values[position]):
+        yield
+
+
+@internal_action(".concat", arity=(2, None))
+def concat(ctx: Context, *arguments: Term) -> bool:
+    """``.concat(A, ..., R)``: *R* is the list or string made of the others joined.
+
+    The first one decides which.  For a string the other terms are taken as they are written, quoted atoms
+    without their quotes.
+
+    Raises:
+        WrongArguments: a list is to be joined with something else.
+        ActionError: *R* is something else than the list that it has to be, or a list has an open end.
+    """
+    *parts, result = arguments
+    if not is_list(parts[0]):
+        joined = String("".join(map(_unquoted, parts)))
+        known = result.__class__ is String or result.__class__ is Var
+        return ctx.unify(joined, result if known else String(text(result)))
+    if result.__class__ is not Var and not is_list(result):
+        raise ActionError(f".concat: the last argument must be a list or a variable, not {text(result)}")
+    joined = parts[-1]
+    for position, part in reversed(list(enumerate(parts, 1))):
+        items = elements(part, f"argument {position} of .concat")
+        if position < len(parts):
+            if _open_end(part) is not None:
+                raise ActionError(f".concat: {text(part)} has an open end")
+            both = part.__class__ is List and joined.__class__ is List
+            joined = part.followed_by(joined) if both else make_list(items, joined)
+    return ctx.unify(joined, result)
+
+
+def _open_end(collection: Term) -> Term | None:
+    """What stands behind the bar of a list that is not closed."""
+    end = parted(collection)[1]
+    return None if end is NIL else end
+
+
+def _unquoted(term: Term) -> str:
+    if isinstance(term, Functor) and not term.negated and term.namespace is None:
+        name = term.name
+        return name[1:-1] if len(name) > 1 and name[0] == name[-1] == "'" else name
+    return characters(term)
+
+
+@internal_action(".delete", arity=(3, 4))
+def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
+    """``.delete(What, C, R)``: *R* is the list or string *C* without something.
+
+    ==================  =====================================================================
+    *What*              is left out
+    ==================  =====================================================================
+    number              the element or character at this position (from 0)
+    two numbers A, B    ``.delete(A, B, C, R)``: positions A to B-1
+    string              from the text of *C*: every match of this regular expression (of Java)
+    any other term      from a list: every element that unifies with it; variables keep the values that
+                        they have in the first one (``f(_)`` leaves ``f(3)`` behind ``f(1)`` in place)
+    ==================  =====================================================================
+
+    Nothing is left out of a list at a position that it does not have, nor of a string when a position is
+    outside of it.
+
+    Raises:
+        WrongArguments: for any other combination of arguments.
+        ActionError: the regular expression is wrong.
+    """
+    if what.__class__ is float:
+        start = whole(what, "the position")
+        ranged = len(arguments) == 3 and arguments[0].__class__ is float
+        end = whole(arguments[0], "the position") if ranged else start + 1
+        return _delete_range(ctx, start, end, *arguments[ranged : ranged + 2])
+    collection, result = arguments[:2]
+    if what.__class__ is String:
+        try:
+            return ctx.unify(result, String(replace_all(characters(collection), what, "")))
+        except ValueError as error:
+            raise ActionError(f".delete: {error}") from None
+    items = elements(collection, "the second argument of .delete")
+    if what.__class__ is Functor and ATOMIC.issuperset(map(type, items)):
+        return ctx.unify(result, make_list([item for item in items if item is not what]))
+    return ctx.unify(result, make_list(_not_matching(what, items)))
+
+
+def _not_matching(pattern: Term, items: list[Term]) -> list[Term]:
+    """The items that the pattern, with the variables bound by its first match, does not unify with."""
+    kept: list[Term] = []
+    trail = Trail()
+    matched = False
+    for item in items:
+        mark = len(trail)
+        fits = unify(pattern, item, trail)
+        if matched or not fits:
+            undo(trail, mark)
+        matched = matched or fits
+        if not fits:
+            kept.append(item)
+    undo(trail, 0)
+    return kept
+
+
+def _delete_range(ctx: Context, start: int, end: int, collection: Term, result: Term) -> bool:
+    if collection.__class__ is String:
+        size = len(collection)
+        if 0 <= start <= size and 0 <= end <= size:
+            collection = String(collection[:start] + collection[end:])
+        return ctx.unify(result, collection)
+    items = elements(collection, "the list or string of .delete")
+    start = max(start, 0)
+    del items[start : max(start, end)]
+    if collection.__class__ is List:
+        return ctx.unify(result, collection.of_these(items[::-1]))
+    return ctx.unify(result, make_list(items))
+
+
+@internal_action(".reverse", arity=2)
+def reverse(ctx: Context, collection: Term, result: Term) -> bool:
+    """``.reverse(C, R)``: *R* is the list or string *C* turned around; an open end of a list stays the end.
+
+    Terms that are no lists are taken as they are written.
+
+    Raises:
+        WrongArguments: *R* is neither unbound nor a list (or string) as *C* is.
+    """
+    if is_list(collection):
+        if result.__class__ is not Var:
+            elements(result, "the second argument of .reverse")
+        items = list(list_items(collection))
+        if collection.__class__ is List:
+            return ctx.unify(collection.of_these(items), result)
+        return ctx.unify(make_list(items[::-1], _open_end(collection) or NIL), result)
+    if result.__class__ not in (Var, String):
+        raise WrongArguments(f"the second argument of .reverse must be a string, not {text(result)}")
+    return ctx.unify(String(characters(collection)[::-1]), result)
+
+
+@internal_action(".sort", arity=2)
+def sort(ctx: Context, collection: Term, result: Term) -> bool:
+    """``.sort(L, R)``: *R* is the list *L* in the standard order of terms, with its duplicates.
+
+    Raises:
+        WrongArguments: *L* is no list.
+    """
+    items = sorted_terms(elements(collection, "the first argument of .sort"))
+    if collection.__class__ is List:
+        items.reverse()
+        return ctx.unify(collection.of_these(items), result)
+    return ctx.unify(make_list(items), result)
+
+
+@internal_action(".shuffle", arity=2)
+def shuffle(ctx: Context, collection: Term, result: Term) -> bool:
+    """``.shuffle(L, R)``: *R* is the list *L* in random order, drawn by the agent's own generator.
+
+    Raises:
+        WrongArguments: *L* is no list.
+    """
+    items = elements(collection, "the first argument of .shuffle")
+    ctx.architecture.random.shuffle(items)
+    return ctx.unify(result, make_list(items))
+
+
+@internal_action(".max", arity=(2, 3))
+def greatest(ctx: Context, *arguments: Term) -> bool:
+    """``.max(L, X)``: *X* is the greatest element of a list in the standard order.  Fails for an empty list.
+
+    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*.  Fails without
+    answers.
+
+    Raises:
+        WrongArguments: *L* is no list.
+    """
+    return _extreme(ctx, arguments, 1, ".max")
+
+
+@internal_action(".min", arity=(2, 3))
+def least(ctx: Context, *arguments: Term) -> bool:
+    """``.min(L, X)``: *X* is the smallest element of a list in the standard order.  Fails for an empty list.
+
+    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*.  Fails without
+    answers.
+
+    Raises:
+        WrongArguments: *L* is no list.
+    """
+    return _extreme(ctx, arguments, -1, ".min")
+
+
+def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) -> bool:
+    """*sign* is 1 for the greatest and -1 for the smallest; the first one among equals counts."""
+    if len(arguments) == 3:
+        found = best(ctx, arguments[0], arguments[1], sign)
+        return found is not None and ctx.unify(arguments[2], found)
+    items = elements(arguments[0], f"the first argument of {name}")
+    if not items:
+        return False
+    if ordered_by_python(items):
+        return ctx.unify(arguments[1], max(items) if sign > 0 else min(items))
+    extreme = items[0]
+    for item in items[1:]:
+        if sign * compare(item, extreme) > 0:
+            extreme = item
+    return ctx.unify(arguments[1], extreme)
+
+
+def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
+    """The values of *X* in ``.range(X, First, Last[, Step])``."""
+    start, end = whole(first, "the second argument of .range"), whole(last, "the third argument of .range")
+    by = whole(step, "the fourth argument of .range")
+    if by == 0:
+        raise WrongArguments("the step of .range must not be 0")
+    return map(float, range(start, end + (1 if by > 0 else -1), by))
+
+
+@internal_action(".range", arity=(3, 4), backtracks=True, values=_numbers)
+def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0) -> Iterator[None]:
+    """``.range(X, First, Last[, Step])``: *X* is each number from *First* to *Last* inclusive, in turn.
+
+    A number *X* is only tested for lying between the two, whatever the step.  Fractions are cut off.
+
+    Raises:
+        WrongArguments: an argument is no number, or the step is 0.
+    """
+    if value.__class__ is not Var:
+        start, end = (
+            whole(first, "the second argument of .range"),
+            whole(last, "the third argument of .range"),
+        )
+        whole(step, "the fourth argument of .range")
+        number(value, "the first argument of .range")
+        if start <= whole(value, "the first argument of .range") <= end:
+            yield
+        return
+    for candidate in _numbers(first, last, step):
+        if ctx.unify(value, candidate):
+            yield

@@ -1,0 +1,127 @@
+"""Internal actions that show text to people."""
+
+import re
+from dataclasses import replace
+
+from jacaros.bdi.actions.arguments import characters, string, whole
+from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.rules.context import Context
+from jacaros.bdi.state.intention import PLAN
+from jacaros.errors import JacarosError
+from jacaros.terms.substitution import resolve
+from jacaros.terms.text import display, text
+from jacaros.terms.values import FALSE, TRUE, Functor, String, Term, Var
+
+_LEVELS = {"severe": "error", "warning": "warning", "fine": "debug", "finer": "debug", "finest": "debug"}
+_EXPRESSION = re.compile(r"#\{([^{}]+)\}")
+
+
+@internal_action(".print")
+def print_(ctx: Context, *arguments: Term) -> None:
+    """``.print(A, ...)`` shows its arguments joined without separators.
+
+    Strings come out bare, strings inside other terms in quotes, unbound variables as ``X<no-value>``.
+    Line breaks in strings are kept.
+    """
+    ctx.architecture.print("".join(map(display, arguments)))
+
+
+@internal_action(".println")
+def println(ctx: Context, *arguments: Term) -> None:
+    """``.println(A, ...)`` does the same as ``.print``."""
+    ctx.architecture.print("".join(map(display, arguments)))
+
+
+@internal_action(".printf", arity=(1, None))
+def printf(ctx: Context, template: Term, *arguments: Term) -> None:
+    """``.printf(Format, A, ...)`` shows a text made by a format of Java, such as ``%8.2f``.
+
+    Numbers are doubles: use ``%.0f`` where ``%d`` is meant.  See `java_format` for what is known.
+
+    Raises:
+        WrongArguments: *template* is no string.
+        ActionError: the format is wrong or does not fit the arguments.
+    """
+    from jacaros.bdi.actions.java_format import java_format  # here: few programs use it, and it needs decimal
+
+    pattern = string(template, "the first argument of .printf")
+    try:
+        shown = java_format(pattern, [_value(argument) for argument in arguments])
+    except ValueError as error:
+        raise ActionError(f".printf: {error}") from None
+    ctx.architecture.print(shown)
+
+
+def _value(term: Term) -> float | str | bool:
+    if term is TRUE or term is FALSE:
+        return term is TRUE
+    return term if isinstance(term, float) else display(term)
+
+
+@internal_action(".puts", arity=(1, 2))
+def puts(ctx: Context, template: Term, result: Term = None) -> bool:
+    """``.puts(Text[, Result])`` shows a text in which every ``#{expression}`` is replaced by its value.
+
+    What cannot be read as a term is left as it is.  With an unbound *result* nothing is shown: the text is
+    its value.  A *result* that is a string is appended.
+
+    Raises:
+        WrongArguments: *template* is no string.
+    """
+    filled = _fill(ctx, string(template, "the first argument of .puts"))
+    if result.__class__ is Var:
+        return ctx.unify(String(filled), result)
+    if result.__class__ is String:
+        filled += _fill(ctx, result)
+    ctx.architecture.print(filled)
+    return True
+
+
+def _fill(ctx: Context, template: str) -> str:
+    def value(match: re.Match[str]) -> str:
+        try:
+            return characters(resolve(ctx.parse_term(match.group(1))))
+        except JacarosError:
+            return match.group()
+
+    return _EXPRESSION.sub(value, template)
+
+
+@internal_action(".log", arity=(1, None))
+def log(ctx: Context, level: Term, *arguments: Term) -> None:
+    """``.log(Level, A, ...)`` tells people something outside of the program's output.
+
+    *level* is ``severe``, ``warning``, ``info``, ``fine``, ``finer``, ``finest``; other atoms mean ``info``.
+
+    Raises:
+        WrongArguments: *level* is no atom.
+    """
+    if not isinstance(level, Functor):
+        raise WrongArguments(f"the first argument of .log must be a level such as info, not {text(level)}")
+    ctx.architecture.log(_LEVELS.get(level.name, "info"), "".join(map(display, arguments)))
+
+
+@internal_action(".verbose", arity=1)
+def verbose(ctx: Context, level: Term) -> None:
+    """``.verbose(N)``: what people are told of the agent from now on, besides what it prints: 0 only trouble, 1 the
+    usual, 2 details as well.
+
+    Raises:
+        WrongArguments: *level* is not 0, 1 or 2.
+    """
+    wanted = whole(level, "the argument of .verbose")
+    if not 0 <= wanted <= 2:
+        raise WrongArguments(f"the argument of .verbose must be 0, 1 or 2, not {text(level)}")
+    ctx.agent.options = replace(ctx.agent.options, verbose=wanted)
+
+
+@internal_action(".print_unifier", arity=0)
+def print_unifier(ctx: Context) -> None:
+    """``.print_unifier`` shows the variables of the plan that have a value, one a line, and ``done``."""
+    if ctx.intention is not None:
+        frame = ctx.intention.frames[-1]
+        for name, slot in frame[PLAN].slots.items():
+            value = resolve(frame[slot])
+            if value is not None and value.__class__ is not Var:
+                ctx.architecture.print(f"{name}={text(value)}")
+    ctx.architecture.print("done")

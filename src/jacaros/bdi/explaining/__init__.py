@@ -1,0 +1,1 @@
+"""Why things happened: reasons of failures, contexts that fail, lost goals."""

@@ -1,0 +1,387 @@
+"""Where the context of a plan fails: its first failing conjunct, with the values of its variables.
+
+Compiled contexts only say whether they hold.  When a goal is lost, the contexts of its plans are searched once more,
+conjunct by conjunct, and the deepest one that any answer of those before it reached is reported.  This search changes
+nothing and is bounded: rules are interpreted, only internal actions and functions without effects are called, nothing is
+logged, and it ends after `MOST_STEPS` steps.
+"""
+
+from collections.abc import Callable, Generator, Iterator
+from contextlib import suppress
+from typing import Any, NamedTuple
+
+from jacaros.asl import nodes
+from jacaros.asl.formatter import format_term
+from jacaros.asl.lowering import Names, fresh_names, lower
+from jacaros.asl.variables import names_in, operands
+from jacaros.asl.walk import walk
+from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.explaining.step_text import unbracketed
+from jacaros.bdi.rules.context import Context
+from jacaros.bdi.rules.formulas import solve_formula
+from jacaros.bdi.rules.searching import run
+from jacaros.bdi.state.belief_base import Table
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.search_budget import SearchBudget, SearchLimit
+from jacaros.terms.arithmetic import RUNNING, ArithmeticFault, functions
+from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.excerpt import excerpt
+from jacaros.terms.substitution import resolve
+from jacaros.terms.text import text
+from jacaros.terms.unifier import Trail, undo, unify
+from jacaros.terms.values import Functor, Term, Var, arguments_of, deref
+
+MOST_STEPS = 1_000
+"""Steps of the search for one plan (some ten microseconds each): answers of conjuncts, rules and internal actions."""
+FACTS_PER_STEP = 16
+"""Beliefs that are compared with a question in one step."""
+LONGEST_CONJUNCT, LONGEST_VALUE = 100, 40
+"""Characters of a conjunct and of the value of a variable that are shown."""
+
+REPEATABLE = frozenset(
+    {
+        ".atom",
+        ".concat",
+        ".count",
+        ".date",
+        ".delete",
+        ".desire",
+        ".difference",
+        ".empty",
+        ".findall",
+        ".ground",
+        ".intend",
+        ".intersection",
+        ".length",
+        ".list",
+        ".literal",
+        ".lower_case",
+        ".map.get",
+        ".map.key",
+        ".map.value",
+        ".max",
+        ".member",
+        ".min",
+        ".my_name",
+        ".nth",
+        ".number",
+        ".prefix",
+        ".queue.head",
+        ".queue.to_list",
+        ".range",
+        ".replace",
+        ".reverse",
+        ".set.to_list",
+        ".setof",
+        ".sort",
+        ".string",
+        ".structure",
+        ".sublist",
+        ".substring",
+        ".suffix",
+        ".term2string",
+        ".time",
+        ".type",
+        ".union",
+        ".upper_case",
+    }
+)
+"""Internal actions that may be called once more: they look, and neither do anything nor throw dice."""
+
+
+_PRINTING = frozenset({".print", ".println", ".printf", ".puts", ".log"})
+"""Internal actions that hold always; nothing is printed again."""
+_ABOUT_THE_AGENT = frozenset({".count", "system.time"})
+"""Functions that need the agent and have no effects."""
+
+
+class NotRepeatable(Exception):
+    """A formula calls something that may have an effect."""
+
+
+class _Stop(NamedTuple):
+    """The conjunct that a context stops at.
+
+    Attributes:
+        depth: how many conjuncts hold before it.
+        conjunct: as it is written.
+        values: of its variables, as ``Name=value``, for the first answer of the conjuncts before it.
+        answers: how many answers of the conjuncts before it there are.
+    """
+
+    depth: int
+    conjunct: str
+    values: str
+    answers: int
+
+    def __str__(self) -> str:
+        told = f"`{self.conjunct}`{' with ' if self.values else ''}{self.values}"
+        return told if self.answers == 1 else f"{told} (the first of {self.answers} answers)"
+
+
+class FailingContexts:
+    """Finds the failing conjuncts of the plans for one goal.
+
+    Args:
+        agent: whose plans they are; its beliefs must still be as they were when no plan was found.
+        goal: the goal or failure event, which begins with its `Trigger`.
+        annotations: of the goal.
+    """
+
+    def __init__(self, agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> None:
+        self._agent, self._goal, self._annotations = agent, goal, annotations
+
+    def fits(self, plan: Plan) -> bool:
+        """Whether the trigger of a plan fits the goal; True when that cannot be found out."""
+        trail = Trail()
+        try:
+            return self._matches(plan, Names().__getitem__, trail)
+        except Exception:
+            return True
+        finally:
+            undo(trail, 0)
+
+    def stop(self, plan: Plan) -> str:
+        """Where the context of a plan fails, in words; empty when it has none, or nothing is to be said of it."""
+        context = plan.node.context
+        if context is None:
+            return ""
+        agent, trail = self._agent, Trail()
+        trail.serial = agent.trail.serial
+        view = _LookOnly(agent, SearchBudget(MOST_STEPS))
+        budget, running = agent.beliefs.budget, RUNNING.set(view)
+        agent.beliefs.budget = view.beliefs.budget
+        try:
+            names = Names()
+            if not self._matches(plan, names.__getitem__, trail):
+                return ""
+            return _Search(view, context, names, trail).outcome()
+        except Exception:
+            # A message for people can never make the run fail.
+            return ""
+        finally:
+            undo(trail, 0)
+            agent.beliefs.budget = budget
+            RUNNING.reset(running)
+
+    def _matches(self, plan: Plan, lookup: Callable[[str], Term], trail: Trail) -> bool:
+        pattern = lower(plan.node.trigger.literal, lookup)
+        return unify(pattern, literal_of(self._goal, self._annotations), trail)
+
+
+class _Search:
+    """One search of a context, conjunct by conjunct, from the left."""
+
+    def __init__(self, agent: "_LookOnly", context: nodes.Node, names: Names, trail: Trail) -> None:
+        self._agent, self._names, self._trail = agent, names, trail
+        self._conjuncts = operands(context) if isinstance(context, nodes.And) else [context]
+        self._deepest: _Stop | None = None
+
+    def outcome(self) -> str:
+        """Search until the context holds or there is nothing left to search."""
+        searches = [self._answers(0)]
+        answered = [False]
+        try:
+            while searches:
+                depth = len(searches) - 1
+                if next(searches[-1], None) is None:
+                    searches.pop()
+                    if not answered.pop():
+                        self._note(depth)
+                elif depth + 1 == len(self._conjuncts):
+                    return ""  # it holds by now
+                else:
+                    answered[-1] = True
+                    searches.append(self._answers(depth + 1))
+                    answered.append(False)
+        except NotRepeatable:
+            return f"not examined from `{self._text(len(searches) - 1)}` on, which may have effects"
+        except SearchLimit:
+            found = self._deepest
+            return "" if found is None else f"stops at {found}; not searched to the end"
+        finally:
+            while searches:
+                searches.pop().close()
+        return f"stops at {self._deepest}"
+
+    def _answers(self, depth: int) -> Generator[bool, None, None]:
+        """The answers of one conjunct; an error inside ends them."""
+        conjunct, mark = self._conjuncts[depth], len(self._trail)
+        self._agent.refuse_effects(conjunct)
+        try:
+            formula = lower(conjunct, self._names.__getitem__)
+            for _ in self._agent.answers(formula, self._trail):
+                self._agent.beliefs.budget.spend()
+                yield True
+        except (NotRepeatable, SearchLimit):
+            raise
+        except Exception:
+            return
+        finally:
+            undo(self._trail, mark)
+
+    def _note(self, depth: int) -> None:
+        """A conjunct has no answer with the present values."""
+        deepest = self._deepest
+        if deepest is None or depth > deepest.depth:
+            self._deepest = _Stop(depth, self._text(depth), self._values(self._conjuncts[depth]), 1)
+        elif depth == deepest.depth:
+            self._deepest = deepest._replace(answers=deepest.answers + 1)
+
+    def _text(self, depth: int) -> str:
+        conjunct = self._conjuncts[depth]
+        span = conjunct.span
+        if span is not None and span.line == span.end_line:
+            written = span.file.lines[span.line - 1][span.column - 1 : span.end_column - 1]
+        else:
+            written = unbracketed(format_term(conjunct))
+        return _short(written, LONGEST_CONJUNCT)
+
+    def _values(self, conjunct: nodes.Node) -> str:
+        shown = []
+        for name in names_in(conjunct):
+            value = deref(self._names[name])
+            if value.__class__ is not Var:
+                shown.append(f"{name}={_short(_value_text(value), LONGEST_VALUE)}")
+        return ", ".join(shown)
+
+
+def _value_text(value: Term) -> str:
+    value = excerpt(value)
+    with suppress(ArithmeticFault, CyclicTerm, RecursionError):
+        value = resolve(value)
+    return text(value)
+
+
+def _short(written: str, longest: int) -> str:
+    return written if len(written) <= longest else f"{written[: longest - 3]}..."
+
+
+class _LookOnly:
+    """What searches need of an agent, for one that changes nothing, logs nothing and counts its steps."""
+
+    def __init__(self, agent: Circumstance, budget: SearchBudget) -> None:
+        self.beliefs = _Beliefs(self, agent, budget)
+        self.actions = _Actions(agent)
+        self.context = _Silent(agent)
+        self.rule_depth = agent.rule_depth
+        self._agent = agent
+        self._repeatable: dict[int, nodes.Node] = {}
+
+    def answers(self, formula: Term, trail: Trail) -> Iterator[Any]:
+        """The answers of a formula."""
+        view: Any = self
+        return run(solve_formula(view, formula, trail), self.rule_depth)
+
+    def refuse_effects(self, formula: nodes.Node) -> None:
+        """Look through a formula for what may have an effect.
+
+        Raises:
+            NotRepeatable: it holds a function of the agent or the project, or a predicate whose namespace is a variable.
+        """
+        if id(formula) in self._repeatable:
+            return
+        for node in walk(formula):
+            if isinstance(node, nodes.FunctionCall):
+                if node.name not in functions and node.name not in _ABOUT_THE_AGENT:
+                    raise NotRepeatable
+            elif isinstance(node, nodes.Literal) and isinstance(node.namespace, nodes.Variable):
+                raise NotRepeatable
+        self._repeatable[id(formula)] = formula
+
+    def call_own(self, term: Term) -> Term:
+        """The value of a function that needs the agent, as `jacaros.bdi.rules.functions.call_own` has it."""
+        if term[0].name != ".count":
+            return self._agent.call_own(term)
+        trail = Trail()
+        number = sum(1 for _ in self.answers(resolve(term[1]), trail))
+        undo(trail, 0)
+        return float(number)
+
+    def warn_of_operand(self, what: str, value: Term) -> None:
+        """Say nothing: the warning has been logged."""
+
+
+class _Silent(Context):
+    """A context for internal actions whose errors have been reported already."""
+
+    def report(self, action: str, fault: object) -> None:
+        """Say nothing."""
+
+
+class _Actions:
+    """The internal actions that may be called once more."""
+
+    def __init__(self, agent: Circumstance) -> None:
+        self._actions = agent.actions
+
+    def get(self, name: str) -> Any:
+        """The action of a name.
+
+        Raises:
+            NotRepeatable: it may have an effect.
+        """
+        if name in _PRINTING:
+            return InternalAction(name, lambda *_: True)
+        if name not in REPEATABLE and name in self._actions:
+            raise NotRepeatable
+        return self._actions.get(name)
+
+
+class _Beliefs:
+    """The tables of a belief base; each entry that is looked at counts."""
+
+    def __init__(self, agent: _LookOnly, mind: Circumstance, budget: SearchBudget) -> None:
+        self._agent, self._beliefs, self.budget = agent, mind.beliefs, budget
+
+    def __getitem__(self, symbol: Functor) -> "_Table":
+        table = self._beliefs.get(symbol)
+        if table is None:
+            table = Table(symbol)
+        if type(table).candidates is not Table.candidates:
+            raise NotRepeatable  # a class of the project looks beliefs up elsewhere
+        return _Table(self._agent, table, self.budget)
+
+    def items(self) -> Any:
+        """All tables.
+
+        Raises:
+            NotRepeatable: always: a variable that is asked for may stand for anything.
+        """
+        raise NotRepeatable
+
+
+class _Table:
+    def __init__(self, agent: _LookOnly, table: Table, budget: SearchBudget) -> None:
+        self._agent, self._table, self._budget = agent, table, budget
+
+    def candidates(self, arguments: tuple[Term, ...]) -> Iterator[tuple[Any, tuple[Term, ...]]]:
+        for number, (entry, annotations) in enumerate(self._table.candidates(arguments)):
+            if isinstance(entry, Rule):
+                self._budget.spend()
+                yield _Interpreted(self._agent, entry), annotations
+            else:
+                if number % FACTS_PER_STEP == 0:
+                    self._budget.spend()
+                yield entry, annotations
+
+
+class _Interpreted:
+    """A rule whose body is searched as a term: compiled rules do not count their steps."""
+
+    def __init__(self, agent: _LookOnly, rule: Rule) -> None:
+        self._agent, self._rule = agent, rule.node
+
+    def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Generator[Any, Any, None]:
+        """A generator of the answers, see `jacaros.bdi.rules.searching.run`."""
+        rule, lookup = self._rule, fresh_names()
+        head = arguments_of(lower(rule.head, lookup))
+        if all(unify(given, own, trail) for given, own in zip(arguments, head, strict=True)):
+            self._agent.refuse_effects(rule.body)
+            view: Any = self._agent
+            found = solve_formula(view, lower(rule.body, lookup), trail)
+            while (yield found) is not None:
+                yield ()

@@ -1,0 +1,351 @@
+"""Why a goal failed: the annotations of its failure event, and what people are told of it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.asl.formatter import format_term
+from jacaros.asl.lowering import lower
+from jacaros.asl.source import Span
+from jacaros.bdi.explaining.step_text import step_text
+from jacaros.bdi.fast.generated.body_compiler import StepInfo
+from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
+from jacaros.bdi.state.literals import annotations_of_event, literal_of
+from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.excerpt import excerpt
+from jacaros.terms.order import annotation_set
+from jacaros.terms.substitution import resolve
+from jacaros.terms.text import text
+from jacaros.terms.values import Functor, String, Term, Var, functor, functor_of
+
+ERROR, ERROR_MSG = functor("error", 1), functor("error_msg", 1)
+CODE, CODE_LINE, CODE_SRC = functor("code", 1), functor("code_line", 1), functor("code_src", 1)
+UNNAMED = Var("_")
+_Terms = tuple[Term, ...]
+_REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
+
+
+class FailureReason:
+    """The annotations of a failure event; they are put together when a plan first asks for them.
+
+    Attributes:
+        goal_annotations: those of the goal whose failure event it is for; None before there is one.
+        goal_number: by which observers know that goal, when it had no plan and so no frame on the stack.
+        goals: those of the intention that was lost, as people read them, the one that failed first; noted when it ends.
+        candidates: of a goal without applicable plan, the plans that there were and where their contexts fail, as lines for
+            people; noted at the same time.
+    """
+
+    __slots__ = ("_at", "_made", "_terms", "candidates", "goal_annotations", "goal_number", "goals")
+
+    def __init__(
+        self,
+        terms: _Terms | Callable[[], _Terms],
+        at: Any,
+        goal_annotations: Any = None,
+        goal_number: int | None = None,
+    ) -> None:
+        """Make a reason.
+
+        Args:
+            terms: ``error(..)``, ``error_msg(..)`` and what else was given; or what makes them.
+            at: the place; or the frame whose step failed, which stays as it is: its plan goes no further.
+            goal_annotations: of the goal that failed, when that is known already.
+            goal_number: see above.
+        """
+        self._terms = terms
+        self._at = at
+        self.goal_annotations = goal_annotations
+        self.goal_number = goal_number
+        self.goals: tuple[str, ...] = ()
+        self.candidates: tuple[str, ...] = ()
+        self._made: _Terms | None = None
+
+    def for_goal(self, annotations: Any, number: int | None = None) -> "FailureReason":
+        """The same reason for the failure event of a goal: this very one, unless it is for another goal already."""
+        if self.goal_annotations is None:
+            self.goal_annotations = annotations
+            self.goal_number = number
+            return self
+        return FailureReason(self._terms, self._at, annotations, number)
+
+    @property
+    def _place(self) -> Any:
+        if self._at.__class__ is list:
+            self._at = StepPlace(self._at, self._at[STEP].info)
+        return self._at
+
+    @property
+    def terms(self) -> _Terms:
+        """``error(..)``, ``error_msg(..)`` and what else was given."""
+        if not isinstance(self._terms, tuple):
+            self._terms = self._terms()
+        return self._terms
+
+    def annotations(self) -> tuple[Term, ...]:
+        """All annotations, sorted."""
+        if self._made is None:
+            goal = self.goal_annotations
+            own = goal if isinstance(goal, tuple) else goal.annotations() if goal is not None else ()
+            self._made = annotation_set((*self.terms, *self._place.annotations(), *own))
+        return self._made
+
+    def error(self) -> str:
+        """The id of the error, for messages."""
+        return self.known_error() or "unknown"
+
+    def known_error(self) -> str:
+        """The id of the error, or an empty text: failures by ``.fail_goal`` have none."""
+        for term in self.terms:
+            if term.__class__ is tuple and term[0] is ERROR:
+                return text(term[1])
+        return ""
+
+    def message(self) -> str:
+        """The text for people, or an empty one."""
+        for term in self.terms:
+            if term.__class__ is tuple and term[0] is ERROR_MSG:
+                return str(term[1])
+        return str(self._place.told())
+
+    def others(self) -> list[Term]:
+        """The terms besides ``error`` and ``error_msg``, such as ``env_failure_reason(..)``."""
+        return [t for t in self.terms if not (t.__class__ is tuple and t[0] in (ERROR, ERROR_MSG))]
+
+    def step(self) -> str:
+        """The step that failed, with the values of its variables; empty when a goal without plan is the reason."""
+        return str(self._place.step())
+
+    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
+        """The goals for which the step was made, as far as they are not on the stack any more."""
+        found: tuple[tuple[Any, ...], ...] = self._place.inner_goals()
+        return found
+
+    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+        """The goal that no plan fits and its annotations, None when that is not the reason."""
+        found: tuple[tuple[Any, ...], Any] | None = self._place.unplanned()
+        return found
+
+    def interrupted(self, frames: list[Frame]) -> "FailureReason":
+        """The same reason, for goals that were ended from outside: *frames* served them, the last one was at work."""
+        return FailureReason(self.terms, _Interrupted(self._place.told(), frames), self.goal_annotations)
+
+    def where(self) -> str:
+        """``file:line``, or an empty text."""
+        return str(self._place.where())
+
+    def span(self) -> Span | None:
+        """The place of the formula that failed, or of the call of the goal without plan; None when there is none."""
+        found: Span | None = self._place.span()
+        return found
+
+
+class _Nowhere:
+    """No formula: something from outside ended the goal; *told* says what, where no ``error_msg`` does."""
+
+    __slots__ = ("_told",)
+
+    def __init__(self, told: str = "") -> None:
+        self._told = told
+
+    def told(self) -> str:
+        return self._told
+
+    def step(self) -> str:
+        return ""
+
+    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
+        return ()
+
+    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+        return None
+
+    def annotations(self) -> tuple[Term, ...]:
+        return ()
+
+    def span(self) -> Span | None:
+        return None
+
+    def where(self) -> str:
+        return ""
+
+
+class StepPlace(_Nowhere):
+    """The formula of a step that failed."""
+
+    __slots__ = ("_frame", "_info")
+
+    def __init__(self, frame: Frame, info: StepInfo) -> None:
+        super().__init__()
+        self._frame, self._info = frame, info
+
+    @property
+    def node(self) -> nodes.Node:
+        return _failed_formula(self._info.node)
+
+    @property
+    def plan(self) -> Any:
+        return self._frame[PLAN]
+
+    def annotations(self) -> tuple[Term, ...]:
+        return _code(self._resolved(lower(self.node, self._value)), self.node.span, self.plan.file)
+
+    def step(self) -> str:
+        term = lower(self.node, lambda name: UNNAMED if name[0] == "_" else self._value(name))
+        return step_text(self._info.node, self._resolved(excerpt(term)))
+
+    def _resolved(self, term: Term) -> Term:
+        """The formula, with the values of its variables."""
+        node = self.node
+        try:
+            term = resolve(term)
+        except (ArithmeticFault, CyclicTerm, RecursionError):
+            # The formula holds the very expression that has no value: it is shown as it is written.
+            term = String(format_term(node)) if isinstance(node, nodes.Term) else String("")
+        return term
+
+    def _value(self, name: str) -> Term:
+        """The value of a variable, as far as it has one."""
+        slot = self.plan.slots.get(name, len(self._frame))
+        value = self._frame[slot] if slot < len(self._frame) else None
+        return Var(name) if value is None else value
+
+    def span(self) -> Span | None:
+        return self.node.span
+
+    def where(self) -> str:
+        span = self.node.span
+        return f"{span.file.name}:{span.line}" if span is not None else self.plan.file
+
+
+def _failed_formula(node: nodes.Node) -> nodes.Node:
+    """What ``code(..)`` shows of a step: the formula, without the operator of a test."""
+    if isinstance(node, nodes.Test):
+        return node.formula
+    if isinstance(node, nodes.Constraint):
+        return node.formula
+    if isinstance(node, nodes.ExternalAction):
+        return node.action
+    if isinstance(node, (nodes.If, nodes.While, nodes.For)):
+        return node.condition
+    if isinstance(node, nodes.Achieve):
+        return node.goal
+    if isinstance(node, nodes.BeliefChange):
+        return node.operand
+    return node
+
+
+class _Interrupted(_Nowhere):
+    """What an intention was at when a goal of it was ended from outside; plans are not told of it."""
+
+    def __init__(self, told: str, frames: list[Frame]) -> None:
+        super().__init__(told)
+        self._frames = frames
+        info: StepInfo | None = getattr(frames[-1][STEP], "info", None)
+        self._step = StepPlace(frames[-1], info) if info is not None else _Nowhere()
+
+    def step(self) -> str:
+        return self._step.step()
+
+    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
+        return tuple(frame[GOAL] for frame in reversed(self._frames[1:]))
+
+    def span(self) -> Span | None:
+        return self._step.span()
+
+    def where(self) -> str:
+        return self._step.where()
+
+
+class GoalPlace(_Nowhere):
+    """A goal without plan: ``code`` is the goal, the line is that of the call."""
+
+    def __init__(self, goal: tuple[Any, ...], annotations: Any, caller: Frame | None) -> None:
+        super().__init__()
+        self.goal, self.goal_annotations = goal, annotations
+        self.caller = caller
+
+    def annotations(self) -> tuple[Term, ...]:
+        # A goal that was posted again by its handler has the reasons of its last failure: they would double each time.
+        shown = tuple(a for a in annotations_of_event(self.goal_annotations) if functor_of(a) not in _REASONS)
+        try:
+            term = resolve(literal_of(self.goal, shown))
+        except (ArithmeticFault, CyclicTerm):
+            term = String(goal_text(self.goal))
+        span, file = self._call()
+        return _code(term, span, file)
+
+    def span(self) -> Span | None:
+        return self._call()[0]
+
+    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+        return self.goal, self.goal_annotations
+
+    def _call(self) -> tuple[Span | None, str]:
+        if self.caller is None:
+            return None, ""
+        return place_of_call(self.caller, self.goal[0].functor), self.caller[PLAN].file
+
+    def where(self) -> str:
+        span, file = self._call()
+        return f"{file}:{span.line}" if span is not None else file
+
+
+def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
+    """Where the plan of a frame called the goal that it now waits for; *symbol* is the functor of the goal.
+
+    Steps do not know the ones before them.  Several may come before the present one, as at the ends of two branches:
+    those that call a goal of that functor are taken first.
+    """
+    plan = caller[PLAN]
+    following = caller[STEP].__name__ if caller[STEP] is not None else "None"
+    steps: dict[str, StepInfo] = getattr(caller[STEP], "steps", plan.steps)
+    calls = [
+        info.node
+        for info in steps.values()
+        if isinstance(info.node, (nodes.Achieve, nodes.Test)) and info.next == following
+    ]
+    for node in calls:
+        goal = node.goal if isinstance(node, nodes.Achieve) else node.formula
+        if (
+            symbol is not None
+            and isinstance(goal, nodes.Literal)
+            and (goal.functor, len(goal.arguments)) == (symbol.name, symbol.arity)
+        ):
+            return node.span
+    return calls[0].span if calls else plan.node.span
+
+
+def _code(term: Term, span: Any, file: str) -> tuple[Term, ...]:
+    return (CODE, term), *code_place(span, file)
+
+
+def code_place(span: Span | None, file: str) -> tuple[Term, ...]:
+    """``code_src`` and ``code_line`` of a place in a program, as far as they are known."""
+    source = ((CODE_SRC, String(f"file:{file}")),) if file else ()
+    return source if span is None else (*source, (CODE_LINE, float(span.line)))
+
+
+def goal_text(goal: tuple[Any, ...]) -> str:
+    """A goal for people; one whose arguments have no value (``g(1 div 0)``) by its name."""
+    try:
+        return text(literal_of(goal, ()))
+    except (ArithmeticFault, CyclicTerm):
+        return f"{goal[0].functor.name}(...)"
+
+
+def shown_goal(goal: tuple[Any, ...]) -> str:
+    """The beginning of a goal or another event, with its signs: ``!go(home)``, ``-!go(home)``, ``+low(9)``."""
+    trigger = goal[0]
+    sign = "" if trigger.operator == "+" and trigger.kind else trigger.operator
+    try:
+        told = text(excerpt(literal_of(goal, ())))
+    except (ArithmeticFault, CyclicTerm):
+        told = f"{trigger.functor.name}(...)"
+    return f"{sign}{trigger.kind}{told}"
+
+
+def nowhere(*terms: Term, told: str = "") -> FailureReason:
+    """A reason without a formula, as ``.fail_goal`` gives it; *told* is for people."""
+    return FailureReason(terms, _Nowhere(told))

@@ -1,0 +1,1 @@
+"""What makes the mind fast: each file stands for a rule and may be left out."""

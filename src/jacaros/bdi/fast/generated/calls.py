@@ -1,0 +1,127 @@
+"""Calls of internal actions that generated code makes, and what becomes of those that cannot be made."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.errors import InternalError
+from jacaros.terms.unifier import Trail, undo
+from jacaros.terms.values import String, Term, atom, functor
+
+
+def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Iterator[None]:
+    """The answers of a backtracking internal action, on the given trail; its bindings are undone in between.
+
+    An error inside ends the answers and is reported: in a condition an action that cannot be done does not hold.
+    """
+    mark = len(trail)
+    generator = action.function(context, *arguments)
+    beliefs = context.agent.beliefs
+    while True:
+        outer, context.trail = context.trail, trail
+        within, beliefs.searching = beliefs.searching, beliefs.next_call()
+        try:
+            found = next(generator, generator)
+        except InternalError:
+            raise
+        except Exception as fault:
+            context.report(action.name, fault)
+            return
+        finally:
+            context.trail = outer
+            beliefs.searching = within
+        if found is generator:
+            return
+        if beliefs.budget is not None:
+            beliefs.budget.spend()
+        yield
+        undo(trail, mark)
+
+
+def values_of(context: Any, action: Any, *arguments: Term) -> Iterable[Term]:
+    """What the first argument of a backtracking internal action is in each of its answers, as `answers_of` gives them.
+
+    *arguments* are the others; the first one has no value yet.
+    """
+    try:
+        values: Iterable[Term] = action.values(*arguments)
+    except InternalError:
+        raise
+    except Exception as fault:
+        context.report(action.name, fault)
+        return ()
+    budget = context.agent.beliefs.budget
+    return values if budget is None else budget.counting_answers(values)
+
+
+def first_answer_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
+    """The first answer of a backtracking internal action that is a step of its own: errors fail the step."""
+    del trail
+    for _ in action.function(context, *arguments):
+        return True
+    return False
+
+
+def holds(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
+    """Whether an internal action succeeds as a condition, on the given trail; an error is reported and counts as no."""
+    outer, context.trail = context.trail, trail
+    beliefs = context.agent.beliefs
+    within, beliefs.searching = beliefs.searching, beliefs.next_call()
+    try:
+        return action.function(context, *arguments) is not False
+    except InternalError:
+        raise
+    except Exception as fault:
+        context.report(action.name, fault)
+        return False
+    finally:
+        context.trail = outer
+        beliefs.searching = within
+
+
+def wrong_arity(action: Any, count: int) -> str:
+    """What is wrong with calling an internal action with so many arguments."""
+    most = action.maximum
+    expected = (
+        str(action.minimum)
+        if most == action.minimum
+        else f"{action.minimum} to {most if most is not None else 'any'}"
+    )
+    given = f"{action.name} takes {expected} argument{'' if expected == '1' else 's'}, not {count}"
+    return (
+        f"{given}; {action.result_hint}"
+        if most is not None and count == most + 1 and action.result_hint
+        else given
+    )
+
+
+def refuse(action: Any, count: int) -> bool:
+    """A step calls an internal action with a number of arguments that it does not take."""
+    error = (functor("error", 1), atom("wrong_arguments"))
+    raise Failure(error, (functor("error_msg", 1), String(wrong_arity(action, count))))
+
+
+def refuse_quietly(context: Any, action: Any, count: int) -> bool:
+    """A condition calls an internal action with a number of arguments that it does not take: it does not hold."""
+    context.report(action.name, wrong_arity(action, count))
+    return False
+
+
+def unknown(context: Any, name: str) -> bool:
+    """A condition calls an internal action that does not exist: it does not hold."""
+    context.report(name, "there is no such internal action")
+    return False
+
+
+_ACTS = frozenset({".send", ".broadcast", ".wait", ".stopMAS", ".suspend"})
+
+
+def takes_time(action: Any) -> bool:
+    """Whether an internal action cannot be a condition, because it waits, or acts on others."""
+    return bool(action.suspends) and (action.name[0] != "." or action.name in _ACTS)
+
+
+def cannot_wait(context: Any, action: Any) -> bool:
+    """A condition calls an internal action that may suspend the intention: it does not hold."""
+    context.report(action.name, "it takes time, or acts on the intention, and cannot be a condition")
+    return False

@@ -1,0 +1,208 @@
+"""One generated Python function: its text and what is known about variables at the point being written."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, Protocol
+
+from jacaros.asl import nodes
+from jacaros.bdi.fast.generated.writer import Writer
+from jacaros.terms.values import Term
+
+FIRST_SLOT = 5
+"""A frame is ``[next step, goal, annotations, serial, plan, variable, ...]``."""
+
+
+class ActionInfo(Protocol):
+    """What the compiler needs to know of an internal action."""
+
+    @property
+    def name(self) -> str:
+        """With the leading dot of the standard ones."""
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """Called with a context and the arguments."""
+
+    @property
+    def backtracks(self) -> bool:
+        """Whether it is a generator of answers."""
+
+    @property
+    def suspends(self) -> bool:
+        """Whether it may suspend the intention."""
+
+    @property
+    def minimum(self) -> int:
+        """Least number of arguments."""
+
+    @property
+    def maximum(self) -> int | None:
+        """Greatest number of arguments, None for any."""
+
+    @property
+    def direct(self) -> Callable[[tuple[Term | None, ...]], Callable[..., Any] | None] | None:
+        """Asked for a quicker function for a call with the arguments that are written out; None when there is none."""
+
+    @property
+    def values(self) -> Callable[..., Iterable[Term]] | None:
+        """Gives what the first argument is in each answer while it has no value, called with the others; or None."""
+
+
+TOP = "NESTED"
+"""The `FunctionBuilder.depth` of a function that no other search has called."""
+
+
+class Unit(Protocol):
+    """The unit that the function becomes part of: constants, and further functions."""
+
+    @property
+    def actions(self) -> Mapping[str, ActionInfo]:
+        """The internal actions known at compile time."""
+
+    def constant(self, value: Term) -> str:
+        """A global name for a value."""
+
+    def add(self, writer: Writer) -> None:
+        """Make the finished function part of the unit."""
+
+    def fresh_function(self, prefix: str) -> str:
+        """A name for another function."""
+
+
+class Frame:
+    """The slots of a plan's variables, and what is known of them between two steps.
+
+    Attributes:
+        slots: index in the frame by variable name.
+        states: ``set`` (has a value, perhaps a `Var`) or ``maybe`` (None when it was bound on another branch);
+            names that are missing have no value yet.
+        asked: variables that went into a call without a value, to have one afterwards: their slots hold a `Var`.
+        counts: how often each variable is mentioned in the plan: a value that nobody reads is not kept.
+    """
+
+    def __init__(self, counts: dict[str, int]) -> None:
+        self.slots: dict[str, int] = {}
+        self.extra = 0
+        self.states: dict[str, str] = {}
+        self.asked: set[str] = set()
+        self.counts = counts
+
+    def slot(self, name: str) -> int:
+        """The slot of a variable."""
+        index = self.slots.get(name)
+        if index is None:
+            index = self.slots[name] = FIRST_SLOT + len(self.slots) + self.extra
+        return index
+
+    def hidden_slot(self) -> int:
+        """A slot for the compiler's own use."""
+        index = FIRST_SLOT + len(self.slots) + self.extra
+        self.extra += 1
+        return index
+
+    @property
+    def size(self) -> int:
+        """Number of slots behind the fixed ones."""
+        return len(self.slots) + self.extra
+
+
+class FunctionBuilder:
+    """A function being written.
+
+    Attributes:
+        values: Python expression (a local name) of each variable that has a value here.
+        asked: variables that were given a `Var` in this function.
+        fresh: variables that got their value in this function, in order.
+        trampoline: the function is a generator that yields generators to have them run (see `conditions`).
+        snapshot: answers are taken while beliefs may change in between, so tables are copied first.
+        depth: expression for how many generators may be nested in those that the function asks (see `predicates`).
+        quiet: an internal action that cannot be done does not hold; a step of its own fails with the reason.
+    """
+
+    def __init__(
+        self, unit: Unit, *, trampoline: bool = False, snapshot: bool = False, depth: str = TOP
+    ) -> None:
+        self.unit = unit
+        self.writer = Writer()
+        self.values: dict[str, str] = {}
+        self.fresh: list[str] = []
+        self.asked: set[str] = set()
+        self.trampoline = trampoline
+        self.snapshot = snapshot
+        self.depth = "0" if trampoline else depth
+        self.quiet = True
+
+    def line(self, text: str) -> None:
+        """Write a line."""
+        self.writer.line(text)
+
+    def at(self, node: nodes.Node) -> None:
+        """The next lines stem from this node."""
+        if node.span is not None:
+            self.writer.file, self.writer.origin = node.span.file, node.span.line
+
+    def constant(self, value: Term) -> str:
+        """A global name for a value."""
+        return self.unit.constant(value)
+
+    def local(self, prefix: str = "t") -> str:
+        """A local name that is used nowhere else."""
+        return self.writer.fresh(prefix)
+
+    def bind(self, name: str, expression: str | None = None) -> str:
+        """Give a variable its value here; returns the local name."""
+        target = f"v_{name}"
+        if expression is not None and expression.startswith("Var("):
+            # What `Var.__init__` does, without the call.
+            self.line(f"{target} = new(Var); {target}.ref = None; {target}.name = {name!r}")
+        elif expression is not None and expression != target:
+            self.line(f"{target} = {expression}")
+        self.values[name] = target
+        if name not in self.fresh:
+            self.fresh.append(name)
+        if expression is not None and expression.startswith("Var("):
+            self.asked.add(name)
+        return target
+
+    def inner(self, *, depth: str = "d - 1", searching: bool = True) -> "FunctionBuilder":
+        """A builder for a function that this one calls; *searching* the way this one does, or plainly and at once."""
+        if not searching:
+            return type(self)(self.unit, depth=depth)
+        return type(self)(self.unit, trampoline=self.trampoline, snapshot=self.snapshot, depth=depth)
+
+    @contextmanager
+    def branch(self) -> Iterator[None]:
+        """What is learnt inside is forgotten outside."""
+        values, fresh = dict(self.values), list(self.fresh)
+        yield
+        self.values, self.fresh = values, fresh
+
+    def load(self, frame: Frame, names: list[str]) -> None:
+        """Read the variables that have a value from the frame."""
+        for name in names:
+            state = frame.states.get(name)
+            if state is None:
+                continue
+            slot = frame.slot(name)
+            self.line(f"v_{name} = frame[{slot}]")
+            if state == "maybe":
+                self.line(f'if v_{name} is None: v_{name} = frame[{slot}] = Var("{name}")')
+                frame.states[name] = "set"
+            elif name in frame.asked:
+                value = f"v_{name}.ref if v_{name}.ref.__class__ is float else deref(v_{name})"
+                self.line(f"if v_{name}.__class__ is Var and v_{name}.ref is not None: v_{name} = {value}")
+            self.values[name] = f"v_{name}"
+
+    def store(self, frame: Frame) -> None:
+        """Write the variables that got a value here to the frame."""
+        for name in self.fresh:
+            if frame.counts.get(name, 0) > 1:
+                self.line(f"frame[{frame.slot(name)}] = {self.values[name]}")
+        frame.asked |= self.asked
+
+    def mark_stored(self, frame: Frame) -> None:
+        """Take note that the fresh variables have a value from now on."""
+        for name in self.fresh:
+            if frame.counts.get(name, 0) > 1:
+                frame.slot(name)
+                frame.states[name] = "set"

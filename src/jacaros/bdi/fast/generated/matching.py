@@ -1,0 +1,200 @@
+"""Code that matches a pattern with a value: heads of plans and rules, rows of beliefs.
+
+Everything is written in continuation style: ``match(fn, pattern, value, then)`` writes the test, and inside it
+whatever *then* writes.  A pattern that meets a structure is taken apart in place; whatever is rarer (an unbound
+variable, annotations, arithmetic) goes to `unify`.
+"""
+
+from collections.abc import Callable, Sequence
+
+from jacaros.asl import nodes
+from jacaros.asl.variables import names_in
+from jacaros.bdi.fast.generated.building import build, functor_of_literal, is_static, tuple_of
+from jacaros.bdi.fast.generated.function import FunctionBuilder
+from jacaros.terms.values import CONS
+
+Then = Callable[[], None]
+_SHORT_LIST = 4
+MAX_DEPTH = 50
+"""Levels of indentation after which code goes on in another way."""
+
+
+def match(
+    fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool = True
+) -> None:
+    """Match one pattern with the value of a local name."""
+    if isinstance(pattern, nodes.Variable) and _is_plain(pattern):
+        _match_variable(fn, pattern, value, then)
+    elif isinstance(pattern, nodes.Number):
+        number = build(fn, pattern)  # infinite ones are no Python literals
+        _test(fn, f"{value} == {number} if {value}.__class__ is float else {_open(number, value)}", then)
+    elif isinstance(pattern, nodes.String):
+        text = build(fn, pattern)
+        _test(fn, f"{value} == {text} if {value}.__class__ is String else {_open(text, value)}", then)
+    elif _is_atom(pattern):
+        symbol = build(fn, pattern)
+        _test(fn, f"{value} is {symbol} or ({_open(symbol, value)})", then)
+    elif isinstance(pattern, nodes.Literal) and _is_plain(pattern) and _is_taken_apart(pattern):
+        symbol = fn.constant(functor_of_literal(pattern))
+        _match_structure(fn, symbol, pattern.arguments, value, then)
+    elif isinstance(pattern, nodes.ListTerm) and _is_taken_apart_list(pattern):
+        items, tail = pattern.items, pattern.tail
+        rest = tail if len(items) == 1 else nodes.replace(pattern, items=items[1:])
+        _match_list(fn, (items[0], rest or nodes.ListTerm(())), value, then)
+    else:
+        _match_any(fn, pattern, value, then, pattern_left)
+
+
+def _open(expected: str, value: str) -> str:
+    """Unification of an atom, number or string with what is none of these; structures are passed over at once."""
+    closed = f"{value}.__class__ not in CLOSED and ({value}.__class__ is not tuple or {value}[0].kind)"
+    return f"{closed} and unify({expected}, {value}, t)"
+
+
+def _is_atom(pattern: nodes.Node) -> bool:
+    if isinstance(pattern, nodes.ListTerm):
+        return not pattern.items and pattern.tail is None
+    return isinstance(pattern, nodes.Literal) and not pattern.arguments and _is_plain(pattern)
+
+
+def _is_taken_apart(pattern: nodes.Literal) -> bool:
+    """Whether the arguments are matched one by one; large constants are better compared as a whole."""
+    return not is_static(pattern) or all(
+        isinstance(a, nodes.Number | nodes.String) or _is_atom(a) for a in pattern.arguments
+    )
+
+
+def _is_taken_apart_list(pattern: nodes.ListTerm) -> bool:
+    if not pattern.items or is_static(pattern):
+        return False
+    return len(pattern.items) == 1 or len(pattern.items) <= _SHORT_LIST
+
+
+def _is_plain(pattern: nodes.Variable | nodes.Literal) -> bool:
+    if pattern.annotations is not None:
+        return False
+    if isinstance(pattern, nodes.Variable):
+        return pattern.namespace is None and not pattern.negated
+    return not isinstance(pattern.namespace, nodes.Variable)
+
+
+def _test(fn: FunctionBuilder, condition: str, then: Then) -> None:
+    with fn.writer.block(f"if {condition}:"):
+        then()
+
+
+def _match_variable(fn: FunctionBuilder, pattern: nodes.Variable, value: str, then: Then) -> None:
+    if pattern.unnamed:
+        then()
+        return
+    known = fn.values.get(pattern.name)
+    if known is None:
+        fn.bind(pattern.name, value)
+        then()
+        return
+    condition = f"{known} == {value} if {known}.__class__ is float and {value}.__class__ is float"
+    _test(fn, f"{condition} else unify({known}, {value}, t)", then)
+
+
+def _match_list(
+    fn: FunctionBuilder, first_and_rest: tuple[nodes.Node, nodes.Node], value: str, then: Then
+) -> None:
+    """Take the first element off a list."""
+
+    def of_list(value: str, parts: list[str], found: str) -> None:
+        first, rest = first_and_rest
+        with fn.writer.block(f"elif {value}.__class__ is List:"):
+            fn.line(f"{found} = True")
+            if not _is_anything(first):
+                fn.line(f"{parts[0]} = {value}.stack[{value}.size - 1]")
+            if not _is_anything(rest):
+                fn.line(f"{parts[1]} = {value}.rest()")
+
+    _match_structure(fn, fn.constant(CONS), first_and_rest, value, then, of_list)
+
+
+def _is_anything(pattern: nodes.Node) -> bool:
+    return isinstance(pattern, nodes.Variable) and pattern.unnamed and _is_plain(pattern)
+
+
+def _match_structure(
+    fn: FunctionBuilder,
+    symbol: str,
+    arguments: Sequence[nodes.Node],
+    value: str,
+    then: Then,
+    otherwise: Callable[[str, list[str], str], None] | None = None,
+) -> None:
+    """Take a structure apart; the parts are matched inside the test.
+
+    *otherwise* writes a test for values of another class.
+    """
+    parts = [fn.local("p") for _ in arguments]
+    found = fn.local("m")
+    outer, value = value, fn.local("d")
+    fn.line(f"{value} = deref({outer}) if {outer}.__class__ is Var else {outer}")
+    with fn.writer.block(f"if {value}.__class__ is tuple:"):
+        fn.line(f"{found} = {value}[0] is {symbol}")
+        fn.line(f"if {found}: _, {', '.join(parts)} = {value}")
+    if otherwise is not None:
+        otherwise(value, parts, found)
+    with fn.writer.block(f"elif {value}.__class__ in CLOSED:"):
+        fn.line(f"{found} = False")
+    with fn.writer.block("else:"):
+        for part, argument in zip(parts, arguments, strict=True):
+            name = argument.name if isinstance(argument, nodes.Variable) and not argument.unnamed else "_"
+            fn.line(f"{part} = Var({name!r})")
+        fn.line(f"{found} = unify({tuple_of([symbol, *parts])}, {value}, t)")
+    with fn.writer.block(f"if {found}:"):
+        match_all(fn, list(arguments), parts, then)
+
+
+def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str], then: Then) -> None:
+    """Match patterns with values, one inside the other."""
+    bound = 0
+    while bound < len(patterns) and _only_binds(fn, patterns[bound]):
+        match(fn, patterns[bound], values[bound], _nothing)
+        bound += 1
+    patterns, values = patterns[bound:], values[bound:]
+    if not patterns:
+        then()
+        return
+    if fn.writer.depth > MAX_DEPTH:
+        _match_together(fn, patterns, values, then)
+        return
+    match(fn, patterns[0], values[0], lambda: match_all(fn, patterns[1:], values[1:], then))
+
+
+def _only_binds(fn: FunctionBuilder, pattern: nodes.Node) -> bool:
+    """Whether any value matches: a variable that is met for the first time."""
+    return isinstance(pattern, nodes.Variable) and _is_plain(pattern) and fn.values.get(pattern.name) is None
+
+
+def _nothing() -> None:
+    pass
+
+
+def _match_together(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str], then: Then) -> None:
+    """Match many patterns in one test: Python allows no more than 100 levels of indentation."""
+    expected = tuple_of([build(fn, pattern) for pattern in patterns])
+    with fn.writer.block(f"if unify_rows({expected}, {tuple_of(values)}, t):"):
+        settle_fresh(fn, names_in(*patterns))
+        then()
+
+
+def _match_any(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool) -> None:
+    """Build the pattern as a term and unify."""
+    expected = build(fn, pattern)
+    left, right = (expected, value) if pattern_left else (value, expected)
+    with fn.writer.block(f"if unify({left}, {right}, t):"):
+        settle_fresh(fn, names_in(pattern))
+        then()
+
+
+def settle_fresh(fn: FunctionBuilder, names: list[str]) -> None:
+    """After unification the values of variables are read, into names of their own: the old ones may be tried again."""
+    for name in names:
+        if name in fn.values:
+            settled = fn.local("v")
+            fn.line(f"{settled} = deref({fn.values[name]})")
+            fn.values[name] = settled

@@ -1,0 +1,137 @@
+"""What generated code calls: the names of its global namespace.
+
+Nothing here knows of agents beyond what is passed in: tables of beliefs, the trail, the context of internal actions.
+"""
+
+from typing import Any
+
+from jacaros.bdi.fast.generated.calls import (
+    answers_of,
+    cannot_wait,
+    first_answer_of,
+    holds,
+    refuse,
+    refuse_quietly,
+    unknown,
+    values_of,
+)
+from jacaros.bdi.rules.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
+from jacaros.bdi.rules.outcomes import FAILED, NextPlan
+from jacaros.bdi.rules.searching import (
+    Remaining,
+    deeper,
+    exists,
+    facts,
+    run,
+    solve,
+    solve_annotated,
+    solve_held,
+    still_held,
+    too_many_open,
+    unify_rows,
+)
+from jacaros.bdi.state.literals import (
+    annotations_of_event,
+    literal_in,
+    literal_of,
+    namespace_name,
+    namespace_of,
+    own_annotations,
+    positive,
+    resolve_all,
+)
+from jacaros.errors import InternalError
+from jacaros.terms.arithmetic import affirm, binary, divide, integer_divide, negate, power, remainder
+from jacaros.terms.negation import qualify
+from jacaros.terms.order import annotation_set, at_most, less
+from jacaros.terms.substitution import ATOMIC, equal, free_variables, rename, resolve
+from jacaros.terms.unifier import Trail, undo, unify, unify_annotations
+from jacaros.terms.values import BY_SELF, CONS, Annotated, Functor, List, String, Var, bare, deref, make_list
+
+NESTED = 100
+"""So many generators may be nested: each is a level of Python's stack, of which a thousand are allowed."""
+
+
+def release(variables: list[Var]) -> None:
+    """Take back the values of variables that were free when a loop began."""
+    for variable in variables:
+        variable.ref = None
+
+
+CLOSED = frozenset({float, String, Functor, List})
+"""Values that never unify with a structure."""
+
+
+def join_branch(agent: Any, frame: list[Any]) -> Any:
+    """The step behind the last one of a branch of ``|&|`` or ``|||``."""
+    return agent.join_branch(frame)
+
+
+_FUNCTIONS = (
+    affirm,
+    annotation_set,
+    annotations_of_event,
+    answers_of,
+    values_of,
+    at_most,
+    binary,
+    cannot_wait,
+    constructed,
+    deconstruct,
+    deconstruct_in,
+    deconstructed,
+    deeper,
+    bare,
+    deref,
+    divide,
+    equal,
+    exists,
+    facts,
+    first_answer_of,
+    free_variables,
+    holds,
+    integer_divide,
+    join_branch,
+    less,
+    literal_in,
+    literal_of,
+    make_list,
+    namespace_name,
+    namespace_of,
+    negate,
+    own_annotations,
+    positive,
+    power,
+    qualify,
+    refuse,
+    refuse_quietly,
+    release,
+    remainder,
+    resolve,
+    resolve_all,
+    run,
+    solve,
+    solve_annotated,
+    solve_held,
+    still_held,
+    too_many_open,
+    undo,
+    unify,
+    unify_annotations,
+    unify_rows,
+    unknown,
+)
+_CLASSES = (Annotated, InternalError, NextPlan, Remaining, Functor, List, String, Trail, Var)
+
+NAMES: dict[str, Any] = {
+    **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},
+    "ATOMIC": ATOMIC,
+    "BY_SELF": BY_SELF,
+    "CLOSED": CLOSED,
+    "CONS": CONS,
+    "FAILED": FAILED,
+    "NESTED": NESTED,
+    "copy": rename,
+    "new": object.__new__,
+}
+"""The global names of generated code."""

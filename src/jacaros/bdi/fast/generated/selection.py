@@ -1,0 +1,324 @@
+"""Code that selects a plan: one function per event kind, holding all its plans in order.
+
+``select(agent, goal, annotations)`` tries the plans one after the other: head, then context; the first that applies gives
+its new frame; None means that no plan is applicable (rules RelPl, ApplPl and SelAppl in one).
+"""
+
+from collections.abc import Sequence
+
+from jacaros.asl import nodes
+from jacaros.asl.variables import names_in, nodes_in, occurrences
+from jacaros.bdi.fast.generated.annotations import first_match, patterns_in_order
+from jacaros.bdi.fast.generated.bodies import body_compiler
+from jacaros.bdi.fast.generated.body_compiler import BodyCompiler
+from jacaros.bdi.fast.generated.building import annotation_parts, functor_of_literal, tuple_of
+from jacaros.bdi.fast.generated.conditions import condition, searched
+from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder, Unit
+from jacaros.bdi.fast.generated.matching import match_all, settle_fresh
+from jacaros.bdi.state.plan import Plan
+from jacaros.terms.values import CONS, NIL, String, Term, atom
+
+ALL_UNIFIERS = atom("all_unifs")
+_WORTH_A_TABLE = 6
+"""So many different first arguments make a look-up cheaper than trying one plan after the other."""
+_BY_NAME = (".term2string", ".puts", ".print_unifier")
+"""Internal actions that reach variables by their names: all variables of the plan are kept for them."""
+
+
+class SelectCompiler:
+    """Writes the select function of one event kind, and the steps of its plans.
+
+    Attributes:
+        every: the function is a generator of the frames of all applicable plans: of each plan the first one, or, when
+            its label says ``all_unifs``, one for each answer of its context.
+        bodies: for each plan, the names of its step functions and what is known of them.
+        firsts: for each plan, the name of the first step function.
+    """
+
+    def __init__(self, unit: Unit, arity: int, every: bool = False) -> None:
+        self.unit = unit
+        self.arity = arity
+        self.every = every
+        self.bodies: list[tuple[Plan, BodyCompiler, str]] = []
+
+    def select(self, plans: Sequence[Plan], outer: Plan | None = None) -> str:
+        """Write the function; returns its name.  Sub-plans see the variables of their *outer* plan's frame."""
+        if outer is None and not self.every and self.arity:
+            groups = grouped(plans)
+            if groups is not None:
+                return self._dispatch(groups, plans[0])
+        return self._in_turn(plans, outer)
+
+    def _dispatch(self, groups: list[tuple[Term, list[Plan]]], first: Plan) -> str:
+        """Write a function that tries only the plans whose first argument may be that of the event."""
+        functions = [(key, self._in_turn(plans, None)) for key, plans in groups]
+        keys = list(dict.fromkeys(key for key, _ in functions if key is not None))
+        name, table = self.unit.fresh_function("select"), self.unit.fresh_function("plans")
+        fn = FunctionBuilder(self.unit)
+        fn.at(first.node)
+
+        def parts(key: Term) -> str:
+            return tuple_of([part for own, part in functions if own is None or own is key or own == key])
+
+        entries = ", ".join(f"{fn.constant(key)}: {parts(key)}" for key in keys)
+        fn.line(f"{table} = {{{entries}}}")
+        others = [part for key, part in functions if key is None]
+        fn.line(f"{table}_others = {tuple_of(others) if others else '()'}")
+        fn.line(f"{table}_all = {tuple_of([part for _, part in functions])}")
+        with fn.writer.block(f"def {name}(agent, goal, annotations):"):
+            fn.line("key = goal[1]")
+            with fn.writer.block("if key.__class__ is tuple:"):
+                fn.line("key = None if key[0].kind else key[0]")
+            with fn.writer.block("elif key.__class__ is List:"):
+                fn.line("key = CONS")
+            with fn.writer.block(
+                f"for part in ({table}.get(key, {table}_others) if key.__class__ in ATOMIC else {table}_all):"
+            ):
+                fn.line("frame = part(agent, goal, annotations)")
+                fn.line("if frame is not None: return frame")
+            fn.line("return None")
+        self.unit.add(fn.writer)
+        return name
+
+    def _in_turn(self, plans: Sequence[Plan], outer: Plan | None) -> str:
+        """Write a function that tries plans one after the other."""
+        name = self.unit.fresh_function("select")
+        fn = FunctionBuilder(self.unit)
+        fn.at(plans[0].node)
+        with fn.writer.block(f"def {name}(agent, goal, annotations):"):
+            fn.line("t = agent.trail")
+            if outer is not None:
+                _read_outer(fn, outer, plans)
+            parts = [fn.local("a") for _ in range(self.arity)]
+            if any(map(_looks_at_arguments, plans)):
+                fn.line(f"_, {', '.join(parts)} = goal")
+            for index, plan in enumerate(plans):
+                fn.at(plan.node)
+                if index:
+                    fn.line("if t: undo(t, 0)")
+                with fn.branch(), fn.writer.block("try:"):
+                    self._plan(fn, plan, parts)
+                fn.line("except InternalError: raise")
+                if self.every:
+                    fn.line("except NextPlan: pass")
+                fn.line(f"except Exception as fault: agent.context.report_plan({fn.constant(plan)}, fault)")
+            fn.line("if t: undo(t, 0)")
+            fn.line("return" if self.every else "return None")
+            if self.every:
+                fn.line("yield")
+        self.unit.add(fn.writer)
+        return name
+
+    def _plan(self, fn: FunctionBuilder, plan: Plan, parts: list[str]) -> None:
+        literal = plan.node.trigger.literal
+        if isinstance(literal, nodes.Variable):
+            self._variable_trigger(fn, plan, literal)
+            return
+        if isinstance(literal.namespace, nodes.Variable):
+            self._variable_namespace(fn, plan, literal, literal.namespace, parts)
+            return
+        self._arguments(fn, plan, literal, parts)
+
+    def _variable_namespace(
+        self,
+        fn: FunctionBuilder,
+        plan: Plan,
+        literal: nodes.Literal,
+        namespace: nodes.Variable,
+        parts: list[str],
+    ) -> None:
+        """A trigger ``+!N::g(X)``: the event may be of any namespace."""
+        name, arity, negated = literal.functor, len(literal.arguments), literal.negated
+        if arity != self.arity:
+            fn.line("pass")
+            return
+        symbol = "goal[0].functor"
+        same = f"{symbol}.name == {name!r} and {symbol}.negated is {negated}"
+        with fn.writer.block(f"if {same}:"):
+            if not namespace.unnamed:
+                fn.bind(namespace.name, f"namespace_of({symbol})")
+            self._arguments(fn, plan, literal, parts)
+
+    def _arguments(self, fn: FunctionBuilder, plan: Plan, literal: nodes.Literal, parts: list[str]) -> None:
+        match_all(
+            fn, list(literal.arguments), parts, lambda: self._annotations(fn, plan, literal.annotations)
+        )
+
+    def _variable_trigger(self, fn: FunctionBuilder, plan: Plan, variable: nodes.Variable) -> None:
+        if variable.unnamed:
+            self._annotations(fn, plan, variable.annotations)
+            return
+        whole = variable.annotations is None
+        value = f"literal_of(goal, {'annotations' if whole else '()'})"
+        if variable.negated:
+            with fn.writer.block("if goal[0].functor.negated:"):
+                fn.bind(variable.name, f"positive({value})")
+                self._annotations(fn, plan, variable.annotations)
+            return
+        fn.bind(variable.name, value)
+        self._annotations(fn, plan, variable.annotations)
+
+    def _annotations(self, fn: FunctionBuilder, plan: Plan, annotations: nodes.Annotations | None) -> None:
+        if annotations is None:
+            self._context(fn, plan)
+            return
+        patterns = patterns_in_order(annotations)
+        if patterns is not None:
+            held = fn.local("h")
+            fn.line(
+                f"{held} = annotations if annotations.__class__ is tuple else annotations_of_event(annotations)"
+            )
+            first_match(fn, patterns, held, lambda: self._context(fn, plan))
+            return
+        items, tail = annotation_parts(fn, annotations)
+        with fn.writer.block(
+            f"if unify_annotations({items}, {tail}, annotations_of_event(annotations), None, t):"
+        ):
+            settle_fresh(fn, names_in(annotations))
+            self._context(fn, plan)
+
+    def _context(self, fn: FunctionBuilder, plan: Plan) -> None:
+        if plan.node.context is None:
+            self._frame(fn, plan)
+        else:
+            fn.at(plan.node.context)
+            write = searched if plan.searched else condition
+            write(fn, plan.node.context, lambda: self._frame(fn, plan))
+
+    def _frame(self, fn: FunctionBuilder, plan: Plan) -> None:
+        """The innermost point: the plan is applicable, its frame is made and given back."""
+        node = plan.node
+        counts = occurrences(node.trigger, node.context, node.body, node.goal_condition, node.subplans)
+        if plan.scope is not None:
+            # Sub-plans of this one may ask for what it took over from its outer plan.
+            counts = {name: count + (name in plan.scope.slots) for name, count in counts.items()}
+        if any(a.name in _BY_NAME for a in nodes_in(nodes.InternalAction, node.body)):
+            counts = {name: count + 1 for name, count in counts.items()}
+        frame = Frame(counts)
+        for variable in fn.values:
+            if counts.get(variable, 0) > 1:
+                frame.slot(variable)
+                frame.states[variable] = "set"
+        bound = list(frame.slots)
+        prefix = self.unit.fresh_function("step")
+        body = body_compiler(self.unit, frame, prefix)
+        assert isinstance(node.body, nodes.Body)
+        first = body.body(node.body.steps, "None")
+        self.bodies.append((plan, body, first))
+        plan.slots = frame.slots
+        values = [fn.values[v] for v in bound]
+        rest = frame.size - len(values)
+        fixed = [first, "goal", "annotations", "t.serial", fn.constant(plan)]
+        made = f"[{', '.join([*fixed, *values, *(['None'] * rest)])}]"
+        if not self.every:
+            fn.line(f"return {made}")
+            return
+        fn.line(f"yield {made}")
+        if ALL_UNIFIERS not in plan.annotations:
+            fn.line("raise NextPlan")
+
+
+def grouped(plans: Sequence[Plan]) -> list[tuple[Term, list[Plan]]] | None:
+    """The plans in their order, neighbours with the same first argument together; None when that is not worth while.
+
+    The first argument is told by a key: the atom, number or string itself, of a structure or list its functor.  None
+    stands for plans that may be relevant whatever it is.
+    """
+    groups: list[tuple[Term, list[Plan]]] = []
+    for plan in plans:
+        key = _first_argument(plan)
+        if groups and groups[-1][0] == key and groups[-1][0].__class__ is key.__class__:
+            groups[-1][1].append(plan)
+        else:
+            groups.append((key, [plan]))
+    keys = [key for key, _ in groups if key is not None]
+    return groups if len(set(keys)) >= _WORTH_A_TABLE and len(groups) <= 2 * len(keys) else None
+
+
+def _first_argument(plan: Plan) -> Term:
+    literal = plan.node.trigger.literal
+    if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
+        return None
+    argument = literal.arguments[0]
+    if isinstance(argument, nodes.Number):
+        return argument.value
+    if isinstance(argument, nodes.String):
+        return String(argument.value)
+    if isinstance(argument, nodes.ListTerm):
+        return CONS if argument.items else NIL if argument.tail is None else None
+    if not isinstance(argument, nodes.Literal) or isinstance(argument.namespace, nodes.Variable):
+        return None
+    return None if argument.annotations is not None else functor_of_literal(argument)
+
+
+def _looks_at_arguments(plan: Plan) -> bool:
+    literal = plan.node.trigger.literal
+    return isinstance(literal, nodes.Literal) and any(
+        not (isinstance(a, nodes.Variable) and a.unnamed) for a in literal.arguments
+    )
+
+
+def _read_outer(fn: FunctionBuilder, outer: Plan, plans: Sequence[Plan]) -> None:
+    names = [n for n in names_in(tuple(p.node for p in plans)) if n in outer.slots]
+    if names:
+        fn.line("outer = agent.outer_frame")
+    for name in names:
+        fn.line(f"v_{name} = outer[{outer.slots[name]}]")
+        fn.line(f'if v_{name} is None: v_{name} = outer[{outer.slots[name]}] = Var("{name}")')
+        fn.values[name] = f"v_{name}"
+
+
+def compile_goal_condition(unit: Unit, plan: Plan) -> str:
+    """Write the test of a goal condition: ``holds(agent, frame)``; it leaves no bindings behind."""
+    name = unit.fresh_function("achieved")
+    fn = FunctionBuilder(unit)
+    node = plan.node.goal_condition
+    assert node is not None
+    fn.at(node)
+
+    def then() -> None:
+        fn.line("undo(t, n0)")
+        fn.line("return True")
+
+    with fn.writer.block(f"def {name}(agent, frame):"):
+        fn.line("t = agent.trail")
+        fn.line("n0 = len(t)")
+        for variable in names_in(node):
+            if variable in plan.slots:
+                fn.line(f"v_{variable} = frame[{plan.slots[variable]}]")
+                fn.line(f'if v_{variable} is None: v_{variable} = Var("{variable}")')
+                fn.values[variable] = f"v_{variable}"
+        condition(fn, node, then)
+        fn.line("return False")
+    unit.add(fn.writer)
+    return name
+
+
+def compile_rule(unit: Unit, rule: nodes.Rule) -> str:
+    """Write the generator function of a rule: ``rule(agent, arguments, t)`` yields once per answer."""
+    name = unit.fresh_function("rule")
+    fn = FunctionBuilder(unit, trampoline=True)
+    fn.at(rule)
+    arguments = rule.head.arguments
+    parts = [fn.local("a") for _ in arguments]
+    with fn.writer.block(f"def {name}(agent, arguments, t):"):
+        fn.line("n0 = len(t)")
+        if parts:
+            fn.line(f"{tuple_of(parts)} = arguments")
+
+        def answer() -> None:
+            if rule.head.annotations is None:
+                fn.line("yield ()")
+            else:
+                items, _ = annotation_parts(fn, rule.head.annotations)
+                fn.line(f"yield (resolve_all({items}),)")
+
+        def matched() -> None:
+            condition(fn, rule.body, answer)
+
+        match_all(fn, list(arguments), parts, matched)
+        fn.line("if len(t) > n0: undo(t, n0)")
+        fn.line("return")
+        fn.line("yield")
+    unit.add(fn.writer)
+    return name

@@ -1,0 +1,377 @@
+"""Changes of beliefs and the events they raise (Jason's brf and buf).
+
+The functions for body formulae return the event to be handled by the same intention, or None when it has no plan.
+"""
+
+from typing import Any
+
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.rules.searching import unify_rows
+from jacaros.bdi.state.belief_base import Row, Table, literal, parts, take_away, with_source
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Posted
+from jacaros.bdi.state.literals import own_annotations
+from jacaros.bdi.state.rule import OpenFact, Rule
+from jacaros.bdi.state.triggers import ADDED, DELETED, Trigger
+from jacaros.terms.order import merge_annotations
+from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
+from jacaros.terms.unifier import undo, unify_annotations
+from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, atom, bare, functor
+
+Annotations = tuple[Term, ...]
+
+_OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
+
+
+def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``+b``: the event belongs to the intention that made it."""
+    # What is usual is written out: a fact that is not held yet.
+    table = agent.beliefs[symbol]
+    if not (table.plain and _is_flat(row)) or row in table.rows:
+        return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), False)
+    new = table.add(row, annotations)
+    if new is not BY_SELF or not agent.usual_events or agent.condition_waits:
+        return _own_event(agent, symbol, row, new, False)
+    kind = ADDED[symbol]
+    if agent.selects[kind] is None and not (
+        agent.events or agent.intentions or agent.event_waits or agent.subplans
+    ):
+        return None
+    return (kind, *row)
+
+
+def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``-+b``: the first belief with these annotations goes, whatever its arguments, and the new one comes.
+
+    The event of the first half is external.
+    """
+    table = agent.beliefs[symbol]
+    if annotations is BY_SELF and table.plain and table.rows:
+        # What is usual: the newest is a belief of the agent's own.
+        newest = next(reversed(table.rows))
+        if table.rows[newest] is BY_SELF:
+            if table.remove(newest) and (
+                agent.selects[DELETED[symbol]] is not None
+                or not agent.usual_events
+                or agent.event_waits
+                or agent.condition_waits
+                or agent.subplans
+            ):
+                external_change(agent, "-", symbol, newest, BY_SELF)
+            return add_belief(agent, symbol, row, annotations)
+    delete_any(agent, symbol, annotations)
+    return add_belief(agent, symbol, row, annotations)
+
+
+def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``+>b``: the belief answers after all others."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True), False)
+
+
+def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+    """``++b``: the event is an external one."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), True)
+
+
+def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool) -> Any:
+    if new is None:
+        return None
+    note_change(agent, symbol, row)
+    return _raise(agent, (ADDED[symbol], *row), new, apart)
+
+
+def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
+    """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
+    unplanned = agent.selects[goal[0]] is None and not _is_kept(agent, goal[0])
+    if apart or agent.options.new_focus:
+        if unplanned and not agent.event_waits:
+            return None
+        agent.post((_apart(goal), None, annotations, None))
+        return None
+    if unplanned and not (agent.events or agent.intentions or agent.event_waits):
+        # Nothing comes in between: the event would only be taken up and passed over.
+        return None
+    return goal if annotations is BY_SELF else Posted(goal, annotations)
+
+
+def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
+    """Whether an external event would not simply be taken up and passed over."""
+    return agent.may_handle(kind) or agent.options.events != "discard"
+
+
+def _apart(goal: tuple[Any, ...]) -> tuple[Any, ...]:
+    """An event for another intention, which shares no variables with this one."""
+    names: dict[Var, Var] = {}
+    return (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
+
+
+def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
+    """A belief changed: the agent looks again at the awaited conditions that ask for such beliefs."""
+    if agent.condition_waits and agent.condition_waits.changed(symbol, row):
+        agent.do_soon(look_again)
+
+
+def look_again() -> None:
+    """A task that does nothing: for its sake the agent looks at awaited conditions again."""
+
+
+def insert(
+    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, last: bool = False
+) -> Annotations | None:
+    """Add a belief; gives the annotations that are new, None when there are none (then there is no event)."""
+    table = agent.beliefs[symbol]
+    for argument in row:
+        if argument.__class__ not in ATOMIC and not is_key(argument):
+            return _insert_aside(table, symbol, row, annotations, last)
+    try:
+        held = table.rows.get(row) if table.plain else table.get(row)
+    except TypeError:
+        return _insert_aside(table, symbol, row, annotations, last)
+    if held is None:
+        return table.add(row, annotations, last)
+    if held is annotations:
+        return None
+    return _merge(table, row, held, annotations)
+
+
+def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
+    """Add what is new to the annotations of a belief."""
+    merged, new = merge_annotations(held, annotations)
+    return new if new and table.set(entry, merged) else None
+
+
+def _insert_aside(
+    table: Table, symbol: Functor, row: Row, annotations: Annotations, last: bool
+) -> Annotations | None:
+    """A belief whose arguments are no keys (variables, annotations, very long lists): found by unification."""
+    known = table.aside(row)
+    if known is not None:
+        held = table.get(known)
+        return _merge(table, known, held or (), annotations)
+    return table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
+
+
+def delete_belief(
+    agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
+) -> Any:
+    """``-b`` and ``--b``: the named annotations (at least the own source) of the first match are taken away."""
+    if annotations is not BY_SELF and _is_property(agent, symbol, arguments, annotations):
+        return None
+    removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
+    if removed is None:
+        return None
+    note_change(agent, symbol, removed)
+    return _raise(agent, (DELETED[symbol], *removed), annotations, apart)
+
+
+def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
+    """Whether ``-b[source(percept)]`` names one observable property: that is left to its artifact.
+
+    As in CArtAgO, only ``-b(_)[source(percept)]`` takes one away (and ``.abolish``).
+    """
+    if SOURCE_PERCEPT not in annotations:
+        return False
+    row = tuple(map(resolve, arguments))
+    if not all(map(is_key, row)):
+        return False
+    held = agent.held_percepts.get((symbol, *row) if row else symbol)
+    if held is None:
+        return False
+    return _OBSERVABLE_PROPERTY in (held[0][0] if held.__class__ is list else held)
+
+
+def _remove_first(
+    agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, bind: bool
+) -> Row | None:
+    """Remove the first match; the row as asked for, with variables bound, or None when nothing matches."""
+    table = agent.beliefs[symbol]
+    if annotations is BY_SELF and table.plain and ATOMIC.issuperset(map(type, arguments)):
+        # What is usual: a fact whose only source is the agent itself goes as a whole.
+        held = table.rows.get(arguments)
+        if held is None or held is BY_SELF:
+            return arguments if held is not None and table.remove(arguments) else None
+    trail = agent.trail
+    if annotations is BY_SELF and table.plain:
+        # The same with variables, as long as the facts that may match are the agent's own.
+        for fact in table.rows_like(arguments):
+            if table.rows[fact] is not BY_SELF:
+                break
+            mark = len(trail)
+            if unify_rows(arguments, fact, trail):
+                taken = table.remove(fact)
+                if not (bind and taken):
+                    undo(trail, mark)
+                return fact if taken else None
+            undo(trail, mark)
+        else:
+            return None
+    unbound = all(a.__class__ is Var and a.ref is None for a in arguments)
+    for entry, held in table.in_order() if unbound else table.candidates(arguments):
+        mark = len(trail)
+        row = entry if entry.__class__ is tuple else _open_row(entry)
+        if (
+            row is not None
+            and unify_rows(arguments, row, trail)
+            and unify_annotations(annotations, None, held, None, trail)
+        ):
+            found = tuple(resolve(a) for a in arguments)
+            taken = take_away(table, entry, held, tuple(resolve(a) for a in annotations))
+            if not (bind and taken):
+                undo(trail, mark)
+            return found if taken else None
+        undo(trail, mark)
+    return None
+
+
+def _open_row(entry: Any) -> Row | None:
+    if isinstance(entry, OpenFact):
+        head = bare(entry.head())
+        return head[1:] if head.__class__ is tuple else ()
+    return None
+
+
+def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = BY_SELF) -> None:
+    """The first half of ``-+b``: the first belief with these annotations goes, whatever its arguments.
+
+    Its event is external.
+    """
+    if annotations is BY_SELF:
+        _delete_own(agent, symbol)
+        return
+    arguments = tuple(Var() for _ in range(symbol.arity))
+    removed = _remove_first(agent, symbol, arguments, annotations, bind=False)
+    if removed is not None:
+        external_change(agent, "-", symbol, removed, tuple(resolve(a) for a in annotations))
+
+
+def _delete_own(agent: Circumstance, symbol: Functor) -> None:
+    table = agent.beliefs[symbol]
+    for entry, held in table.in_order():
+        row = entry if entry.__class__ is tuple else _open_row(entry)
+        if row is not None and BY_SELF[0] in held:
+            if take_away(table, entry, held, BY_SELF):
+                external_change(agent, "-", symbol, row, BY_SELF)
+            return
+
+
+def change_mind(agent: Circumstance, operator: str, term: Term) -> Any:
+    """A belief operator whose operand is known only at run time: a literal, a plan or a rule.
+
+    Raises:
+        Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
+    """
+    change = agent.change_plans(operator, term)  # type: ignore[attr-defined]
+    if change:
+        return None
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        raise Failure((functor("error", 1), atom(_operand_error(term))))
+    own = own_annotations(annotations)
+    mind: Any = agent
+    if operator in ("-", "--"):
+        return mind.delete_belief(symbol, row, own, operator == "--")
+    if operator == "-+":
+        return mind.replace_belief(symbol, row, BY_SELF if own == BY_SELF else own)
+    if operator == "-++":
+        mind.delete_any(symbol, BY_SELF if own == BY_SELF else own)
+    if operator in ("++", "-++"):
+        return mind.add_belief_apart(symbol, row, own)
+    return (mind.add_belief_last if operator == "+>" else mind.add_belief)(symbol, row, own)
+
+
+def _operand_error(term: Term) -> str:
+    return (
+        "body_var_without_value"
+        if free_variables(term) and bare(term) is not None
+        else "body_var_not_literal"
+    )
+
+
+# --- from outside ------------------------------------------------------------------------------------------
+
+
+def tell(agent: Circumstance, term: Term, cause: Any = None) -> bool:
+    """Add a belief from outside (a message, the project file); the event is external.  False for no literal."""
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        return False
+    believe(agent, symbol, row, with_source(annotations), cause)
+    return True
+
+
+def believe(
+    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
+) -> None:
+    """The same for a literal in parts, with a source among its annotations."""
+    new = insert(agent, symbol, row, annotations)
+    if new is not None:
+        external_change(agent, "+", symbol, row, new, cause)
+
+
+def untell(agent: Circumstance, term: Term) -> bool:
+    """Take a source off a belief; the event is external."""
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        return False
+    annotations = with_source(annotations)
+    removed = _remove_first(agent, symbol, row, annotations, bind=False)
+    if removed is not None:
+        external_change(agent, "-", symbol, removed, annotations)
+    return removed is not None
+
+
+def external_change(
+    agent: Circumstance, operator: str, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
+) -> None:
+    """Raise the external event of a belief change, if anybody cares."""
+    kind = (ADDED if operator == "+" else DELETED)[symbol]
+    if agent.selects[kind] is not None or agent.event_waits or _is_kept(agent, kind):
+        agent.post(((kind, *row), None, annotations, cause))
+    note_change(agent, symbol, row)
+
+
+def abolish(agent: Circumstance, pattern: Term) -> None:
+    """``.abolish``: delete all matches, each with all its sources, whichever of them the pattern names."""
+    symbol, arguments, annotations = parts(pattern)
+    tables = list(agent.beliefs.items()) if symbol is None else [(symbol, agent.beliefs[symbol])]
+    for functor_, table in tables:
+        for entry, held in list(table.candidates(arguments) if symbol else table.entries()):
+            _abolish_entry(agent, functor_, table, entry, held, arguments if symbol else None, annotations)
+
+
+def _abolish_entry(
+    agent: Circumstance,
+    symbol: Functor,
+    table: Table,
+    entry: Any,
+    held: Annotations,
+    arguments: Row | None,
+    annotations: Annotations,
+) -> None:
+    row = entry if entry.__class__ is tuple else _open_row(entry)
+    if row is None:
+        return
+    trail = agent.trail
+    mark = len(trail)
+    matches = (arguments is None or unify_rows(arguments, row, trail)) and (
+        not annotations or unify_annotations(annotations, None, held, None, trail)
+    )
+    undo(trail, mark)
+    if matches and table.remove(entry):
+        external_change(agent, "-", symbol, row, held)
+
+
+def _is_flat(row: Row) -> bool:
+    """Whether a row holds numbers, strings and atoms only."""
+    for argument in row:  # noqa: SIM110 - `all` would make a generator for every percept
+        if argument.__class__ not in ATOMIC:
+            return False
+    return True
+
+
+def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
+    """Add a rule at run time; rules raise no events."""
+    if agent.condition_waits:
+        agent.condition_waits.depend_on_rules(head)
+        agent.do_soon(look_again)
+    agent.beliefs[head].add(rule, rule.head_annotations(), last)

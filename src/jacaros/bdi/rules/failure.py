@@ -1,0 +1,215 @@
+"""Failure: what becomes of a formula that fails or a goal without plan.  The only place where exceptions of internal
+actions become failures of goals."""
+
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
+from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
+from jacaros.bdi.fast.generated.body_compiler import StepInfo
+from jacaros.bdi.rules.outcomes import Fail, Failure
+from jacaros.bdi.rules.subplans import handles
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Posted
+from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.search_budget import SearchLimit
+from jacaros.errors import InternalError
+from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.substitution import ATOMIC, resolve
+from jacaros.terms.text import display, text
+from jacaros.terms.values import List, String, Term, Var, atom, functor
+
+_ENV_FAILURE_REASON, _BIND_PARAM_ERROR = functor("env_failure_reason", 1), functor("bind_param_error", 2)
+
+_IDS: dict[type, str] = {
+    nodes.Test: "test_goal_failed",
+    nodes.If: "constraint_failed",
+    nodes.While: "constraint_failed",
+    nodes.For: "constraint_failed",
+    nodes.ExternalAction: "action_failed",
+    nodes.BeliefChange: "belief_revision_failed",
+}
+
+
+def error_terms(error: str, message: str) -> tuple[Term, ...]:
+    """``error(Id)`` and ``error_msg("…")``."""
+    return ((ERROR, atom(error)), (ERROR_MSG, String(message)))
+
+
+def output_misfit(output: Term, value: Term) -> tuple[Term, ...]:
+    """The reason of an external action whose *output* has another value than the one that it gave, as where the same
+    variable is written for two outputs."""
+    message = f"an output of the action would be {text(value)}, but is {text(output)} already"
+    reason = (_BIND_PARAM_ERROR, resolve(output), String(display(value)))
+    return (*error_terms("action_failed", message), (_ENV_FAILURE_REASON, reason))
+
+
+def step_failure(frame: Frame, fault: Exception | None = None) -> FailureReason:
+    """The reason of a step that failed, or that raised *fault*.
+
+    Raises:
+        InternalError: when the fault is a defect of ours.
+    """
+    info: StepInfo | None = getattr(frame[STEP], "info", None)
+    if info is None:
+        raise InternalError(f"a step of plan {frame[PLAN]!r} is unknown") from fault
+    if fault is not None and fault.__class__ is not Fail:
+        return FailureReason(_terms_of(fault, info), frame)
+    terms = info.failure
+    if terms is None:
+        terms = info.failure = error_terms(*_plain_failure(info.node))
+    return FailureReason(terms, frame)
+
+
+def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
+    node = info.node
+    if isinstance(fault, Failure):
+        return (*fault.annotations, *_message_unless_given(fault.annotations, _default_message(fault)))
+    if isinstance(fault, Fail):
+        return error_terms(*_plain_failure(node))
+    if isinstance(fault, WrongArguments):
+        return error_terms("wrong_arguments", str(fault))
+    if isinstance(fault, ActionError):
+        given = fault.annotations
+        known = any(t.__class__ is tuple and t[0] is ERROR for t in given)
+        error = () if known else ((ERROR, atom("internal_action")),)
+        return (*error, *given, *_message_unless_given(given, str(fault)))
+    if isinstance(fault, ArithmeticFault):
+        return error_terms("arithmetic_error", str(fault))
+    if isinstance(fault, SearchLimit):
+        return error_terms("search_limit", str(fault))
+    if isinstance(fault, RecursionError):
+        return error_terms("too_deep", str(fault))
+    if isinstance(fault, CyclicTerm):
+        return error_terms("cyclic_term", str(fault))
+    if isinstance(fault, MemoryError):
+        return error_terms("no_memory", "there is not enough memory")
+    if isinstance(fault, InternalError):
+        raise fault
+    kind = "internal_action" if isinstance(node, nodes.Constraint) else "unknown"
+    return error_terms(kind, f"{type(fault).__name__}: {fault}")
+
+
+_MESSAGES = {
+    "body_var_without_value": "a variable that stands for a step has no value",
+    "body_var_not_literal": "a variable that stands for a goal or a belief holds something else",
+    "body_var_with_op": "a variable behind an operator holds a plan body",
+}
+
+
+def _default_message(fault: Failure) -> str:
+    """What people are told of a failure whose cause gives no words."""
+    found = (text(term[1]) for term in fault.annotations if term.__class__ is tuple and term[0] is ERROR)
+    error = next(found, "unknown")
+    return _MESSAGES.get(error, error.replace("_", " "))
+
+
+def _message_unless_given(given: tuple[Term, ...], message: str) -> tuple[Term, ...]:
+    if any(t.__class__ is tuple and t[0] is ERROR_MSG for t in given):
+        return ()
+    return ((ERROR_MSG, String(message)),)
+
+
+def _plain_failure(node: nodes.Node) -> tuple[str, str]:
+    if isinstance(node, nodes.Constraint):
+        if isinstance(node.formula, nodes.InternalAction):
+            return "ia_failed", f"internal action {node.formula.name} failed"
+        return "constraint_failed", "a constraint does not hold"
+    error = _IDS.get(type(node), "unknown")
+    return error, {"test_goal_failed": "a test found no answer"}.get(error, error.replace("_", " "))
+
+
+def no_plan(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, caller: Frame | None
+) -> FailureReason:
+    """The reason of a goal that has no relevant or no applicable plan."""
+    if agent.selects[goal[0]] is None:
+        error, told = "no_relevant", "no relevant plan"
+    elif agent.refused_options:
+        agent.refused_options = False
+        error, told = "no_option", "no option is selected"
+    else:
+        error, told = "no_applicable", "no applicable plan"
+
+    def terms() -> tuple[Term, ...]:
+        return error_terms(error, f"{told} for {goal[0].kind}{goal_text(goal)}")
+
+    # The values of variables are shown as they are now: they are released before a plan may ask.
+    at_once = not ATOMIC.issuperset(map(type, goal[1:]))
+    return FailureReason(terms() if at_once else terms, GoalPlace(goal, annotations, caller))
+
+
+def too_deep(goal: tuple[Any, ...], annotations: Any, caller: Frame, depth: int) -> FailureReason:
+    """The reason of a goal whose plan finds no room on the stack of its intention."""
+    message = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
+    return FailureReason(error_terms("too_deep", message), GoalPlace(goal, annotations, caller))
+
+
+_MAY_BE_BOUND = frozenset({Var, tuple, List})
+
+
+def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
+    """Give the variables of a failed goal back as they were when it was posted."""
+    stack: list[Term] = []
+    for argument in goal:
+        if argument.__class__ in _MAY_BE_BOUND:
+            stack.append(argument)
+    while stack:
+        term = stack.pop()
+        if term.__class__ is Var:
+            if term.ref is None:
+                continue
+            if term.at >= serial:
+                term.ref = None
+            else:
+                stack.append(term.ref)
+        elif term.__class__ is tuple:
+            stack.extend(a for a in term[1:] if a.__class__ in _MAY_BE_BOUND)
+        elif isinstance(term, List) and term.settled != term.size:
+            stack.extend(a for a in term.stack[term.settled : term.size] if a.__class__ in _MAY_BE_BOUND)
+
+
+def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | None:
+    """Find the nearest goal down the stack that has a handler; None when there is none.
+
+    The failed frames stay on the stack under the handler until it ends.  A failure inside a handler goes on to the goals
+    below the one it handles.
+    """
+    frames, selects = intention.frames, agent.selects
+    handlers = len(intention.handlers)
+    index = len(frames) - 1
+    while index >= 0:
+        frame = frames[index]
+        trigger = frame[1][0]
+        if trigger.failing:
+            handlers -= 1
+            index = intention.handlers[handlers] - 1
+            continue
+        kind = trigger.on_fail
+        if kind is not None and (
+            selects[kind] is not None or (agent.subplans and handles(agent, intention, index, kind))
+        ):
+            goal = frame[1]
+            release_bindings(goal, frame[3])
+            # Handlers above it have failed with the goals that they handled.
+            intention.handlers[handlers:] = (index,)
+            return Posted((kind, *goal[1:]), reason.for_goal(frame[2]))
+        index -= 1
+    return None
+
+
+def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
+    """Whether a goal higher on the stack than the frame *above* has a handler that is not already at work."""
+    handlers = len(intention.handlers)
+    index = len(intention.frames) - 1
+    while index > above:
+        trigger = intention.frames[index][GOAL][0]
+        if trigger.failing:
+            handlers -= 1
+            index = intention.handlers[handlers] - 1
+            continue
+        if trigger.on_fail is not None and handles(agent, intention, index, trigger.on_fail):
+            return True
+        index -= 1
+    return False

@@ -1,0 +1,119 @@
+"""Concurrency inside a plan: ``a |&| b`` (all branches) and ``a ||| b`` (the first one).
+
+Each branch is an intention of its own with a copy of the stack, so what it binds stays with it; the branch that finishes
+last (``|&|``) or first (``|||``) goes on with the rest of the plan.
+"""
+
+from typing import Any
+
+from jacaros.bdi.fast.generated.function import FIRST_SLOT
+from jacaros.bdi.rules.outcomes import SUSPENDED
+from jacaros.bdi.rules.searching import Remaining
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.intention import GOAL, STEP, Frame, Intention
+from jacaros.terms.substitution import HOLDERS, rename
+from jacaros.terms.values import Var
+
+_HOLDERS = HOLDERS | {Var}
+
+
+class Fork:
+    """One fork that is under way.
+
+    Attributes:
+        joins_all: True for ``|&|``.
+        depth: index of the forking plan's frame on every branch's stack.
+        next_step: where the plan goes on.
+        open: numbers of the branches that have neither finished nor failed.
+    """
+
+    __slots__ = ("depth", "joins_all", "next_step", "open")
+
+    def __init__(self, joins_all: bool, depth: int, next_step: Any, branches: int) -> None:
+        self.joins_all, self.depth, self.next_step = joins_all, depth, next_step
+        self.open = set(range(branches))
+
+
+def fork(agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ...], next_step: Any) -> Any:
+    """Begin the branches; the intention that forks is replaced by theirs."""
+    parent = agent.current
+    assert parent is not None
+    if len(agent.alive) + len(firsts) > agent.intention_limit:
+        agent.budgets["intention_limit"].refuse(len(agent.alive))
+    point = Fork(operator == "and", len(parent.frames) - 1, next_step, len(firsts))
+    del frame
+    for number, first in enumerate(firsts):
+        branch = agent.new_intention(parent.cause)
+        branch.frames = copied(parent.frames)
+        branch.frames[-1][STEP] = first
+        branch.handlers = list(parent.handlers)
+        branch.on_failed = parent.on_failed
+        branch.forks = (*parent.forks, (point, number))
+        agent.make_ready(branch)
+        if agent.atomic is parent:
+            agent.atomic = branch
+    parent.frames.clear()  # its goals are pursued in the branches
+    agent.finish(parent)
+    return SUSPENDED
+
+
+def copied(frames: list[Frame]) -> list[Frame]:
+    """The stack with frames and free variables of its own."""
+    names: dict[Var, Var] = {}
+    copies = []
+    for frame in frames:
+        copy = list(frame)
+        goal = frame[GOAL]
+        if len(goal) > 1:
+            copy[GOAL] = (goal[0], *(rename(a, names) if a.__class__ in _HOLDERS else a for a in goal[1:]))
+        for slot in range(FIRST_SLOT, len(copy)):
+            value = copy[slot]
+            if value.__class__ in _HOLDERS:
+                copy[slot] = rename(value, names)
+            elif value.__class__ is Remaining:
+                copy[slot] = value.copy()
+        copies.append(copy)
+    return copies
+
+
+def join(agent: Circumstance, frame: Frame) -> Any:
+    """A branch has come to its end."""
+    intention = agent.current
+    assert intention is not None
+    point, number = intention.forks[-1]
+    point.open.discard(number)
+    if point.joins_all and point.open:
+        agent.finish(intention)
+        return SUSPENDED
+    _drop_branches(agent, point, intention)
+    intention.forks = intention.forks[:-1]
+    frame[STEP] = point.next_step
+    return None
+
+
+def branch_failed(agent: Circumstance, intention: Intention) -> bool:
+    """A branch failed and nobody on it takes care: True when that is a failure of the plan that forked."""
+    point, number = intention.forks[-1]
+    point.open.discard(number)
+    if not point.joins_all and point.open:
+        return False
+    _drop_branches(agent, point, intention)
+    intention.forks = intention.forks[:-1]
+    return True
+
+
+def leave(agent: Circumstance, intention: Intention, index: int) -> None:
+    """The stack of a branch is cut at *index*: forks at this frame and above are over, with their other branches."""
+    while intention.forks and intention.forks[-1][0].depth >= index:
+        _drop_branches(agent, intention.forks[-1][0], intention)
+        intention.forks = intention.forks[:-1]
+
+
+def _drop_branches(agent: Circumstance, point: Fork, survivor: Intention) -> None:
+    """The other branches of a fork are over, with all that they forked themselves."""
+    if not point.open:
+        return
+    point.open.clear()
+    for other in list(agent.alive.values()):
+        if other is not survivor and any(fork_point is point for fork_point, _ in other.forks):
+            agent.finish(other)

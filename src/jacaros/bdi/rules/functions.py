@@ -1,0 +1,100 @@
+"""Arithmetic functions that need an agent: those about its beliefs, its clock, its dice, and those of its program."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NamedTuple
+
+from jacaros.asl.functions import FunctionNames
+from jacaros.bdi.rules.formulas import solve_formula
+from jacaros.bdi.rules.searching import run
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.terms.arithmetic import RUNNING, ArithmeticFault, settle
+from jacaros.terms.substitution import free_variables, resolve
+from jacaros.terms.text import text
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import ACTION, Functor, Term, Var, functor
+
+
+class RegisteredFunction(NamedTuple):
+    """A function of a program (``{ register_function("my.sum", 2, "sum") }``).
+
+    Attributes:
+        arity: number of its arguments.
+        implementation: name of the rule or internal action that has one argument more, for the value.
+    """
+
+    arity: int
+    implementation: str
+
+
+def known_names(agent: Circumstance) -> FunctionNames:
+    """The functions that what is read at run time may call, for the parser."""
+    registered = {name: function.arity for name, function in agent.functions.items()}
+    return FunctionNames(registered, agent.project_functions)
+
+
+def call_function(agent: Circumstance, term: Term) -> Term:
+    """Evaluate a function call; the call itself comes back while arguments are unknown.
+
+    Raises:
+        ArithmeticFault: when a function of the program gives no number.
+    """
+    value = call_own(agent, term)
+    return settle(term) if value is None else value
+
+
+def call_own(agent: Circumstance, term: Term) -> Term:
+    """The value of a function that needs the agent; None when it is none of these or has no value yet."""
+    name = term[0].name
+    if name == ".count":
+        return float(sum(1 for _ in agent.context.answers(resolve(term[1]))))
+    if name == "system.time":
+        return float(round(agent.architecture.now() * 1000))
+    if name == "math.random":
+        return _random(agent, term)
+    evaluator = agent.evaluators.get(name)
+    if evaluator is not None:
+        return evaluator(*term[1:])
+    function = agent.functions.get(name)
+    return None if function is None else _call_registered(agent, function, term)
+
+
+def _random(agent: Circumstance, term: Term) -> Term:
+    limit = settle(term[1]) if len(term) > 1 else 1.0
+    return agent.architecture.random.random() * limit if limit.__class__ is float else None
+
+
+def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Term) -> Term:
+    """The first answer of the rule or internal action, which must be a number; None while arguments are unknown."""
+    if free_variables(term):
+        return None
+    value = Var("Result")
+    trail = agent.trail
+    mark = len(trail)
+    formula = (_symbol(function), *term[1:], value)
+    for _ in run(solve_formula(agent, formula, trail), agent.rule_depth):
+        found = settle(value)
+        undo(trail, mark)
+        if found.__class__ is float:
+            return found
+        raise ArithmeticFault(f"the value of the function {term[0].name} is no number but {text(found)}")
+    undo(trail, mark)
+    raise ArithmeticFault(
+        f"the function {term[0].name} has no value: {function.implementation}/{function.arity + 1} does not hold"
+    )
+
+
+def _symbol(function: RegisteredFunction) -> Functor:
+    if "." in function.implementation:
+        return functor(function.implementation, function.arity + 1, kind=ACTION)
+    return functor(function.implementation, function.arity + 1)
+
+
+@contextmanager
+def evaluating(agent: Circumstance) -> Iterator[None]:
+    """While it is open, calls inside terms are evaluated for this agent."""
+    before = RUNNING.set(agent)
+    try:
+        yield
+    finally:
+        RUNNING.reset(before)

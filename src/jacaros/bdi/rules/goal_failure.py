@@ -1,0 +1,193 @@
+"""What becomes of a goal that failed: its own handler, that of a goal further down, or the end of the intention."""
+
+from typing import Any
+
+from jacaros.bdi.explaining import lost_goals
+from jacaros.bdi.explaining.failure_reason import FailureReason
+from jacaros.bdi.rules import failure, meta_events, subplans
+from jacaros.bdi.rules.forks import branch_failed
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Posted
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
+from jacaros.terms.values import atom
+
+_HAS_FAILURE_PLAN = atom("has_failure_plan")
+_Unplanned = tuple[tuple[Any, ...], Any, int]
+"""A goal without a frame, its annotations, and the number by which observers know it."""
+
+
+def unplanned(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+) -> Posted | None:
+    """A goal has no plan: its own handler, or one further down, or the end of the intention."""
+    trigger = goal[0]
+    if trigger.failing:
+        _lost_in_handler(agent, intention, goal, annotations)
+        return None
+    caller = intention.frames[-1] if intention.frames else None
+    reason = failure.no_plan(agent, goal, annotations, caller)
+    return fail_goal(agent, intention, goal, annotations, reason)
+
+
+def has_room(agent: Circumstance, intention: Intention) -> bool:
+    """Whether the plan just put on a full stack may stay: handlers have some room of their own, to deal with that."""
+    depth = agent.goal_depth
+    is_handler = intention.frames[-1][GOAL][0].failing
+    return is_handler and len(intention.frames) <= depth + depth // 10 + 100
+
+
+def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
+    """The plan just put on a full stack fails before its first step."""
+    frame = intention.frames.pop()
+    goal, annotations = frame[GOAL], frame[ANNOTATIONS]
+    failure.release_bindings(goal, frame[SERIAL])
+    reason = failure.too_deep(goal, annotations, intention.frames[-1], agent.goal_depth)
+    if goal[0].failing:
+        # Handlers of handlers without end: nobody is left who could deal with it.
+        intention.handlers.clear()
+        observe_failed(agent, intention, 1, reason)
+        del intention.frames[1:]
+    return fail_goal(agent, intention, goal, annotations, reason, frame[SERIAL])
+
+
+def fail_goal(
+    agent: Circumstance,
+    intention: Intention,
+    goal: tuple[Any, ...],
+    annotations: Any,
+    reason: FailureReason,
+    number: int = -1,
+) -> Posted | None:
+    """A goal that has no frame failed: post its handler, or look further down.
+
+    *number* is that of the frame that it had, by which observers know it.
+    """
+    trigger = goal[0]
+    if number < 0:
+        agent.trail.serial += 1
+        number = agent.trail.serial
+    if trigger.on_fail is not None and subplans.handles(
+        agent, intention, len(intention.frames), trigger.on_fail
+    ):
+        intention.handlers.append(len(intention.frames))
+        if agent.meta:
+            _tell_unplanned(agent, intention, (goal, annotations, number), reason)
+            meta_events.observe_goal(agent, intention, goal, number, "executing")
+            meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
+        return Posted((trigger.on_fail, *goal[1:]), reason.for_goal(annotations, number))
+    return fail_intention(agent, intention, reason, (goal, annotations, number))
+
+
+def fail_intention(
+    agent: Circumstance,
+    intention: Intention,
+    reason: FailureReason,
+    unplanned: _Unplanned | None = None,
+) -> Posted | None:
+    """The nearest handler down the stack takes over; without one the intention ends with a warning.
+
+    *unplanned* is the goal that failed, when it is not on the stack.
+    """
+    while intention.forks and not failure.has_handler(agent, intention, intention.forks[-1][0].depth):
+        depth = intention.forks[-1][0].depth
+        if not branch_failed(agent, intention):
+            _tell_unplanned(agent, intention, unplanned, reason, over=True)
+            observe_failed(agent, intention, depth + 1, reason)
+            agent.finish(intention)
+            return None
+    posted = failure.handler_event(agent, intention, reason)
+    if posted is not None:
+        if agent.meta:
+            _tell_unplanned(agent, intention, unplanned, reason, over=True)
+            index = intention.handlers[-1]
+            observe_failed(agent, intention, index + 1, reason)
+            failed = intention.frames[index]
+            _tell(agent, intention, failed, reason)
+            meta_events.frame_state(agent, intention, failed, "executing", _HAS_FAILURE_PLAN)
+        return posted
+    goal = None if unplanned is None else unplanned[0]
+    if intention.on_failed is not None:
+        lost_goals.note_goals(agent, intention, reason, goal)
+        intention.on_failed(reason)
+    else:
+        agent.architecture.goal_lost()
+        budget = agent.budgets.get(reason.error())
+        count = budget.note_loss() if budget is not None else 1
+        if count:
+            _tell_people(agent, lost_goals.loss(agent, intention, reason, goal), count)
+    if agent.meta:
+        _tell_unplanned(agent, intention, unplanned, reason, over=True)
+        _tell_failed(agent, intention, reason)
+    agent.finish(intention)
+    return None
+
+
+def _tell_unplanned(
+    agent: Circumstance,
+    intention: Intention,
+    unplanned: _Unplanned | None,
+    reason: FailureReason,
+    over: bool = False,
+) -> None:
+    """Tell that a goal without a frame has failed, after it was found out why; *over*: no plan of its own saves it."""
+    if unplanned is None or not agent.meta:
+        return
+    goal, annotations, number = unplanned
+    why = lost_goals.why(reason) if agent.goal_observer is not None else ""
+    meta_events.observe_goal(agent, intention, goal, number, "failed", why)
+    meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
+    if over:
+        meta_events.observe_goal(agent, intention, goal, number, "finished")
+
+
+def _tell_failed(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+    """All goals of an intention that nobody saved have failed, and are over."""
+    observe_failed(agent, intention, 0, reason)
+    for frame in reversed(intention.frames):
+        if not frame[GOAL][0].failing:
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "failed", atom(reason.error()))
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
+
+
+def observe_failed(
+    agent: Circumstance, intention: Intention, first: int, reason: FailureReason | None
+) -> None:
+    """Tell the observer that the goals of the frames from the one at *first* failed and are over."""
+    if agent.goal_observer is not None:
+        why = lost_goals.why(reason) if reason is not None else ""
+        for frame in reversed(intention.frames[first:]):
+            meta_events.observe(agent, intention, frame, "failed", why)
+            meta_events.observe(agent, intention, frame, "finished")
+
+
+def _tell(agent: Circumstance, intention: Intention, frame: Frame, reason: FailureReason) -> None:
+    why = lost_goals.why(reason) if agent.goal_observer is not None else ""
+    meta_events.observe(agent, intention, frame, "failed", why)
+    meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "failed", atom(reason.error()))
+
+
+def _tell_people(agent: Circumstance, loss: lost_goals.Loss, count: int = 1) -> None:
+    """Warn of a lost goal, the *count*-th of its kind."""
+    note = f"\n  {count} goals have failed for this reason" if count > 1 else ""
+    agent.architecture.log("warning", loss.text() + note)
+    if agent.probe is not None:
+        agent.probe.lost(loss.told, loss.details, loss.span)
+
+
+def _lost_in_handler(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+) -> None:
+    reason = annotations if isinstance(annotations, FailureReason) else None
+    if intention.on_failed is not None:
+        intention.on_failed(reason)
+    else:
+        agent.architecture.goal_lost()
+        _tell_people(agent, lost_goals.lost_in_handler(agent, intention, goal, reason))
+    number = meta_events.failed_number(annotations)
+    if number is not None:
+        meta_events.observe_goal(agent, intention, goal, number, "failed")
+        meta_events.observe_goal(agent, intention, goal, number, "finished")
+    while intention.forks and branch_failed(agent, intention):
+        pass  # the others would wait for this branch for ever
+    observe_failed(agent, intention, meta_events.shared(agent, intention), reason)
+    agent.finish(intention)

@@ -1,0 +1,365 @@
+"""Asking about and steering goals and intentions, wherever they are: running, in an event, waiting, suspended."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
+from jacaros.bdi.rules import goal_failure, meta_events
+from jacaros.bdi.rules.failure import release_bindings
+from jacaros.bdi.rules.finishing import pop_finished
+from jacaros.bdi.rules.stack import achieve, cut, pending_event, remove_event
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import (
+    EVENT_ANNOTATIONS,
+    EVENT_CAUSE,
+    EVENT_GOAL,
+    EVENT_INTENTION,
+    Event,
+    Posted,
+    event_literal,
+)
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
+from jacaros.bdi.state.literals import literal_of
+from jacaros.terms.substitution import rename
+from jacaros.terms.unifier import undo, unify
+from jacaros.terms.values import Term
+
+
+def goal_literals(intention: Intention) -> list[Term]:
+    """The achievement goals on the stack, top first."""
+    return [
+        literal_of(frame[GOAL], frame[ANNOTATIONS])
+        for frame in reversed(intention.frames)
+        if frame[GOAL][0].kind == "!" and frame[GOAL][0].operator == "+"
+    ]
+
+
+def frame_of(agent: Circumstance, intention: Intention, goal: Term, lowest: int = 0) -> int | None:
+    """Index of the lowest frame (from *lowest* on) that serves a goal matching *goal*; its variables are not bound."""
+    for index, frame in enumerate(intention.frames):
+        trigger = frame[GOAL][0]
+        if (
+            index >= lowest
+            and trigger.kind == "!"
+            and trigger.operator == "+"
+            and matches(agent, goal, literal_of(frame[GOAL], frame[2]))
+        ):
+            return index
+    return None
+
+
+def matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
+    trail = agent.trail
+    mark = len(trail)
+    found = unify(pattern, literal, trail)
+    undo(trail, mark)
+    return found
+
+
+def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
+    """The intentions that pursue the goal at any depth, or are about to."""
+    found = []
+    for intention in list(agent.alive.values()):
+        if frame_of(agent, intention, goal) is not None:
+            found.append(intention)
+            continue
+        event = pending_event(agent, intention)
+        if event is not None and _is_goal(event) and matches(agent, goal, event_literal(event)):
+            found.append(intention)
+    return found
+
+
+def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | None:
+    """The goal of an intention that matches: the lowest on its stack, or the one that is posted; None without any."""
+    index = frame_of(agent, intention, goal)
+    if index is not None:
+        frame = intention.frames[index]
+        return literal_of(frame[GOAL], frame[ANNOTATIONS])
+    event = pending_event(agent, intention)
+    if event is None or not _is_goal(event):
+        return None
+    literal = event_literal(event)
+    return literal if matches(agent, goal, literal) else None
+
+
+def first_match(agent: Circumstance, goal: Term) -> Term | None:
+    """The first goal that matches, of intentions or of events; renamed, as what it is taken from may end."""
+    for intention in list(agent.alive.values()):
+        found = goal_of(agent, intention, goal)
+        if found is not None:
+            return rename(found)
+    for event in goal_events(agent, goal):
+        return rename(event_literal(event))
+    return None
+
+
+def _is_goal(event: Event) -> bool:
+    return bool(event[EVENT_GOAL][0].kind == "!" and event[EVENT_GOAL][0].operator == "+")
+
+
+def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
+    """Events of new goals (without intention) that match."""
+    return [
+        e
+        for e in (*agent.events, *agent.suspended_events)
+        if e[EVENT_INTENTION] is None and _is_goal(e) and matches(agent, goal, event_literal(e))
+    ]
+
+
+def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
+    """All goals: of pending events and of intentions, with the id of the intention."""
+    for event in (*agent.events, *agent.suspended_events):
+        if _is_goal(event):
+            owner = event[EVENT_INTENTION]
+            yield event_literal(event), owner.id if owner else None
+    yield from intended(agent, include_suspended=True)
+
+
+def intended(agent: Circumstance, include_suspended: bool = False) -> Iterator[tuple[Term, int | None]]:
+    """Goals on the stacks of intentions, with the id of the intention."""
+    for intention in list(agent.alive.values()):
+        if include_suspended or intention.suspended is None:
+            for literal in goal_literals(intention):
+                yield literal, intention.id
+
+
+# --- dropping ----------------------------------------------------------------------------------------------
+
+
+def drop_intention(agent: Circumstance, intention: Intention) -> None:
+    """An intention vanishes without failure events; what it waits for is cancelled."""
+    if agent.meta:
+        for frame in intention.frames:
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
+            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
+    event = pending_event(agent, intention)
+    if event is not None:
+        remove_event(agent, event)
+    agent.finish(intention)
+
+
+def drop_events(agent: Circumstance, goal: Term) -> None:
+    """Events of matching goals vanish, with the intentions that posted them."""
+    for event in goal_events(agent, goal):
+        remove_event(agent, event)
+        _event_state(agent, event, "dropped", "finished")
+    for event in list(agent.events):
+        if (
+            event[EVENT_INTENTION] is not None
+            and _is_goal(event)
+            and matches(agent, goal, event_literal(event))
+        ):
+            remove_event(agent, event)
+            drop_intention(agent, event[EVENT_INTENTION])
+
+
+def drop_goal(agent: Circumstance, goal: Term) -> None:
+    """``.drop_intention(G)``: whole intentions that have the goal vanish."""
+    for intention in intentions_for(agent, goal):
+        drop_intention(agent, intention)
+
+
+def drop_desire(agent: Circumstance, goal: Term) -> None:
+    """``.drop_desire(G)``: intentions and pending events."""
+    drop_events(agent, goal)
+    drop_goal(agent, goal)
+
+
+def drop_all_intentions(agent: Circumstance) -> None:
+    """All but the running one; what ``.at`` is to post does not come either."""
+    for timer in agent.delayed_events:
+        timer.cancel()
+    agent.delayed_events.clear()
+    for intention in list(agent.alive.values()):
+        if intention is not agent.current:
+            drop_intention(agent, intention)
+
+
+def drop_all_goal_events(agent: Circumstance) -> None:
+    """All pending events of goals; intentions that posted them vanish."""
+    for event in (*agent.events, *agent.suspended_events):
+        if _is_goal(event):
+            remove_event(agent, event)
+            if event[EVENT_INTENTION] is not None:
+                drop_intention(agent, event[EVENT_INTENTION])
+
+
+def drop_all_events(agent: Circumstance) -> None:
+    """All pending events; intentions that posted them vanish."""
+    for event in list(agent.events):
+        if event[EVENT_INTENTION] is not None:
+            drop_intention(agent, event[EVENT_INTENTION])
+    agent.events.clear()
+    agent.requeued.clear()
+    agent.suspended_events.clear()
+
+
+def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
+    """Tell what becomes of a goal that has not begun: it is an event yet."""
+    if agent.meta:
+        for state in states:
+            meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], state)
+
+
+# --- suspending --------------------------------------------------------------------------------------------
+
+
+def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
+    """All intentions with the goal stop until it is resumed; a goal that has not begun yet does not begin."""
+    for event in goal_events(agent, goal):
+        if event in agent.events:
+            agent.events.remove(event)
+            agent.suspended_events.append(event)
+            _event_state(agent, event, "suspended")
+    for intention in intentions_for(agent, goal):
+        suspend_intention(agent, intention, reason)
+
+
+def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -> None:
+    """One intention stops; an external action that can pause is paused."""
+    if intention.suspended is not None:
+        return
+    intention.suspended = reason
+    agent.called = True
+    if agent.meta:
+        for frame in intention.frames:
+            meta_events.frame_state(agent, intention, frame, "suspended")
+    event = pending_event(agent, intention)
+    if event is not None and event in agent.events:
+        agent.events.remove(event)
+        agent.suspended_events.append(event)
+    if intention.waiting is not None and intention.waiting.on_suspend is not None:
+        intention.waiting.on_suspend()
+
+
+def resume_goal(agent: Circumstance, goal: Term) -> None:
+    """The reverse of `suspend_goal`."""
+    for event in list(agent.suspended_events):
+        if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
+            agent.suspended_events.remove(event)
+            agent.queue(event)
+            _event_state(agent, event, "resumed")
+            agent.architecture.ready()
+    for intention in intentions_for(agent, goal):
+        resume_intention(agent, intention)
+
+
+def resume_intention(agent: Circumstance, intention: Intention) -> None:
+    """A suspended intention goes on where it is."""
+    if intention.suspended is None:
+        return
+    intention.suspended = None
+    if agent.meta:
+        for frame in intention.frames:
+            meta_events.frame_state(agent, intention, frame, "resumed")
+    held = next((e for e in agent.suspended_events if e[EVENT_INTENTION] is intention), None)
+    if held is not None:
+        agent.suspended_events.remove(held)
+        agent.queue(held)
+        agent.architecture.ready()
+    elif intention.parked:
+        intention.parked = False
+        agent.make_ready(intention)
+    elif intention.waiting is not None and intention.waiting.on_resume is not None:
+        intention.waiting.on_resume()
+
+
+# --- ending goals from outside -----------------------------------------------------------------------------
+
+
+def succeed_goal(agent: Circumstance, goal: Term) -> bool:
+    """End matching goals as achieved: their callers go on.  True when the running intention is concerned."""
+    own = False
+    for intention in intentions_for(agent, goal):
+        if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
+            continue
+        index = frame_of(agent, intention, goal)
+        running = intention is agent.current
+        queued = agent.is_in_turn(intention)
+        if index is None:
+            event = pending_event(agent, intention)
+            if event is not None:
+                remove_event(agent, event)
+        else:
+            achieve(agent, intention, index)
+        if running:
+            own = True
+        elif goes_on(agent, intention) and not queued:
+            agent.make_ready(intention)
+    for event in goal_events(agent, goal):
+        remove_event(agent, event)
+        _event_state(agent, event, "achieved", "finished")
+    return own
+
+
+def goes_on(agent: Circumstance, intention: Intention) -> bool:
+    if not intention.frames:
+        agent.finish(intention)
+        return False
+    return pop_finished(agent, intention)
+
+
+def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = None) -> bool:
+    """End matching goals as failed: their own handlers run, or those below.  True when the caller itself is concerned.
+
+    Without *reason* the failure events carry no error annotation, as in Jason.
+    """
+    reason = reason or nowhere()
+    own = False
+    for intention in intentions_for(agent, goal):
+        if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
+            continue
+        index = frame_of(agent, intention, goal)
+        if index is None:
+            _fail_pending(agent, intention, reason)
+            continue
+        own = own or intention is agent.current
+        frame = intention.frames[index]
+        ended = reason.interrupted(intention.frames[index:])
+        release_bindings(frame[GOAL], frame[SERIAL])
+        goal_failure.observe_failed(agent, intention, index + 1, ended)
+        cut(agent, intention, index)
+        for queue in (agent.intentions, agent.crowd):
+            if intention in queue:
+                queue.remove(intention)
+        _post(
+            agent,
+            intention,
+            goal_failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], ended, frame[SERIAL]),
+        )
+    for event in goal_events(agent, goal):
+        remove_event(agent, event)
+        intention = agent.new_intention(event[EVENT_CAUSE])
+        _post(
+            agent,
+            intention,
+            goal_failure.fail_goal(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], reason),
+        )
+    return own
+
+
+def _fail_pending(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
+    """A sub-goal that was posted and not taken up yet fails in its place."""
+    event = pending_event(agent, intention)
+    if event is not None:
+        remove_event(agent, event)
+        _post(
+            agent,
+            intention,
+            goal_failure.fail_goal(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], reason),
+        )
+
+
+def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:
+    if posted is not None:
+        agent.post((posted.goal, intention, posted.annotations, None))
+        agent.architecture.ready()
+
+
+def describe(intention: Intention) -> Any:
+    """State of an intention, as ``.intention`` tells it: (name, reason)."""
+    if intention.suspended is not None:
+        return "suspended", None
+    if intention.waiting is not None:
+        return "waiting", intention.waiting.reason
+    return "running", None

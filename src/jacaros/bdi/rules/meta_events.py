@@ -1,0 +1,127 @@
+"""Changes of goal states: events for plans that ask for them (``^!g[state(S)]``), and news for an observer."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from jacaros.bdi.explaining.failure_reason import FailureReason
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
+from jacaros.bdi.state.literals import annotations_of_event, literal_of
+from jacaros.bdi.state.triggers import trigger
+from jacaros.terms.order import annotation_set
+from jacaros.terms.text import text
+from jacaros.terms.values import Annotated, String, Term, atom, structure
+
+_NO_REASON = String("")
+
+
+GoalObserver = Callable[[str, str, int, int, str], None]
+"""Takes a goal's state, the goal as text, its number, that of its intention, and of a failure the reason for people."""
+
+
+def goal_state(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str, reason: Term = _NO_REASON
+) -> None:
+    """Tell plans that a goal has got into another state: the event comes one cycle later, before ordinary ones."""
+    kind = goal[0]
+    if not kind.kind or kind.operator == "^":
+        return
+    meta = trigger("^", kind.kind, kind.functor)
+    if agent.selects[meta] is None:
+        return
+    told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
+    event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
+    agent.do_soon(lambda: _insert(agent, event))
+
+
+def frame_state(
+    agent: Circumstance, intention: Intention, frame: Frame, state: str, reason: Term = _NO_REASON
+) -> None:
+    """Tell plans and the observer that the goal of a frame has got into another state."""
+    observe(agent, intention, frame, state)
+    goal_state(agent, frame[GOAL], frame[ANNOTATIONS], state, reason)
+
+
+def observe(agent: Circumstance, intention: Intention, frame: Frame, state: str, why: str = "") -> None:
+    """Tell the observer only."""
+    if agent.goal_observer is not None:
+        number = _goal_number(frame)
+        if number is not None:
+            observe_goal(agent, intention, frame[GOAL], number, state, why)
+
+
+def observe_goal(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], number: int, state: str, why: str = ""
+) -> None:
+    """Tell the observer only, of a goal that may have no frame."""
+    kind = goal[0]
+    if agent.goal_observer is not None and kind.kind and kind.operator != "^":
+        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), number, intention.id, why)
+
+
+def _goal_number(frame: Frame) -> int | None:
+    """The number of a frame's goal, the same in all branches of a fork; None when the goal has a frame below."""
+    if not frame[GOAL][0].failing:
+        number: int = frame[SERIAL]
+        return number
+    return failed_number(frame[ANNOTATIONS])
+
+
+def failed_number(annotations: Any) -> int | None:
+    """Of a failure event, the number of the goal that failed without having got a frame."""
+    return annotations.goal_number if isinstance(annotations, FailureReason) else None
+
+
+def observe_rest(agent: Circumstance, intention: Intention) -> None:
+    """Tell the observer that goals are over because their intention is."""
+    for frame in reversed(intention.frames[shared(agent, intention) :]):
+        observe(agent, intention, frame, "finished")
+
+
+def shared(agent: Circumstance, intention: Intention) -> int:
+    """The number of frames, from the bottom of the stack, whose goals other branches of a fork pursue, too."""
+    for point, _ in reversed(intention.forks):
+        for other in agent.alive.values():
+            if other is not intention and any(each is point for each, _ in other.forks):
+                depth: int = point.depth
+                return depth + 1
+    return 0
+
+
+def post_new_goal(agent: Circumstance, event: Event) -> None:
+    """Queue the event of a new goal; it is pending from now on."""
+    if agent.meta:
+        goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "pending")
+    agent.post(event)
+
+
+def top_goal_state(agent: Circumstance, intention: Intention, state: str, reason: Term = _NO_REASON) -> None:
+    """The same for the topmost goal of an intention."""
+    for frame in reversed(intention.frames):
+        if frame[GOAL][0].kind and not frame[GOAL][0].failing:
+            frame_state(agent, intention, frame, state, reason)
+            return
+
+
+def _insert(agent: Circumstance, event: Event) -> None:
+    """Put a meta event before the ordinary ones, behind those that came earlier."""
+    place = 0
+    for queued in agent.events:
+        if queued[EVENT_GOAL][0].operator != "^":
+            break
+        place += 1
+    agent.events.insert(place, event)
+
+
+def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
+    """Have an observer told of every change of a goal that has begun.
+
+    The states are ``executing``, ``waiting``, ``suspended``, ``resumed``, ``achieved``, ``failed``, ``recovered``,
+    ``dropped``, ``replaced``, and last ``finished``.  A goal keeps its number when its variables get values, and in all
+    branches of a fork.
+    """
+    agent.goal_observer = observer
+    agent.on_finish = partial(observe_rest, agent)
+    agent.meta = agent.special = agent.called = True

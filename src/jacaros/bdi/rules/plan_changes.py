@@ -1,0 +1,177 @@
+"""Changes of the plan library and of rules at run time, and the loading of plans."""
+
+from jacaros.asl import nodes
+from jacaros.asl.labels import shape
+from jacaros.asl.loader import parse_plans
+from jacaros.asl.lowering import fresh_names, lower
+from jacaros.asl.reflection import Reflection
+from jacaros.bdi.actions.internal_action import ActionError
+from jacaros.bdi.rules import belief_update, urgency
+from jacaros.bdi.rules.edge_signals import AWAKING, SLEEPING
+from jacaros.bdi.rules.functions import known_names
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.state.belief_base import is_source
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.plan import Plan, label_of, with_subplans
+from jacaros.bdi.state.rule import Rule
+from jacaros.terms.plans import PLAN, RULE, TRIGGERS, is_body
+from jacaros.terms.substitution import resolve
+from jacaros.terms.text import text
+from jacaros.terms.values import (
+    SELF,
+    Annotated,
+    String,
+    Term,
+    annotations_of,
+    arguments_of,
+    atom,
+    bare,
+    functor,
+    functor_of,
+    is_list,
+    list_items,
+)
+
+ERROR = functor("error", 1)
+
+
+def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
+    """Whether two plans are equal, labels aside."""
+    return left.trigger.operator == right.trigger.operator and shape(
+        (left.trigger, left.context, left.body, left.goal_condition, left.subplans)
+    ) == shape((right.trigger, right.context, right.body, right.goal_condition, right.subplans))
+
+
+def look_at_plans(agent: Circumstance) -> None:
+    """What the mind needs to know of its plans as a whole, those included that have been removed: they may still run."""
+    agent.selects = agent.library.selects
+    agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
+    agent.subplans = agent.subplans or agent.library.has_subplans()
+    agent.goal_conditions = agent.goal_conditions or agent.library.has_goal_conditions()
+    agent.special = agent.meta or agent.subplans or agent.goal_conditions
+    agent.called = True
+    agent.edges = agent.subplans or any(agent.selects[kind] is not None for kind in (SLEEPING, AWAKING))
+    if not agent.edges:
+        # Nobody would notice, and an agent that gets such a plan later is awake then.
+        agent.drowsy = agent.asleep = False
+    urgency.plans_changed(agent)
+
+
+def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool = False) -> None:
+    """Add a plan given as a term or as text; one that is held already only gains a source.
+
+    Raises:
+        NotAPlan: when the term is no plan.
+        AslError: when the text is none.
+    """
+    term = resolve(term)
+    if term.__class__ is String:
+        written = str(term).strip()
+        for node in parse_plans(
+            written if written.endswith(".") else written + ".", functions=known_names(agent)
+        ):
+            _add_node(agent, node, source, first)
+        return
+    if is_list(term):
+        for item in list_items(term):
+            add_plan(agent, item, source, first)
+        return
+    _add_node(agent, Reflection(shared=False).plan(term), source, first)
+
+
+def include_plans(agent: Circumstance, plan_nodes: tuple[nodes.Plan, ...]) -> None:
+    """Take in plans of a program that is included at run time; those that are held already stay as they are.
+
+    Raises:
+        ActionError: a label is that of another plan; nothing has been added then.
+    """
+    for node in plan_nodes:
+        if node.label is not None:
+            held = agent.library.by_label(label_of(node, 0))
+            if held is not None and not _same(held.node, node):
+                raise _label_taken(held.label)
+    for node in plan_nodes:
+        _add_node(agent, node, SELF, first=False)
+
+
+def _label_taken(label: Term) -> ActionError:
+    return ActionError(f"another plan has the label {text(label)} already")
+
+
+def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) -> None:
+    for held in agent.library.plans:
+        if _same(held.node, node):
+            sources = agent.library.sources(held)
+            if source not in sources:
+                agent.library.set_sources(held, (*sources, source))
+            return
+    agent.plans_made += 1
+    plan = Plan(node, label_of(node, agent.plans_made))
+    if agent.library.by_label(plan.label) is not None:
+        raise _label_taken(plan.label)
+    agent.library.add(with_subplans(plan, agent.plans_made), first)
+    agent.library.set_sources(plan, (source,))
+    look_at_plans(agent)
+
+
+def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
+    """Take a source off the plan of that label, or equal to that plan term; without source it goes.
+
+    False when there is no such plan.
+    """
+    term = resolve(wanted)
+    if term.__class__ is tuple and term[0] is PLAN:
+        node = Reflection(shared=False).plan(term)
+        found = next((p for p in agent.library.plans if _same(p.node, node)), None)
+    else:
+        found = agent.library.by_label(term)
+    if found is None:
+        return False
+    left = tuple(held for held in agent.library.sources(found) if held != source)
+    if left:
+        agent.library.set_sources(found, left)
+    else:
+        agent.library.remove(found)
+        look_at_plans(agent)
+    return True
+
+
+def change_plans(agent: Circumstance, operator: str, term: Term) -> bool:
+    """``+{plan}``, ``-{plan}``, ``+{rule}`` …; False when the operand is neither a plan nor a rule.
+
+    Annotations of the operand, such as sources, are given to the rule, and their sources to the plan.
+    """
+    annotated = resolve(term)
+    term = bare(annotated)
+    if term.__class__ is not tuple:
+        return False
+    if term[0] is PLAN:
+        for source in [arguments_of(a)[0] for a in annotations_of(annotated) if is_source(a)] or [SELF]:
+            if operator in ("-", "--"):
+                remove_plan(agent, term, source)
+            else:
+                add_plan(agent, term, source, first=operator != "+>")
+        return True
+    if term[0] is RULE:
+        head, annotations = term[1], annotations_of(annotated)
+        change_rule(agent, operator, (RULE, Annotated(head, annotations) if annotations else head, term[2]))
+        return True
+    if term[0] in TRIGGERS or is_body(term):
+        raise Failure((ERROR, atom("body_var_with_op")))
+    return False
+
+
+def change_rule(agent: Circumstance, operator: str, term: Term) -> None:
+    """Add or remove a rule given as a term."""
+    node = Reflection(shared=False).rule(resolve(term))
+    head = functor_of(lower(node.head, fresh_names()))
+    assert head is not None
+    table = agent.beliefs[head]
+    rule = Rule(node, agent.actions)
+    if operator in ("-", "--"):
+        for entry, _ in table.entries():
+            if isinstance(entry, Rule) and shape(entry.node) == shape(rule.node):
+                table.remove(entry)
+                return
+        return
+    belief_update.add_rule(agent, rule, head, last=operator == "+>")

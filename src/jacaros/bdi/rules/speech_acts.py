@@ -1,0 +1,327 @@
+"""What messages do (KQML as Jason defines it): tell, achieve, ask, and the rest."""
+
+from typing import Any
+
+from jacaros.asl.errors import AslError
+from jacaros.asl.lowering import fresh_names, lower_plan
+from jacaros.bdi.fast.generated.unit import Select
+from jacaros.bdi.rules import belief_update, rescue
+from jacaros.bdi.rules.formulas import solve_formula
+from jacaros.bdi.rules.meta_events import post_new_goal
+from jacaros.bdi.rules.plan_terms import relevant_plans
+from jacaros.bdi.rules.searching import run
+from jacaros.bdi.state.belief_base import is_source, parts
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.bdi.state.triggers import ACHIEVED, trigger
+from jacaros.errors import InternalError
+from jacaros.terms.order import annotation_set
+from jacaros.terms.plans import PLAN
+from jacaros.terms.substitution import is_flat, rename, resolve
+from jacaros.terms.text import text
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import (
+    BY_SELF,
+    CONS,
+    NIL,
+    SOURCE,
+    SOURCE_SELF,
+    Annotated,
+    Functor,
+    Term,
+    Var,
+    annotations_of,
+    arguments_of,
+    atom,
+    bare,
+    deref,
+    functor,
+    functor_of,
+    is_list,
+    list_items,
+    make_list,
+)
+
+RECEIVED = trigger("+", "!", functor("kqml_received", 4))
+
+
+def read_message(agent: Circumstance) -> None:
+    """Rule ProcMsg for the message whose turn it is."""
+    message = agent.inbox.popleft()
+    try:
+        if (
+            message.in_reply_to is None
+            and agent.accepts is None
+            and agent.selects[RECEIVED] is None
+            and (action := _ACTIONS.get(message.performative)) is not None
+        ):
+            action(agent, message)
+        else:
+            _process(agent, message)
+    except InternalError:
+        raise
+    except Exception as fault:
+        rescue.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
+        if message.performative.startswith("ask"):
+            answer(agent, message, None)
+
+
+def _process(agent: Circumstance, message: SpeechAct) -> None:
+    """A message that may be an answer, refused, or taken up by a plan for ``+!kqml_received``, which comes first."""
+    if message.in_reply_to is not None and _answers_question(agent, message):
+        return
+    if agent.accepts is not None and not agent.accepts(message):
+        return
+    select = agent.selects[RECEIVED]
+    if select is not None and _handled_by_program(agent, message, select):
+        return
+    action = _ACTIONS.get(message.performative)
+    if action is None:
+        agent.architecture.log(
+            "warning", f"a message with unknown performative {message.performative} from {message.sender}"
+        )
+        return
+    action(agent, message)
+
+
+def _answers_question(agent: Circumstance, message: SpeechAct) -> bool:
+    """Whether the message is the answer to a question of the agent: who asked has it then, or nobody wants it any more."""
+    question = message.in_reply_to
+    if question in agent.pending_asks:
+        agent.pending_asks[question](message)
+        return True
+    if question in agent.abandoned_asks:
+        agent.abandoned_asks.remove(question)
+        return True
+    return False
+
+
+def _handled_by_program(agent: Circumstance, message: SpeechAct, select: Select) -> bool:
+    """Post ``+!kqml_received`` when the program has an applicable plan for it."""
+    goal = (RECEIVED, atom(message.sender), atom(message.performative), message.content, atom(message.id))
+    frame = select(agent, goal, BY_SELF)
+    undo(agent.trail, 0)
+    if frame is None:
+        return False
+    agent.post((goal, None, BY_SELF, None))
+    return True
+
+
+def from_sender(content: Term, sender: str) -> Term:
+    """The content with ``source(sender)``; sources it had are nested inside."""
+    content = resolve(content)
+    inner = bare(content)
+    others: list[Term] = []
+    sources: list[Term] = []
+    for annotation in annotations_of(content):
+        (sources if is_source(annotation) else others).append(annotation)
+    source: Term = (SOURCE, atom(sender))
+    if sources and sources != [SOURCE_SELF]:
+        source = Annotated(source, annotation_set(tuple(sources)))
+    return Annotated(inner, annotation_set((*others, source)))
+
+
+def literal_from(content: Term, sender: str) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
+    """Functor, arguments and annotations of the content with ``source(sender)``; no functor when it is no literal."""
+    if is_flat(content):
+        return functor_of(content), arguments_of(content), _ONLY_FROM[sender]
+    return parts(from_sender(content, sender))
+
+
+class _Sources(dict[str, tuple[Term, ...]]):
+    """The annotations of what comes from an agent and from nobody else, by its name: one tuple for each, as atoms are."""
+
+    def __missing__(self, sender: str) -> tuple[Term, ...]:
+        found = self[sender] = ((SOURCE, atom(sender)),)
+        return found
+
+
+_ONLY_FROM = _Sources()
+
+
+def _contents(content: Term) -> list[Term]:
+    """The literals of a message: one, or those of a list."""
+    content = deref(content)
+    return list(list_items(content)) if is_list(content) else [content]
+
+
+def _tell(agent: Circumstance, message: SpeechAct) -> None:
+    if message.flat:
+        # What agents say to each other is mostly flat, and nothing in it has to be looked at.
+        content = message.content
+        symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
+        if symbol is not CONS and symbol is not NIL:
+            agent.believe(symbol, row, _ONLY_FROM[message.sender])  # type: ignore[attr-defined]
+            return
+    for content in _contents(message.content):
+        if not agent.tell(from_sender(content, message.sender)):  # type: ignore[attr-defined]
+            _refuse(agent, message)
+
+
+def _untell(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        agent.untell(from_sender(content, message.sender))  # type: ignore[attr-defined]
+
+
+def _achieve(agent: Circumstance, message: SpeechAct) -> None:
+    if message.flat and not agent.meta:
+        # As above.
+        content = message.content
+        symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
+        if symbol is not CONS and symbol is not NIL:
+            goal = (ACHIEVED[symbol],) + row  # noqa: RUF005 - without a list in between
+            event = (goal, None, _ONLY_FROM[message.sender], None)
+            agent.post(event)
+            return
+    for content in _contents(message.content):
+        symbol, arguments, annotations = literal_from(content, message.sender)
+        if symbol is None:
+            _refuse(agent, message)
+        else:
+            post_new_goal(agent, ((ACHIEVED[symbol], *arguments), None, annotations, None))
+
+
+def _unachieve(agent: Circumstance, message: SpeechAct) -> None:
+    agent.drop_desire(message.content)  # type: ignore[attr-defined]
+
+
+def _signal(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        symbol, row, annotations = literal_from(content, message.sender)
+        if symbol is None:
+            _refuse(agent, message)
+        else:
+            marked = annotation_set((*annotations, atom("signal")))
+            belief_update.external_change(agent, "+", symbol, row, marked)
+
+
+def _refuse(agent: Circumstance, message: SpeechAct) -> None:
+    agent.architecture.log(
+        "warning",
+        f"the content of a {message.performative} from {message.sender} is no literal: {text(message.content)}",
+    )
+
+
+# --- questions ---------------------------------------------------------------------------------------------
+
+
+def _ask_one(agent: Circumstance, message: SpeechAct) -> None:
+    found = _first_belief(agent, message.content)
+    if found is not None:
+        answer(agent, message, found)
+        return
+    symbol, arguments, annotations = literal_from(message.content, message.sender)
+    if symbol is None or agent.selects[trigger("+", "?", symbol)] is None:
+        answer(agent, message, None)
+        return
+    agent.test_for(message, symbol, arguments, annotations)  # type: ignore[attr-defined]
+
+
+def _first_belief(agent: Circumstance, query: Term) -> Term | None:
+    trail = agent.trail
+    for literal in _each_belief(agent, query):
+        undo(trail, 0)
+        return literal
+    undo(trail, 0)
+    return None
+
+
+def _each_belief(agent: Circumstance, query: Term) -> Any:
+    """Instances of a query that hold, with the annotations of the beliefs, the own source left out."""
+    symbol, arguments, annotations = parts(query)
+    if symbol is None:
+        return
+    tail = Var()
+    question = Annotated((symbol, *arguments) if arguments else symbol, annotations, tail)
+    for _ in run(solve_formula(agent, question, agent.trail), agent.rule_depth):
+        found = resolve(question)
+        rest = tuple(a for a in annotations_of(found) if a != SOURCE_SELF)
+        inner = rename(bare(found))
+        yield Annotated(inner, rest) if rest else inner
+
+
+def _ask_all(agent: Circumstance, message: SpeechAct) -> None:
+    found = list(_each_belief(agent, message.content))
+    undo(agent.trail, 0)
+    answer(agent, message, make_list(found))
+
+
+def answer(
+    agent: Circumstance, question: SpeechAct, content: Term | None, performative: str = "tell"
+) -> None:
+    """Send the answer to a question; None is the answer that there is none."""
+    agent.architecture.send(
+        SpeechAct(
+            "untell" if content is None else performative,
+            agent.name if question.sender != "self" else "self",
+            question.sender if question.sender != "self" else agent.name,
+            question.content if content is None else rename(content),
+            agent.next_message_id(),  # type: ignore[attr-defined]
+            question.id,
+        )
+    )
+
+
+# --- plans -------------------------------------------------------------------------------------------------
+
+
+def _ask_how(agent: Circumstance, message: SpeechAct) -> None:
+    """Answer with the plans; they are told, so that whoever does not wait for the answer takes them in."""
+    plans = relevant_plans(agent, message.content)
+    if plans is None:
+        _refuse(agent, message)
+        answer(agent, message, None)
+        return
+    terms = make_list([lower_plan(plan.node, fresh_names()) for plan in plans])
+    answer(agent, message, terms, "tellHow")
+
+
+def _tell_how(agent: Circumstance, message: SpeechAct) -> None:
+    if not agent.options.plans_from_others:
+        agent.architecture.log(
+            "warning", f"a plan told by {message.sender} was refused: this run is restricted"
+        )
+        return
+    for content in _contents(message.content):
+        try:
+            agent.add_plan(content, atom(message.sender))  # type: ignore[attr-defined]
+        except (AslError, ValueError) as fault:
+            agent.architecture.log("warning", f"a plan told by {message.sender} was refused: {fault}")
+
+
+def _untell_how(agent: Circumstance, message: SpeechAct) -> None:
+    for content in _contents(message.content):
+        agent.remove_plan(content, atom(message.sender))  # type: ignore[attr-defined]
+
+
+def plan_term(content: Term) -> bool:
+    """Whether a message content is a plan."""
+    content = deref(content)
+    return content.__class__ is tuple and content[0] is PLAN
+
+
+def _undelivered(agent: Circumstance, message: SpeechAct) -> None:
+    """A message of the agent was accepted, but did not reach an agent of another process."""
+    agent.architecture.log(
+        "warning", f"a message did not reach {message.sender}: {text(resolve(message.content))}"
+    )
+
+
+_ACTIONS = {
+    "tell": _tell,
+    "untell": _untell,
+    "achieve": _achieve,
+    "unachieve": _unachieve,
+    "signal": _signal,
+    "askOne": _ask_one,
+    "askAll": _ask_all,
+    "askHow": _ask_how,
+    "tellHow": _tell_how,
+    "untellHow": _untell_how,
+    "ask-one": _ask_one,
+    "ask-all": _ask_all,
+    "ask-how": _ask_how,
+    "tell-how": _tell_how,
+    "untell-how": _untell_how,
+    "undelivered": _undelivered,
+}

@@ -1,0 +1,85 @@
+"""Plans inside plans: they are for what happens while their plan is pursued, and see its variables."""
+
+from typing import Any
+
+from jacaros.bdi.fast.generated.unit import Select, compile_select
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.intention import PLAN, Frame, Intention
+from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.program_plans import concerns
+from jacaros.bdi.state.triggers import Trigger
+
+
+def select_in_scope(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+) -> Frame | None:
+    """The frame of the first applicable sub-plan: of the plan on top, then of the plans around it, outward."""
+    top = len(intention.frames)
+    if goal[0].failing and intention.handlers:
+        # The failed plans are still on the stack; the handler belongs to the one that called them.
+        top = intention.handlers[-1]
+    frame: Frame | None = intention.frames[top - 1] if top else None
+    while frame is not None:
+        found = _select(agent, frame, goal, annotations)
+        if found is not None:
+            return found
+        frame = _outer(intention, frame)
+    return None
+
+
+def _outer(intention: Intention, frame: Frame) -> Frame | None:
+    """The frame of the plan that a frame's plan is a sub-plan of."""
+    scope = frame[PLAN].scope
+    if scope is None:
+        return None
+    for candidate in reversed(intention.frames):
+        if candidate[PLAN] is scope:
+            return candidate
+    return intention.outer[1] if intention.outer is not None else None
+
+
+def _select(agent: Circumstance, frame: Frame, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+    select = _select_function(agent, frame[PLAN], goal[0])
+    if select is None:
+        return None
+    agent.outer_frame = frame
+    return select(agent, goal, annotations)
+
+
+def _select_function(agent: Circumstance, plan: Plan, kind: Trigger) -> Select | None:
+    if kind not in plan.subselects:
+        plans = [inner for inner in plan.subplans if concerns(inner, kind)]
+        plan.subselects[kind] = compile_select(kind, plans, agent.actions, plan)[0] if plans else None
+    found: Select | None = plan.subselects[kind]
+    return found
+
+
+def handles(agent: Circumstance, intention: Intention, index: int, kind: Trigger) -> bool:
+    """Whether there is a plan for an event kind, as seen from a frame of an intention."""
+    if agent.selects[kind] is not None:
+        return True
+    if not agent.subplans:
+        return False
+    frame: Frame | None = intention.frames[index - 1] if index else None
+    while frame is not None:
+        if _select_function(agent, frame[PLAN], kind) is not None:
+            return True
+        frame = _outer(intention, frame)
+    return False
+
+
+def react(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any
+) -> list[tuple[Intention, Frame, Frame]]:
+    """Sub-plans that react to an external event: for each intention the applicable one nearest to the top.
+
+    Gives the intention, the frame of the outer plan, and the new frame.
+    """
+    found = []
+    for intention in list(agent.alive.values()):
+        for frame in reversed(intention.frames):
+            inner = _select(agent, frame, goal, annotations)
+            if inner is not None:
+                found.append((intention, frame, inner))
+                break
+    return found

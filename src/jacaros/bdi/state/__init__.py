@@ -1,0 +1,1 @@
+"""The state of a mind: data, and what keeps it in order."""

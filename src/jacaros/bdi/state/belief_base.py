@@ -1,0 +1,467 @@
+"""Beliefs and rules, indexed by functor and, where programs ask for it, by arguments."""
+
+import itertools
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from jacaros.bdi.state.mixed_beliefs import FEW, Late, Mixed, discard, key_of
+from jacaros.bdi.state.rule import OpenFact, Search, Searches
+from jacaros.bdi.state.search_budget import SearchBudget
+from jacaros.terms.order import annotation_set
+from jacaros.terms.substitution import ATOMIC, equal, free_variables, is_key, resolve
+from jacaros.terms.unifier import Trail
+from jacaros.terms.values import (
+    BY_SELF,
+    SOURCE,
+    Annotated,
+    Functor,
+    Term,
+    Var,
+    annotations_of,
+    arguments_of,
+    bare,
+    deref,
+    functor_of,
+)
+
+Row = tuple[Term, ...]
+Item = tuple[Any, tuple[Term, ...]]
+"""An entry of a table with its annotations."""
+Index = dict[Any, Any]
+"""By key the row, or a dictionary of the rows, newest last."""
+_NO_LATE = Late()
+"""Of all tables without any: most never have one."""
+_ONE = ((),)
+_NONE: tuple[Row, ...] = ()
+_NOTHING: tuple[Item, ...] = ()
+
+
+class Table:
+    """All beliefs and rules of one functor, newest first.
+
+    Attributes:
+        rows: annotations by row; newest last.  Keys that are no tuples are rules and beliefs with variables.
+        late: those added behind all others, in order.
+        others: how many of `rows` are rules and beliefs with variables.
+        unwritten: how many of `rows` and `late` are beliefs with variables that are not in the program.
+        plain: holds only facts without variables, in `rows` alone: compiled queries may read it directly.
+        searches: generator functions for a table that is not plain, by pattern of use.
+        deep: those that need no Python recursion.
+    """
+
+    __slots__ = (
+        "_base",
+        "_indexes",
+        "_mixed",
+        "_parted",
+        "deep",
+        "functor",
+        "late",
+        "others",
+        "plain",
+        "rows",
+        "searches",
+        "unwritten",
+    )
+
+    def __init__(self, functor: Functor, base: "BeliefBase | None" = None) -> None:
+        self.functor = functor
+        self.rows: dict[Any, tuple[Term, ...]] = {}
+        self.late = _NO_LATE
+        self.others = 0
+        self.unwritten = 0
+        self.plain = True
+        self.searches: Searches | None = None
+        self.deep: Searches | None = None
+        self._indexes: dict[tuple[int, ...], Index] = {}
+        self._mixed: Mixed | None = None
+        self._base = base
+        self._parted = 0
+
+    @property
+    def budget(self) -> SearchBudget | None:
+        """How much may be searched; None for any amount."""
+        return None if self._base is None else self._base.budget
+
+    def search(self, pattern: int, agent: Any, trail: Trail) -> Search:
+        """The generator function for a search that begins here; *pattern* tells which arguments are given."""
+        trail.room = agent.rule_depth
+        assert self.searches is not None
+        return self.searches[pattern]
+
+    def exact(self, row: Row) -> Iterable[tuple[()]]:
+        """One empty answer when the row is held."""
+        return _ONE if row in self.rows else _NONE
+
+    def exact_item(self, row: Row) -> Iterable[Item]:
+        """The row with its annotations when it is held."""
+        held = self.rows.get(row)
+        return _NOTHING if held is None else ((row, held),)
+
+    def find(self, positions: tuple[int, ...], key: Any) -> Iterable[Row]:
+        """The rows whose arguments at *positions* are *key* (one value, or a tuple), newest first."""
+        index = self._indexes.get(positions)
+        if index is None:
+            index = self._build_index(positions)
+        bucket = index.get(key)
+        if bucket is None:
+            return _NONE
+        return (bucket,) if bucket.__class__ is tuple else reversed(bucket)
+
+    def find_items(self, positions: tuple[int, ...], key: Any) -> Iterable[Item]:
+        """What `find` finds, each row with its annotations."""
+        held = self.rows.__getitem__
+        return zip(self.find(positions, key), map(held, self.find(positions, key)), strict=True)
+
+    def _build_index(self, positions: tuple[int, ...]) -> Index:
+        index: Index = {}
+        for row in self.rows:
+            if row.__class__ is tuple:
+                _put(index, key_of(row, positions), row)
+        self._indexes[positions] = index
+        return index
+
+    def aside(self, row: Row) -> "OpenFact | None":
+        """The ground belief with these arguments among those that are no keys."""
+        if self.plain or free_variables(row):
+            return None
+        wanted = literal(self.functor, row)
+        for entry, _ in self.candidates(row):
+            if isinstance(entry, OpenFact) and equal(entry.literal, wanted):
+                return entry
+        return None
+
+    def holds_facts_only(self) -> bool:
+        """Whether nothing but a change of this table changes its answers.  False may be wrong."""
+        return self.others + self.late.others == self.unwritten
+
+    def get(self, row: Any) -> tuple[Term, ...] | None:
+        """The annotations of a row, None when it is not held."""
+        held = self.rows.get(row)
+        return self.late.get(row) if held is None and self.late else held
+
+    def set(self, row: Any, annotations: tuple[Term, ...]) -> bool:
+        """Replace the annotations of a row that is held; False when the base refuses."""
+        (self.rows if row in self.rows else self.late)[row] = annotations
+        return True
+
+    def add(self, row: Any, annotations: tuple[Term, ...], last: bool = False) -> tuple[Term, ...] | None:
+        """Put in a row that is not held; *last* puts it behind all others.
+
+        Gives the annotations back, None when the base refuses: those of projects may.
+        """
+        if self._base is not None and self._base.searching:
+            self._part(self._base.searching)
+        if last:
+            if not self.late:
+                self.late = Late()
+            self.late.put(row, annotations)
+            self._note(row, 1)
+            return annotations
+        self.rows[row] = annotations
+        if row.__class__ is not tuple:
+            self.others += 1
+            if self._mixed is not None:
+                self._mixed.add(row)
+            self._note(row, 1)
+            return annotations
+        if self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before):
+            self._changed()  # no rule answers before the newest fact
+        if self._indexes:
+            self._add_to_indexes(row)
+        if self._mixed is not None:
+            self._mixed.add(row)
+        return annotations
+
+    def _note(self, entry: Any, change: int) -> None:
+        """A rule, a belief with variables, or an entry of `late` came (*change* is 1) or went (-1)."""
+        if entry.__class__ is tuple:
+            if len(self.late) - self.late.others > (change > 0):
+                return  # searches take the general way as long as there are facts in `late`
+        elif entry.node is None:
+            self.unwritten += change
+            if self.unwritten > (change > 0):
+                return  # the same for beliefs with variables that are not in the program
+        self._changed()
+
+    def _add_to_indexes(self, row: Row) -> None:
+        for positions, index in self._indexes.items():
+            _put(index, row[positions[0]] if len(positions) == 1 else key_of(row, positions), row)
+
+    def begin(self, row: Row, annotations: tuple[Term, ...]) -> bool:
+        """Put in a row of numbers, strings and atoms while nobody searches; False when it is held already.
+
+        For tables of this very class: `add` is written out.
+        """
+        rows = self.rows
+        if row in rows or (self.late and row in self.late):
+            return False
+        if self.searches is not None or self._indexes:
+            self.add(row, annotations)
+        else:
+            rows[row] = annotations
+        return True
+
+    def end(self, row: Row, annotations: tuple[Term, ...]) -> bool:
+        """Take out a row while nobody searches; False when it is not held with this very tuple of annotations.
+
+        For tables of this very class: `remove` is written out.
+        """
+        rows = self.rows
+        if rows.get(row) is not annotations:
+            return False
+        if self.late or self._indexes or self.others:
+            self.remove(row)
+            return True
+        last, value = rows.popitem()
+        if last is not row and last != row:
+            rows[last] = value
+            del rows[row]
+        return True
+
+    def exchange(self, old: Row, new: Row, annotations: tuple[Term, ...]) -> bool:
+        """`end` of one row and `begin` of another at once; False when that needs more."""
+        rows = self.rows
+        if not rows or self.late or self._indexes or self.searches is not None:
+            return False
+        last, value = rows.popitem()
+        if value is annotations and last == old and (not rows or new not in rows):
+            # It was the newest, and mostly the only one.
+            rows[new] = annotations
+            return True
+        rows[last] = value
+        if rows.get(old) is not annotations or new in rows:
+            return False
+        del rows[old]
+        rows[new] = annotations
+        return True
+
+    def remove(self, row: Any) -> bool:
+        """Take out a row, rule or open belief that is held; False when the base refuses."""
+        if self._base is not None and self._base.searching:
+            self._part(self._base.searching)
+        if row in self.late:
+            self.late.take(row)
+            self._note(row, -1)
+            return True
+        discard(self.rows, row)
+        if self._mixed is not None:
+            self._mixed.remove(row)
+        if row.__class__ is not tuple:
+            self.others -= 1
+            self._note(row, -1)
+            return True
+        for positions, index in self._indexes.items():
+            key = key_of(row, positions)
+            bucket = index[key]
+            if bucket.__class__ is tuple or len(bucket) == 1:
+                del index[key]
+            else:
+                discard(bucket, row)
+        return True
+
+    def _changed(self) -> None:
+        """Rules, or facts among them, came or went: another function searches for them from now on."""
+        self.plain = not self.others and not self.late
+        self.searches = None if self.plain else Searches(self)
+        self.deep = None if self.plain else Searches(self, deep=True)
+        if not self.others:
+            self._mixed = None
+
+    def _part(self, serial: int) -> None:
+        """An internal action in a condition changes beliefs: what the search is reading stays as it is."""
+        if self._parted != serial:
+            self._parted = serial
+            self.rows, self.late = dict(self.rows), Late(self.late) if self.late else _NO_LATE
+            self._indexes, self._mixed = {}, None
+
+    def around(self) -> tuple[list[Any], list[Any]] | None:
+        """The rules and beliefs with variables that answer before all facts, and those behind all facts.
+
+        None when they are mixed, or when there is a belief with variables that no function can be written for.
+        """
+        if self.unwritten or len(self.late) > self.late.others:
+            return None
+        sides = self._sides()
+        return None if sides is None else (sides[0], [*sides[1], *self.late])
+
+    def _sides(self) -> tuple[list[Any], list[Any]] | None:
+        """What `around` tells, of `rows` alone."""
+        before = list(itertools.islice(reversed(self.rows), self.others))
+        while before and before[-1].__class__ is tuple:
+            before.pop()
+        after = list(itertools.islice(self.rows, self.others - len(before)))
+        if any(entry.__class__ is tuple for entry in (*before, *after)):
+            return None
+        after.reverse()
+        return ([], before) if self.others == len(self.rows) else (before, after)
+
+    def entries(self) -> list[tuple[Any, tuple[Term, ...]]]:
+        """All entries with their annotations, in the order in which they answer."""
+        found = list(self.rows.items())
+        found.reverse()
+        found.extend(self.late.items())
+        return found
+
+    def in_order(self) -> Iterator[tuple[Any, tuple[Term, ...]]]:
+        """The entries one by one in the order in which they answer, for who stops when something changes."""
+        yield from reversed(self.rows.items())
+        yield from self.late.items()
+
+    def candidates(self, arguments: Row) -> Iterable[Item]:
+        """The entries that may unify with the arguments, in order, until something changes; an index is used where one
+        helps."""
+        if self.plain:
+            return self._rows_for(arguments)
+        if len(self) < FEW:
+            return self.entries()
+        places, keys = _known(arguments)
+        return itertools.chain(self._newest_first(arguments, places, keys), self.late.like(places, keys))
+
+    def _newest_first(self, arguments: Row, places: list[int], keys: list[Term]) -> Iterable[Item]:
+        """The entries of `rows` that may unify with the arguments."""
+        held = self.rows
+        if not keys:
+            return reversed(held.items())
+        if not self.others:
+            return self._rows_for(arguments)
+        facts = (row for row in self._rows_with(places, keys, len(arguments)) if row.__class__ is tuple)
+        entries: Iterator[Any]
+        sides = self._sides() if self._mixed is None and self.others < FEW else None
+        if sides is not None:
+            entries = itertools.chain(sides[0], facts, sides[1])
+        else:
+            if self._mixed is None:
+                self._mixed = Mixed(held, self.functor.arity)
+            entries = self._mixed.like(places, keys, facts)
+        return ((entry, held[entry]) for entry in entries)
+
+    def _rows_for(self, arguments: Row) -> Iterable[Item]:
+        """The rows that may unify with the arguments, with their annotations; perhaps others too."""
+        held = self.rows
+        return ((row, held[row]) for row in self.rows_like(arguments))
+
+    def rows_like(self, arguments: Row) -> Iterable[Row]:
+        """The rows that may unify with the arguments, newest first, until something changes."""
+        places, keys = _known(arguments)
+        return self._rows_with(places, keys, len(arguments))
+
+    def _rows_with(self, places: list[int], keys: list[Term], arity: int) -> Iterable[Row]:
+        """The rows that may have *keys* at *places*, newest first."""
+        if len(keys) == arity:
+            row = tuple(keys)
+            return (row,) if row in self.rows else _NONE
+        if not keys or len(self.rows) < FEW:
+            newest_first: Iterator[Row] = reversed(self.rows)
+            return newest_first
+        return self.find(tuple(places), keys[0] if len(keys) == 1 else tuple(keys))
+
+    def __len__(self) -> int:
+        return len(self.rows) + len(self.late)
+
+
+def _known(arguments: Row) -> tuple[list[int], list[Term]]:
+    """The places of the arguments that can be looked up, and their values."""
+    places: list[int] = []
+    keys: list[Term] = []
+    for place, argument in enumerate(arguments):
+        if argument.__class__ not in ATOMIC:
+            argument = deref(argument)
+            if argument.__class__ is Var:
+                continue
+            argument = resolve(argument)
+            if not is_key(argument):
+                continue
+        places.append(place)
+        keys.append(argument)
+    return places, keys
+
+
+def _put(index: Index, key: Any, row: Row) -> None:
+    """Put a row into an index.  Most keys have one row: it is its own bucket until there is a second."""
+    bucket = index.get(key)
+    if bucket is None:
+        index[key] = row
+    elif bucket.__class__ is tuple:
+        index[key] = {bucket: None, row: None}
+    else:
+        bucket[row] = None
+
+
+class BeliefBase(dict[Functor, Table]):
+    """Tables by functor, made when first asked for.
+
+    Attributes:
+        searching: number of the internal action that a search is calling, 0 while none is.
+        next_call: gives the number of the next one.
+        refusals: how many beliefs from outside were refused (`jacaros.bdi.state.bounded_beliefs`).
+        budget: how much may be searched; None for any amount.
+    """
+
+    refusals = 0
+    budget: SearchBudget | None = None
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.searching = 0
+        self.next_call = itertools.count(1).__next__
+
+    def __missing__(self, functor: Functor) -> Table:
+        table = self[functor] = Table(functor, self)
+        return table
+
+    def literals(self) -> Iterator[Term]:
+        """All beliefs with their annotations, predicate by predicate."""
+        for functor, table in list(self.items()):
+            for entry, annotations in table.entries():
+                if entry.__class__ is tuple:
+                    yield literal(functor, entry, annotations)
+                elif isinstance(entry, OpenFact):
+                    yield Annotated(entry.head(), annotations)
+
+
+def literal(functor: Functor, row: Row, annotations: tuple[Term, ...] = ()) -> Term:
+    """The literal of a row."""
+    term: Term = (functor, *row) if row else functor
+    return Annotated(term, annotations) if annotations else term
+
+
+def parts(term: Term) -> tuple[Functor | None, Row, tuple[Term, ...]]:
+    """Functor, arguments and annotations of a literal; the functor is None when it is no literal."""
+    term = resolve(term)
+    return functor_of(term), arguments_of(term), annotations_of(term)
+
+
+def with_source(annotations: tuple[Term, ...]) -> tuple[Term, ...]:
+    """The annotations, with ``source(self)`` when no source is named."""
+    if not annotations:
+        return BY_SELF
+    return annotations if has_source(annotations) else annotation_set((*annotations, *BY_SELF))
+
+
+def is_source(annotation: Term) -> bool:
+    """Whether an annotation is ``source(Name)``."""
+    inner = bare(annotation)
+    return inner.__class__ is tuple and inner[0] is SOURCE
+
+
+def has_source(annotations: tuple[Term, ...]) -> bool:
+    """Whether a source is among the annotations."""
+    for annotation in annotations:  # noqa: SIM110 - twice as fast as `any`
+        if is_source(annotation):
+            return True
+    return False
+
+
+def without_sources(term: Term) -> Term:
+    """The literal without its sources."""
+    if term.__class__ is not Annotated:
+        return term
+    kept = tuple(a for a in term.annotations if not is_source(a))
+    return Annotated(term.term, kept, term.tail) if kept or term.tail is not None else term.term
+
+
+def take_away(table: Table, entry: Any, held: tuple[Term, ...], annotations: tuple[Term, ...]) -> bool:
+    """Take annotations off a belief; it goes when no source is left.  False when the base refuses."""
+    rest = tuple(a for a in held if a not in annotations)
+    return table.set(entry, rest) if has_source(rest) else table.remove(entry)

@@ -1,0 +1,88 @@
+"""Budgets: how much of something an agent may hold at the same time (agent options ``belief_limit``, ``event_limit``,
+``intention_limit`` and ``mailbox_limit``).
+
+A program that never stops growing loses some of its goals, with a reason, and not the memory of the whole run.
+"""
+
+from typing import Any, Final, Protocol
+
+from jacaros.bdi.architecture import Architecture
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.terms.values import String, atom, functor
+
+_ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
+
+
+class Holder(Protocol):
+    """The mind that has the budget."""
+
+    architecture: Architecture
+    current: Any
+    budgets: dict[str, "Budget"]
+
+
+_COUNTED: Final = {
+    "belief_limit": "beliefs",
+    "event_limit": "events",
+    "intention_limit": "intentions",
+    "mailbox_limit": "messages",
+}
+"""What each option limits."""
+
+
+def budgets(holder: Holder) -> dict[str, "Budget"]:
+    """The budgets of an agent, by the names of the options."""
+    return {option: Budget(holder, what, option) for option, what in _COUNTED.items()}
+
+
+class Budget:
+    """Refuses what exceeds a limit.
+
+    Args:
+        holder: the mind that has the budget.
+        what: what is counted, in the plural.
+        option: the agent option that sets the limit; also the name of the error.
+
+    Attributes:
+        refusals: how many items from outside were refused.
+        losses: how many intentions were lost because a step was refused one.
+    """
+
+    def __init__(self, holder: Holder, what: str, option: str) -> None:
+        self._holder, self._what, self._option = holder, what, option
+        self.refusals = self.losses = 0
+
+    def refuse(self, held: int, details: str = "") -> None:
+        """Refuse one more item: the running step fails; without one, log it on the 1st, 10th, 100th … occurrence.
+
+        Args:
+            held: how many items there are.
+            details: more about them, for the message.
+
+        Raises:
+            Failure: a step is running.
+        """
+        if self._holder.current is not None:
+            raise self.failure(held, details)
+        self.refusals += 1
+        if _is_worth_a_line(self.refusals):
+            count = "" if self.refusals == 1 else f" ({self.refusals} by now)"
+            text = f"{self._what} from outside are refused{count}: {self._message(held, details)}"
+            self._holder.architecture.log("error", text)
+
+    def note_loss(self) -> int:
+        """Count an intention that was lost; the number on the 1st, 10th, 100th … occurrence, else 0."""
+        self.losses += 1
+        return self.losses if _is_worth_a_line(self.losses) else 0
+
+    def failure(self, held: int, details: str = "") -> Failure:
+        """The failure of a step that asks for one more item."""
+        message = String(self._message(held, details))
+        return Failure((_ERROR, atom(self._option)), (_ERROR_MSG, message))
+
+    def _message(self, held: int, details: str) -> str:
+        return f"there are {held} {self._what} (option {self._option}){details}"
+
+
+def _is_worth_a_line(count: int) -> bool:
+    return str(count).strip("0") == "1"

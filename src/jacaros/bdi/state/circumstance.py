@@ -1,0 +1,367 @@
+"""The state of a mind: beliefs, plans, events, intentions, and what waits.  No behaviour beyond keeping it in order."""
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.architecture import Architecture, Timer
+from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.belief_base import BeliefBase
+from jacaros.bdi.state.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
+from jacaros.bdi.state.budget import budgets
+from jacaros.bdi.state.condition_waits import ConditionWaits
+from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event, event_literal
+from jacaros.bdi.state.event_waits import EventWaits
+from jacaros.bdi.state.intention import Intention
+from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.plan_library import PlanLibrary
+from jacaros.bdi.state.probe import Probe
+from jacaros.bdi.state.program_plans import ProgramPlans
+from jacaros.bdi.state.search_budget import SearchBudget
+from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.waiting import Waiting
+from jacaros.terms.substitution import rename
+from jacaros.terms.text import text
+from jacaros.terms.unifier import Trail, unify
+from jacaros.terms.values import Term, functor
+
+CROWD = 2000
+"""Intentions that take turns.  With more of them, goals that the agent sets itself (``!!g``) begin one by one."""
+
+
+class Circumstance:
+    """All that an agent holds.
+
+    Attributes:
+        name: of the agent.
+        architecture: the port to its host.
+        trail: bindings of the search under way; empty between two steps.
+        beliefs, library, selects: what it believes, its plans, and their select functions.
+        events: the queue of events, oldest first.
+        usual_events: external events without a plan are passed over, and events of belief changes in plans belong to
+            the intentions that made them.
+        requeued: external events without plan that are to be tried again (``events=requeue``).
+        intentions: those that can run, in turn; others are waiting, suspended, or in an event.
+        crowd: intentions for goals that the agent set itself beside `CROWD` others that can run: they join these as others
+            end, and one in each turn anyway, so that an agent that sets itself more and more goals keeps its other plans.
+        event_limit, intention_limit: how many events and intentions there may be.
+        budgets: what refuses more than a limit allows, by the name of the option.
+        next_count: number of the cycle in which beliefs are counted next.
+        option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
+        refused_options: there were applicable plans for the last event, and the filter let none pass.
+        alive: every intention that is not over, by id.
+        current: the intention whose step is being made.
+        atomic: the intention that has an atomic plan on its stack, or None.
+        atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
+        urgency: how urgent things are (`jacaros.bdi.rules.urgency.Urgency`); None while no plan is more urgent than others.
+        urgent: something in the queues is more urgent than the rest, or may be: they are kept in order of urgency.
+        inbox, percepts: what was received and noticed, and not yet looked at.
+        tasks: housekeeping for the beginning of the next cycle.
+        suspended_events: goal events whose goal was suspended before it became an intention.
+        delayed_events: timers of the events that ``.at`` is to post.
+        event_waits: those who wait for an event.
+        condition_waits: those who wait for a condition.
+        pending_acts: external actions under way, by number.
+        pending_asks: questions whose answer is awaited, by message id.
+        abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
+        meta: whether plans or an observer want to hear of changes of goal states.
+        goal_observer: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
+        parsed: texts that were read lately (`jacaros.bdi.rules.context.Parsed`), by text and number of functions.
+        on_finish: called with each intention that ends with goals on its stack, or None.
+        probe: the test that looks on, or None.
+        intentions_made: number of intentions so far.
+        plans_made: number of plans so far, for the labels of those that have none.
+        bodies: compiled forms of plan bodies held by variables.
+        goal_conditions: whether plans have goal conditions, which are tested in every cycle.
+        subplans: whether plans have plans of their own.
+        special: whether any of `meta`, `goal_conditions` and `subplans` is true.
+        called: something may want to be looked at besides `events` and `intentions`: `inbox`, `percepts`, `tasks`,
+            restless `condition_waits`, a suspension, or because the agent is `special` or `urgent`.  Whoever adds to one of
+            them sets it.
+        outer_frame: frame of the plan whose sub-plans are being tried.
+        context: the view of itself that it gives to internal actions.
+        namespace_properties: properties that programs give to namespaces.
+        functions: arithmetic functions that its program registers, by name.
+        project_functions: those of the project, with their least and greatest numbers of arguments.
+        evaluators: what computes them, by name; None stands for a value that is not known yet.
+        call_own: evaluates a call of a function inside a term for this agent.
+        cycles: number of steps made.
+        next_look: number of the cycle in which percepts and messages are looked at next.
+        blamed: plans whose goal condition cannot be evaluated, as people have been told.
+        goal_depth: how many plans may be on the stack of an intention.
+        rule_depth: how many rules and conditions may be open at the same time in one search.
+        running: the agent has its turn: whoever gave it finds out at its end whether there is more to do.
+        stopped: the agent is over.
+        accepts: asked whether a message is acceptable; None accepts all.
+        face: what the project's Python code sees of the agent; made when it is first asked for.
+        edges: there may be plans for falling asleep and awaking.
+        drowsy: it has had nothing to do since it last awoke, and has been told so.
+        asleep: it is drowsy, and has done what its plans do before sleep.
+    """
+
+    __slots__ = (
+        "abandoned_asks",
+        "accepts",
+        "actions",
+        "alive",
+        "architecture",
+        "asleep",
+        "atomic",
+        "atomic_over",
+        "beliefs",
+        "blamed",
+        "bodies",
+        "budgets",
+        "call_own",
+        "called",
+        "condition_waits",
+        "context",
+        "crowd",
+        "current",
+        "cycles",
+        "delayed_events",
+        "drowsy",
+        "edges",
+        "evaluators",
+        "event_limit",
+        "event_waits",
+        "events",
+        "face",
+        "functions",
+        "goal_conditions",
+        "goal_depth",
+        "goal_observer",
+        "held_percepts",
+        "inbox",
+        "intention_limit",
+        "intentions",
+        "intentions_made",
+        "library",
+        "meta",
+        "name",
+        "namespace_properties",
+        "next_count",
+        "next_look",
+        "on_finish",
+        "option_filter",
+        "options",
+        "outer_frame",
+        "parsed",
+        "pending_acts",
+        "pending_asks",
+        "percepts",
+        "plans_made",
+        "probe",
+        "project_functions",
+        "refused_options",
+        "requeued",
+        "rule_depth",
+        "running",
+        "selects",
+        "special",
+        "stopped",
+        "subplans",
+        "suspended_events",
+        "tasks",
+        "trail",
+        "urgency",
+        "urgent",
+        "usual_events",
+    )
+
+    call_own: Callable[[Term], Term]
+
+    def __init__(
+        self,
+        name: str,
+        architecture: Architecture,
+        actions: Mapping[str, InternalAction],
+        options: Options,
+        plans: ProgramPlans,
+    ) -> None:
+        self.name = name
+        self.architecture = architecture
+        self.actions = actions
+        self.options = options
+        self.trail = Trail()
+        self.current: Intention | None = None
+        self.budgets = budgets(self)
+        limit = options.belief_limit
+        self.beliefs: BeliefBase = BoundedBeliefs(self, limit) if limit <= SMALL else BeliefBase()
+        self.next_count = INTERVAL
+        self.event_limit, self.intention_limit = options.event_limit, options.intention_limit
+        if options.search_limit:
+            self.beliefs.budget = SearchBudget(options.search_limit)
+        self.usual_events = options.events == "discard" and not options.new_focus
+        self.option_filter = self.beliefs[functor("select__option", 4)]
+        self.refused_options = False
+        self.library = PlanLibrary(plans, partial(architecture.log, "error"))
+        self.selects = self.library.selects
+        self.urgency: Any = None
+        self.urgent = False
+        self.events: deque[Event] = deque()
+        self.requeued: list[Event] = []
+        self.next_look = 0
+        self.intentions: deque[Intention] = deque()
+        self.crowd: deque[Intention] = deque()
+        self.alive: dict[int, Intention] = {}
+        self.atomic: Intention | None = None
+        self.atomic_over = False
+        self.inbox: deque[SpeechAct] = deque()
+        self.percepts: deque[list[Percept]] = deque()
+        self.tasks: deque[Callable[[], None]] = deque()
+        self.suspended_events: list[Event] = []
+        self.delayed_events: dict[Timer, None] = {}
+        self.event_waits = EventWaits()
+        self.condition_waits = ConditionWaits()
+        self.pending_acts: dict[int, Waiting] = {}
+        self.pending_asks: dict[str, Any] = {}
+        self.abandoned_asks: set[str | None] = set()
+        self.meta = False
+        self.goal_observer: Callable[[str, str, int, int, str], None] | None = None
+        self.on_finish: Callable[[Intention], None] | None = None
+        self.parsed: dict[tuple[str, int], Any] = {}
+        self.probe: Probe | None = None
+        self.goal_conditions = False
+        self.subplans = False
+        self.special = False
+        self.called = False
+        self.outer_frame: Any = None
+        self.namespace_properties: dict[str, dict[Term, Term]] = {}
+        self.functions: dict[str, Any] = {}
+        self.project_functions: Mapping[str, tuple[int, int | None]] = {}
+        self.evaluators: Mapping[str, Callable[..., Term]] = {}
+        self.context: Any = None
+        self.cycles = 0
+        self.blamed: set[Any] = set()
+        self.goal_depth = options.goal_depth
+        self.rule_depth = options.rule_depth
+        self.running = False
+        self.stopped = False
+        self.accepts: Callable[[SpeechAct], bool] | None = None
+        self.face: Any = None
+        self.edges = False
+        self.drowsy = False
+        self.asleep = False
+        self.held_percepts: dict[Term, Any] = {}
+        self.plans_made = len(plans.plans)
+        self.bodies: dict[int, tuple[Term, Any]] = {}
+        self.intentions_made = 0
+
+    def warn_of_operand(self, what: str, value: Term) -> None:
+        """Take note of an operand that is no number."""
+        self.architecture.log("warning", f"{what} is no number: {text(value)}")
+
+    def new_intention(self, cause: Any = None) -> Intention:
+        """An intention with a number of its own; it is not in any queue yet."""
+        self.intentions_made += 1
+        intention = Intention(self.intentions_made, cause)
+        self.alive[intention.id] = intention
+        return intention
+
+    def make_ready(self, intention: Intention) -> None:
+        """Let an intention take part in the next cycles; a suspended one is parked."""
+        if intention.suspended is not None:
+            intention.parked = True
+        else:
+            if self.urgency is not None:
+                self.urgency.note_intention(intention)
+            self.intentions.append(intention)
+        if not self.running:
+            self.architecture.ready()
+
+    def finish(self, intention: Intention) -> None:
+        """An intention is over; what it waits for is cancelled."""
+        intention.dropped = True
+        if intention.frames:
+            if self.on_finish is not None:
+                self.on_finish(intention)
+            intention.frames.clear()
+        if intention.handlers:
+            intention.handlers.clear()
+        self.alive.pop(intention.id, None)
+        if self.atomic is intention:
+            self.atomic = None
+            self.atomic_over = False
+        if intention.waiting is not None:
+            waiting, intention.waiting = intention.waiting, None
+            waiting.cancel()
+
+    def may_handle(self, kind: Trigger) -> bool:
+        """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
+        return self.subplans or self.selects[kind] is not None
+
+    def do_soon(self, task: Callable[[], None]) -> None:
+        """Have some housekeeping done at the beginning of the next cycle."""
+        self.tasks.append(task)
+        self.called = True
+
+    def queue(self, event: Event) -> None:
+        """Put an event at the end of the queue."""
+        if self.urgency is not None:
+            self.urgency.note_event(event)
+        self.events.append(event)
+
+    def post(self, event: Event) -> None:
+        """Put an event at the end of the queue, and resume those who wait for it."""
+        if (
+            len(self.events) >= self.event_limit or len(self.alive) >= self.intention_limit
+        ) and not self._admits(event):
+            return
+        if self.urgency is not None:
+            self.urgency.note_event(event)
+        self.events.append(event)
+        if self.event_waits:
+            self.notify_event_waits(event)
+
+    def _admits(self, event: Event) -> bool:
+        """Whether an event may still come into the queue: one that an existing intention waits for may.
+
+        Raises:
+            Failure: it may not, and a step posts it.
+        """
+        if event[EVENT_INTENTION] is not None:
+            return True
+        if len(self.events) >= self.event_limit:
+            self.budgets["event_limit"].refuse(len(self.events))
+        else:
+            self.budgets["intention_limit"].refuse(len(self.alive))
+        return False
+
+    def line_up(self, intention: Intention) -> None:
+        """Put a new intention for a goal that the agent set itself behind all others, now that there are `CROWD`."""
+        if self.urgency is not None and self.urgency.of_intention(intention):
+            self.intentions.append(intention)
+        else:
+            self.crowd.append(intention)
+
+    def is_in_turn(self, intention: Intention) -> bool:
+        """Whether an intention waits for its turn."""
+        return intention in self.intentions or intention in self.crowd
+
+    def let_in(self) -> None:
+        """Let intentions of the crowd take part: as many as there is room for, and one anyway."""
+        intentions, crowd = self.intentions, self.crowd
+        for _ in range(min(len(crowd), max(1, CROWD - len(intentions)))):
+            intentions.append(crowd.popleft())
+
+    def notify_event_waits(self, event: Event) -> None:
+        """Resume the intentions that wait for this event."""
+        for wait in self.event_waits.candidates(event[EVENT_GOAL][0]):
+            mark = len(self.trail)
+            found = unify(wait.pattern, rename(event_literal(event)), self.trail)
+            if found:
+                # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
+                del self.trail[mark:]
+                self.event_waits.remove(wait)
+                wait.waiting.resume()
+            else:
+                while len(self.trail) > mark:
+                    self.trail.pop().ref = None
+
+    def is_idle(self) -> bool:
+        """Whether there is nothing to do until something comes from outside or a timer ends."""
+        return not (self.events or self.intentions or self.crowd or self.inbox or self.percepts or self.tasks)

@@ -1,0 +1,76 @@
+"""Intentions: stacks of frames, as data."""
+
+from collections.abc import Callable
+from typing import Any
+
+from jacaros.terms.values import Term
+from jacaros.trace import Cause
+
+Frame = list[Any]
+"""``[next step, goal, annotations, serial, plan, variable, ...]``, see `jacaros.bdi.fast.generated`.
+
+next step: function of the next formula, None when the body is finished.
+goal: tuple that begins with its `Trigger`: what the plan serves, with the arguments.
+annotations: of the goal; a tuple, or a `FailureReason`.
+serial: number of goals posted before it (`Trail.serial`): bindings stamped with it or later were made for it.
+plan: the `Plan`.
+"""
+
+STEP, GOAL, ANNOTATIONS, SERIAL, PLAN = range(5)
+
+
+class Intention:
+    """One thing the agent is doing.
+
+    Attributes:
+        id: number, for programs and people.
+        frames: the stack, bottom first.
+        handlers: for each failure handler on the stack, to which height it is cut when the handler ends.
+        suspended: why it is suspended (a term for ``.suspended``), or None.
+        parked: it could run, but is suspended.
+        waiting: what it waits for (`Waiting`), or None.
+        dropped: it is over; whoever still holds it lets it go.
+        cause: why it was adopted.
+        forks: the forks it is a branch of, outermost first, with the number of the branch.
+        outer: intention and frame whose sub-plan reacts here to something outside, or None.
+        urgencies: the urgency of each frame with those below it; only there when the agent has urgent plans.
+        on_failed: called with the reason (`FailureReason`, or None) when it ends in failure, in place of the usual
+            warning.
+    """
+
+    __slots__ = (
+        "cause",
+        "dropped",
+        "forks",
+        "frames",
+        "handlers",
+        "id",
+        "on_failed",
+        "outer",
+        "parked",
+        "suspended",
+        "urgencies",
+        "waiting",
+    )
+
+    urgencies: list[tuple[Frame, int]]
+
+    def __init__(self, number: int, cause: Cause | None = None) -> None:
+        self.id = number
+        self.frames: list[Frame] = []
+        self.handlers: list[int] = []
+        self.suspended: Term = None
+        self.parked = False
+        self.waiting: Any = None
+        self.dropped = False
+        self.cause = cause
+        self.outer: tuple[Intention, Frame] | None = None
+        self.forks: tuple[tuple[Any, int], ...] = ()
+        self.on_failed: Callable[[Any], None] | None = None
+
+    def is_atomic(self) -> bool:
+        """Whether a plan on the stack is atomic."""
+        return any(frame[PLAN].atomic for frame in self.frames)
+
+    def __repr__(self) -> str:
+        return f"Intention({self.id}, {[frame[GOAL][0] for frame in self.frames]!r})"

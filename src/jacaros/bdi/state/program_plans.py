@@ -1,0 +1,173 @@
+"""The plans of one program, made and compiled once for all agents that run it."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice
+from typing import Any
+
+from jacaros.asl import nodes
+from jacaros.asl.walk import walk
+from jacaros.bdi.fast.generated.function import ActionInfo
+from jacaros.bdi.fast.generated.unit import Select, compile_select
+from jacaros.bdi.state.plan import Plan, label_of, with_subplans
+from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import trigger as trigger_of_kind
+from jacaros.terms.values import functor
+
+
+class ProgramPlans:
+    """Plans in the order of the program, and the select functions made from them so far.
+
+    A plan changes no more once it is made; what an agent adds or removes at run time is its own library's business.
+
+    Args:
+        plan_nodes: the syntax.
+        actions: the internal actions that the plans may call.
+
+    Attributes:
+        rule_functions: what is generated for the rules of the program, see `jacaros.bdi.state.rule`.
+        has_subplans: whether any plan has plans of its own.
+        has_goal_conditions: whether any plan, or plan of a plan, has a goal condition.
+        has_meta_plans: whether any plan reacts to changes of goal states (``^!g``).
+        selects: the select functions.
+        report: told what cannot be compiled; the first agent of the program puts itself here.
+    """
+
+    def __init__(self, plan_nodes: Sequence[nodes.Plan], actions: Mapping[str, ActionInfo]) -> None:
+        self.actions = actions
+        self.nodes = plan_nodes  # held, so that nothing else can be at its place in memory
+        self.plans = [
+            with_subplans(Plan(node, label_of(node, number)), number)
+            for number, node in enumerate(plan_nodes, start=1)
+        ]
+        self._by_head: dict[tuple[str, str, Any], list[Plan]] = {}
+        for plan in self.plans:
+            head = plan.node.trigger
+            self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
+        self.has_subplans = any(plan.subplans for plan in self.plans)
+        self.has_goal_conditions = any(has_goal_condition(plan) for plan in self.plans)
+        self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
+        self.rule_functions: dict[Any, Any] = {}
+        self.selects = ProgramSelects(self)
+        self.report: Callable[[str], None] | None = None
+
+    def relevant(self, trigger: Trigger) -> Sequence[Plan]:
+        """The candidate plans of an event kind, found without a look at each of a thousand plans."""
+        if (trigger.operator, trigger.kind, None) in self._by_head:
+            return relevant(self.plans, trigger)
+        return self._by_head.get((trigger.operator, trigger.kind, trigger.functor), ())
+
+
+class ProgramSelects(dict[Trigger, Select | None]):
+    """The select function of each event kind, made at its first event; None when no plan concerns it.
+
+    Attributes:
+        sources: the text of those made, by event kind.
+    """
+
+    __slots__ = ("_program", "sources")
+
+    def __init__(self, program: ProgramPlans) -> None:
+        super().__init__()
+        self._program = program
+        self.sources: dict[Trigger, str] = {}
+
+    def __missing__(self, trigger: Trigger) -> Select | None:
+        program = self._program
+        report = program.report or _ignore
+        select = made(trigger, program.relevant(trigger), program.actions, self.sources, report)
+        self[trigger] = select
+        return select
+
+
+def _ignore(text: str) -> None:
+    del text
+
+
+def has_goal_condition(plan: Plan) -> bool:
+    """Whether a plan, or a plan of it, has a goal condition."""
+    return plan.node.goal_condition is not None or any(has_goal_condition(inner) for inner in plan.subplans)
+
+
+def relevant(plans: Sequence[Plan], trigger: Trigger) -> list[Plan]:
+    """The candidate plans of an event kind, those with a variable as trigger among them."""
+    return [plan for plan in plans if concerns(plan, trigger)]
+
+
+def concerns(plan: Plan, trigger: Trigger) -> bool:
+    """Whether a plan is a candidate for an event kind."""
+    head = plan.node.trigger
+    return (
+        head.operator == trigger.operator
+        and head.kind == trigger.kind
+        and (plan.has_variable_trigger() or plan.trigger_functor() is trigger.functor)
+    )
+
+
+def made(
+    trigger: Trigger,
+    plans: Sequence[Plan],
+    actions: Mapping[str, ActionInfo],
+    sources: dict[Trigger, str],
+    report: Callable[[str], None],
+) -> Select | None:
+    """Compile the select function of an event kind; its text goes to *sources*, what is wrong to *report*."""
+    if not plans:
+        return None
+    try:
+        select, sources[trigger] = compile_select(trigger, plans, actions)
+    except TOO_LARGE:
+        small = [plan for plan in plans if not _told(plan, actions, report)]
+        if len(small) == len(plans) and not any(plan.searched for plan in plans):
+            report(f"the plans for {trigger!r} are too large together to be compiled")
+            return None
+        return made(trigger, small, actions, sources, report)
+    return select
+
+
+def _told(plan: Plan, actions: Mapping[str, ActionInfo], report: Callable[[str], None]) -> bool:
+    """Report a plan that has to be left out, once."""
+    if plan.fault is None and too_large(plan, actions):
+        report(f"{plan.fault}; it is left out")
+    return plan.fault is not None
+
+
+TOO_LARGE = (SyntaxError, RecursionError, MemoryError)
+"""What Python says of code that is beyond its limits for one function."""
+_LARGE = 100
+"""Parts of a plan from which on it is compiled at the start, to see whether it can be."""
+
+
+def look_at_large_plans(
+    plans: Sequence[Plan], actions: Mapping[str, ActionInfo]
+) -> Iterator[tuple[Plan, str]]:
+    """The plans that are too large to be compiled, each with what is to be said of it."""
+    for plan in plans:
+        if sum(1 for _ in islice(walk(plan.node), _LARGE)) == _LARGE and too_large(plan, actions):
+            yield plan, plan.fault or ""
+
+
+def too_large(plan: Plan, actions: Mapping[str, ActionInfo]) -> bool:
+    """Whether a plan cannot be compiled.  A context that cannot be is searched, which takes longer."""
+    for searched in (False, True):
+        plan.searched = plan.searched or searched
+        try:
+            compile_select(_trigger_of(plan), [plan], actions)
+        except TOO_LARGE as fault:
+            why = str(fault)
+        else:
+            return False
+    plan.fault = f"the plan {plan_name(plan)} is too large to be compiled ({why})"
+    return True
+
+
+def _trigger_of(plan: Plan) -> Trigger:
+    head = plan.node.trigger
+    return trigger_of_kind(head.operator, head.kind, plan.trigger_functor() or functor("plan", 0))
+
+
+def plan_name(plan: Plan) -> str:
+    """The trigger of a plan and its place, for people."""
+    head, span = plan.node.trigger, plan.node.span
+    symbol = plan.trigger_functor()
+    name = f"{head.operator}{head.kind}{'_' if symbol is None else repr(symbol)}"
+    return name if span is None else f"{name} ({span.file.name}:{span.line})"
