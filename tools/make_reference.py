@@ -18,7 +18,6 @@ import jacaros.bdi.actions.standard
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.artifacts.ros.wheels import WheeledArtifact
-from jacaros.asl.acting import NOT_IN_CONDITIONS
 from jacaros.asl.functions import ARITIES
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.main import COMMANDS, jacaros
@@ -176,7 +175,7 @@ def _action_rows(group: str, names: list[str]) -> Iterator[str]:
         action = STANDARD[name]
         answers = "several" if action.backtracks else "one"
         acts = "yes" if action.suspends else "no"
-        contexts = "no" if name in NOT_IN_CONDITIONS else "yes"
+        contexts = "no" if action.body_only else "yes"
         arguments = _arguments(action.minimum, math.inf if action.maximum is None else action.maximum)
         yield f"| {_entry(group, name)} | {arguments} | {answers} | {acts} | {contexts} |"
 

@@ -9,7 +9,6 @@ import pytest
 from pages import ROOT
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.asl.acting import NOT_IN_CONDITIONS
 from jacaros.asl.functions import ARITIES
 from jacaros.bdi.actions.internal_action import STANDARD
 
@@ -76,7 +75,7 @@ def test_an_entry_says_what_the_registry_says(entry: Entry) -> None:
     assert limits(entry) == (action.minimum, most)
     assert (SEVERAL_ANSWERS in entry.head) == action.backtracks
     assert (ACTS in entry.head) == action.suspends
-    assert (NOT_IN_CONTEXTS in entry.head) == (entry.name in NOT_IN_CONDITIONS)
+    assert (NOT_IN_CONTEXTS in entry.head) == action.body_only
 
 
 @pytest.mark.parametrize("entry", OF_FUNCTIONS, ids=lambda entry: entry.name)

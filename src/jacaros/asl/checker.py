@@ -65,7 +65,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
         *unknown_actions(program, found, known),
         *wrong_arguments(found, known),
         *acting_conditions(found, known),
-        *unknown_performatives(found),
+        *unknown_performatives(found, known),
         *contexts_never_true(found),
         *misspelt_label_words(found),
         *wrong_urgencies(found),
@@ -73,7 +73,7 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
     for clause in clauses:
         warnings += vain_comparisons(clause)
     if not errors:
-        warnings += [*goals_without_plan(program, found), *never_selected(program, found)]
+        warnings += [*goals_without_plan(program, found, known), *never_selected(program, found, known)]
     return warnings
 
 

@@ -1,6 +1,11 @@
 """Control statements written as the internal actions that they are in Jason: ``.foreach(F, { steps })`` and the like."""
 
+from typing import Final
+
 from jacaros.asl import nodes
+
+CONTROL: Final = frozenset({".if_then_else", ".foreach", ".loop", ".fork", ".join"})
+"""The internal actions of Jason that are statements here, and what waits for their branches."""
 
 
 def control_statement(action: nodes.InternalAction) -> nodes.Step | None:

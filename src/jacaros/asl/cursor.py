@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final, NoReturn
 
+from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.functions import is_function
 from jacaros.asl.lexer import Token
@@ -37,6 +38,7 @@ class Names:
     Attributes:
         functions: those that the program registers, with their numbers of arguments.
         known: those of the project, with their least and greatest numbers of arguments.
+        actions: internal actions by name.
     """
 
     unnamed: Iterator[int]
@@ -44,6 +46,7 @@ class Names:
     local_namespaces: Iterator[int]
     functions: dict[str, int] = field(default_factory=dict)
     known: Mapping[str, tuple[int, int | None]] = field(default_factory=dict)
+    actions: Mapping[str, Declaration] = field(default_factory=dict)
 
     def is_function(self, name: str, arity: int) -> bool:
         """Whether *name* with so many arguments is an arithmetic function: of the language, program or project."""

@@ -1,8 +1,10 @@
 """The text of a program in the one style of the project."""
 
+from collections.abc import Mapping
 from typing import Final
 
 from jacaros.asl import nodes
+from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.errors import AslError
 from jacaros.asl.layout.clauses import ProgramLayout
@@ -16,16 +18,17 @@ from jacaros.errors import InternalError
 _MOST_ROUNDS: Final = 4
 
 
-def format_program(name: str, text: str) -> str:
+def format_program(name: str, text: str, actions: Mapping[str, Declaration] | None = None) -> str:
     """The program *text* in the one style; its tokens and comments stay what they are.
 
-    *name* is what diagnostics call the file.  Included files are not read.
+    *name* is what diagnostics call the file; *actions* are the internal actions, as for `load_program`.
+    Included files are not read.
 
     Raises:
         AslError: the program has errors.
         InternalError: the style would change the program.
     """
-    meaning = _meaning(name, text)
+    meaning = _meaning(name, text, actions)
     try:
         result = _laid_out(text)
         for _ in range(_MOST_ROUNDS):
@@ -37,7 +40,7 @@ def format_program(name: str, text: str) -> str:
     except RecursionError:
         wrong = Diagnostic("error", f"{name} is nested too deeply to be formatted", code="nested-too-deeply")
         raise AslError([wrong]) from None
-    if _substance(result) != _substance(text) or _meaning(name, result) != meaning:
+    if _substance(result) != _substance(text) or _meaning(name, result, actions) != meaning:
         raise InternalError(f"formatting would change the meaning of {name}")
     return result
 
@@ -46,8 +49,8 @@ def _laid_out(text: str) -> str:
     return render(ProgramLayout(pieces_of(SourceFile("", text))).program())
 
 
-def _meaning(name: str, text: str) -> nodes.Program:
-    return load_program(name, text, lambda path, _: (f"{path} in {name}", ""))[0]
+def _meaning(name: str, text: str, actions: Mapping[str, Declaration] | None) -> nodes.Program:
+    return load_program(name, text, lambda path, _: (f"{path} in {name}", ""), actions=actions)[0]
 
 
 def _substance(text: str) -> tuple[list[tuple[str, str]], list[str]]:

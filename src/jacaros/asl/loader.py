@@ -7,6 +7,7 @@ from typing import TypeVar
 
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
+from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
 from jacaros.asl.errors import AslError
@@ -27,6 +28,7 @@ def load_program(
     text: str,
     read: Read | None = None,
     functions: Mapping[str, tuple[int, int | None]] | None = None,
+    actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
     """The program in *text*, with its includes, and the warnings.
 
@@ -36,21 +38,27 @@ def load_program(
         read: ``read(path, including_name) -> (name, text)`` finds an included file; raises FileNotFoundError.
         functions: arithmetic functions of the project, with their least and greatest numbers of arguments; it is
             asked for every name with a dot that is met.
+        actions: internal actions by name; contexts refuse those that act or wait.
 
     Raises:
         AslError: with all errors of all files.
     """
-    program, diagnostics = read_program(SourceFile(name, text), read, functions)
+    program, diagnostics = read_program(SourceFile(name, text), read, functions, actions)
     _refuse_errors(diagnostics)
     return program, diagnostics
 
 
 def read_program(
-    file: SourceFile, read: Read | None = None, functions: Mapping[str, tuple[int, int | None]] | None = None
+    file: SourceFile,
+    read: Read | None = None,
+    functions: Mapping[str, tuple[int, int | None]] | None = None,
+    actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
     """What can be read of the program in *file*, and all errors and warnings; as `load_program`."""
     diagnostics: list[Diagnostic] = []
-    names = Names(count(1), count(1), count(1), known={} if functions is None else functions)
+    # An empty mapping may be one that fills while names are met.
+    known = {} if functions is None else functions
+    names = Names(count(1), count(1), count(1), known=known, actions={} if actions is None else actions)
     section = DirectiveProcessor(read, names, diagnostics).read_file(file)
     check_labels(section.plans, diagnostics)
     return section.program(), _ordered(diagnostics)
@@ -60,6 +68,7 @@ def include_program(
     path: str,
     read: Callable[[str], tuple[str, str]],
     functions: Mapping[str, int],
+    actions: Mapping[str, Declaration],
     namespace: str | None = None,
 ) -> nodes.Program:
     """A program file that is included at run time, in *namespace* (None: the default one).
@@ -68,6 +77,7 @@ def include_program(
         path: as the program writes it.
         read: ``read(path) -> (name, text)`` finds it; raises FileNotFoundError.
         functions: registered arithmetic functions with their numbers of arguments.
+        actions: internal actions by name; contexts refuse those that act or wait.
 
     Raises:
         FileNotFoundError: the file is not there.
@@ -75,7 +85,7 @@ def include_program(
     """
     name, text = read(path)
     diagnostics: list[Diagnostic] = []
-    processor = DirectiveProcessor(lambda inner, _: read(inner), _names_with(functions), diagnostics)
+    processor = DirectiveProcessor(lambda inner, _: read(inner), _names_with(functions, actions), diagnostics)
     section = processor.read_file(SourceFile(name, text), Namespaces(namespace))
     check_labels(section.plans, diagnostics)
     _settled(diagnostics)
@@ -143,7 +153,10 @@ def parse_plan(text: str, name: str = "<string>", functions: Mapping[str, int] |
 
 
 def parse_plans(
-    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
+    text: str,
+    name: str = "<string>",
+    functions: Mapping[str, int] | None = None,
+    actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Plan, ...]:
     """The plans in *text*, each with its final '.' (the last one may lack it).
 
@@ -151,7 +164,7 @@ def parse_plans(
         AslError: with all errors, also when the text holds beliefs or goals.
     """
     diagnostics: list[Diagnostic] = []
-    processor = DirectiveProcessor(None, _names_with(functions), diagnostics)
+    processor = DirectiveProcessor(None, _names_with(functions, actions), diagnostics)
     section = processor.read_file(SourceFile(name, text), last_dot_optional=True)
     for clause in (*section.beliefs, *section.goals):
         diagnostics.append(
@@ -205,9 +218,11 @@ def _parse(
     return result
 
 
-def _names_with(functions: Mapping[str, int] | None) -> Names:
+def _names_with(
+    functions: Mapping[str, int] | None, actions: Mapping[str, Declaration] | None = None
+) -> Names:
     known = functions.known if isinstance(functions, FunctionNames) else {}
-    return replace(_run_time_names, functions=dict(functions or {}), known=known)
+    return replace(_run_time_names, functions=dict(functions or {}), known=known, actions=actions or {})
 
 
 def _settled(diagnostics: list[Diagnostic]) -> None:

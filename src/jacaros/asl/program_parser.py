@@ -4,8 +4,9 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
-from jacaros.asl.acting import NOT_IN_CONDITIONS
+from jacaros.asl.control_actions import CONTROL
 from jacaros.asl.cursor import CLOSERS, Names, SyntaxPanic
+from jacaros.asl.declaration import UNDECLARED
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
 from jacaros.asl.namespaces import Namespaces
@@ -281,10 +282,17 @@ def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
             stack += [term.left, term.right]
         elif isinstance(term, nodes.Not):
             stack.append(term.operand)
-        elif isinstance(term, nodes.InternalAction) and term.name in NOT_IN_CONDITIONS:
+        elif isinstance(term, nodes.InternalAction) and _acts(term.name, parser.names):
             parser.report(
                 "action-in-context",
                 f"'{term.name}' acts and cannot stand in a context",
                 term.span,
                 "do it in the body",
             )
+
+
+def _acts(name: str, names: Names) -> bool:
+    """Whether an internal action of the language acts or waits; projects are only warned of their own in contexts."""
+    if name in CONTROL:
+        return True
+    return name.startswith(".") and names.actions.get(name, UNDECLARED).body_only

@@ -154,7 +154,7 @@ class Agent(Circumstance):
             ActionError: a label is that of another plan.
         """
         program = include_program(
-            path, self.architecture.read_program, functions.known_names(self), namespace
+            path, self.architecture.read_program, functions.known_names(self), self.actions, namespace
         )
         self.register_functions(program.functions)
         plan_changes.include_plans(self, program.plans)

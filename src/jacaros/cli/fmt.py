@@ -11,6 +11,7 @@ import click
 
 from jacaros.asl.errors import AslError
 from jacaros.asl.formatting import format_program
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.files import existing, no_programs
 from jacaros.errors import InternalError, UsageError
 from jacaros.mas.checking import files_below
@@ -42,7 +43,7 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
     for path in programs:
         try:
             before = sys.stdin.read() if path == _STANDARD_INPUT else text_of(path)
-            after = format_program("<stdin>" if path == _STANDARD_INPUT else str(path), before)
+            after = format_program("<stdin>" if path == _STANDARD_INPUT else str(path), before, STANDARD)
         except AslError as wrong:
             click.echo(wrong, err=True)
             code = 1

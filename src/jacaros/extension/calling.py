@@ -44,8 +44,8 @@ def action_of(name: str, declared: Declared) -> InternalAction:
         callee.begin if suspends else callee.answers if backtracks else callee.call,
         backtracks=backtracks,
         suspends=suspends,
-        minimum=callee.minimum,
-        maximum=callee.maximum,
+        body_only=suspends,
+        arity=(callee.minimum, callee.maximum),
         result_hint=callee.result_hint,
     )
 

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses as clauses_of
+from jacaros.asl.declaration import UNDECLARED
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.spelling import close_matches
 from jacaros.asl.walk import walk
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.body.actions import keys
 from jacaros.clock import VirtualClock
 from jacaros.env.environment import Environment
@@ -30,9 +32,6 @@ _USES: Final = frozenset({"use_artifact", "create_artifact"})
 """Goals with the same arguments, of the library of plans for artifacts."""
 _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWorkspaces", "mountWorkspace"})
 """Actions that bring artifacts of other systems in."""
-
-_OPEN_ACTIONS: Final = frozenset({".create_agent", ".clone", ".include", ".add_plan", ".load_agent"})
-"""Internal actions that bring programs in which are not those of the project file."""
 
 _FAKES: Final = frozenset({"fake_action", "fake_message", "fake_service", "fake_subscriber"})
 """Goals by which a test plays the environment."""
@@ -122,7 +121,7 @@ def artifact_types(program: nodes.Program) -> list[str]:
 def _is_open(program: nodes.Program) -> bool:
     """Whether a program brings in other ones at run time, or lets a test answer its actions."""
     for node in walk(*clauses_of(program), *program.goals):
-        if isinstance(node, nodes.InternalAction) and node.name in _OPEN_ACTIONS:
+        if isinstance(node, nodes.InternalAction) and STANDARD.get(node.name, UNDECLARED).brings_in:
             return True
         if isinstance(node, nodes.Literal) and node.functor in _FAKES:
             return True

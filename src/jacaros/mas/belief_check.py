@@ -17,6 +17,7 @@ from jacaros.asl.checks.formulas import parts_of
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.formatter import format_term
 from jacaros.asl.spelling import Slips
+from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.text_files import file_bytes
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def check_beliefs(
             make counts.  Asked when it matters.
         folders: of the project; their files are looked through when it matters.
     """
-    found = [beliefs_of(program) for program in programs]
+    found = [beliefs_of(program, STANDARD) for program in programs]
     if any(each.is_open for each in found):
         return []
     folders = tuple(folders)

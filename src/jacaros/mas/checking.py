@@ -357,7 +357,7 @@ def _check_program(
     except AslError as error:
         findings.diagnostics += error.diagnostics
         return None
-    program, diagnostics = read_program(sources[0], include, code.functions)
+    program, diagnostics = read_program(sources[0], include, code.functions, code.actions)
     diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
     known = KnownActions(code.actions, code.hint, code.is_unseen)

@@ -129,7 +129,9 @@ class Programs:
     def _parse(self, path: Path, written: str) -> tuple[nodes.Program, list[Diagnostic]]:
         """The program in a text; the project's modules that it names are imported, too."""
         try:
-            program, warnings = load_program(str(path), written, self.include, self._code.functions)
+            program, warnings = load_program(
+                str(path), written, self.include, self._code.functions, self._code.actions
+            )
         except AslError as wrong:
             raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
         errors = self._code.take_errors()

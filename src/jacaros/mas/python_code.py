@@ -37,7 +37,7 @@ class PythonCode:
         self.restricted = restricted
         self.actions: dict[str, InternalAction] = dict(STANDARD)
         if restricted:
-            self.actions.update({name: _refused(STANDARD[name], at) for name, at in _OF_FILES.items()})
+            self.actions.update(_refused(self.actions))
         self.functions: Mapping[str, Limits] = _Functions(self)
         self._additions: Additions | None = None
         self._read: dict[str, ModuleUnreadable | None] = {}
@@ -64,7 +64,7 @@ class PythonCode:
         if not any(known.startswith(PACKAGE) for known in self.actions):
             found = actions(self.modules)
             if self.restricted:
-                found |= {name: _refused(found[name]) for name in _OF_OBJECTS}
+                found |= _refused(found)
             self.actions.update(found)
 
     def _read_module(self, module: str) -> None:
@@ -115,19 +115,18 @@ class PythonCode:
         agent.evaluators = self.evaluators
 
 
-_OF_FILES = {".include": 0, ".list_files": 0, ".save_agent": 0, ".create_agent": 2}
-"""Internal actions on files, and with how many arguments they are."""
+def _refused(actions: Mapping[str, InternalAction]) -> dict[str, InternalAction]:
+    """The internal actions that a restricted run refuses, each in a form that fails."""
+    return {
+        name: _failing(action, action.restricted)
+        for name, action in actions.items()
+        if action.restricted is not None
+    }
 
 
-_OF_OBJECTS = ("cartago.new_obj", "cartago.invoke_obj", "cartago.new_array")
-"""Internal actions that make Python objects, and call them."""
-
-
-def _refused(action: InternalAction, arguments: int = 0) -> InternalAction:
-    """An internal action that fails when it has so many arguments or more."""
-
+def _failing(action: InternalAction, fewest: int) -> InternalAction:
     def refuse(ctx: Context, *given: Term) -> Any:
-        if len(given) >= arguments:
+        if len(given) >= fewest:
             raise ActionError(f"{action.name} is forbidden: this run is restricted (--restrict)")
         return action.function(ctx, *given)
 

@@ -6,7 +6,7 @@ is an opaque reference.  Whatever goes wrong fails the step with ``error(interna
 
 import builtins
 import importlib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 from jacaros.bdi.actions.internal_action import ActionError, InternalAction, Registry
@@ -29,17 +29,14 @@ PACKAGE = "cartago."
 def actions(modules: ProjectModules) -> Registry:
     """The internal actions for a project, whose classes are found beside it."""
     classes = _Classes(modules)
-    table: dict[str, tuple[Callable[..., bool], int, int]] = {
-        "new_obj": (classes.new_object, 3, 3),
-        "invoke_obj": (classes.invoke, 2, 3),
-        "new_array": (_new_array, 3, 3),
-        "array_to_list": (_array_to_list, 2, 2),
-        "current_wsps": (_current_workspaces, 1, 1),
-    }
-    return {
-        PACKAGE + name: InternalAction(PACKAGE + name, function, minimum=least, maximum=most)
-        for name, (function, least, most) in table.items()
-    }
+    declared = (
+        InternalAction(f"{PACKAGE}new_obj", classes.new_object, arity=3, restricted=0),
+        InternalAction(f"{PACKAGE}invoke_obj", classes.invoke, arity=(2, 3), restricted=0),
+        InternalAction(f"{PACKAGE}new_array", _new_array, arity=3, restricted=0),
+        InternalAction(f"{PACKAGE}array_to_list", _array_to_list, arity=2),
+        InternalAction(f"{PACKAGE}current_wsps", _current_workspaces, arity=1),
+    )
+    return {action.name: action for action in declared}
 
 
 class _Classes:

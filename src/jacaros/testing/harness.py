@@ -102,7 +102,7 @@ class AgentHarness(OpenMind):
         code = PythonCode(ProjectModules(file.parent, *folders))
         programs = Programs((file.parent, *folders), lambda told: self.logs.append(f"warning: {told}"), code)
         self._port = HarnessPort(self, seed, programs, file)
-        tree, _ = load_program(str(file), written, programs.include, code.functions)
+        tree, _ = load_program(str(file), written, programs.include, code.functions, code.actions)
         wrong = code.take_errors()
         if wrong:
             raise AslError(wrong)

@@ -1,34 +1,27 @@
 """Warnings about programs that can be run."""
 
-from typing import NamedTuple
-
 import pytest
 from asl_lab import errors, program
 
 from jacaros.asl.checker import check, check_for_run
 from jacaros.asl.checks.actions import KnownActions
+from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.loader import read_program
 from jacaros.asl.source import SourceFile
 from jacaros.asl.spelling import is_slip_of
 from jacaros.asl.suppression import Suppressions, wanted
 
-
-class Signature(NamedTuple):
-    minimum: int = 0
-    maximum: int | None = None
-    suspends: bool = False
-
-
 STANDARD = {
-    ".print": Signature(),
-    ".findall": Signature(3, 3),
-    ".length": Signature(2, 2),
-    ".add_plan": Signature(1, 3),
-    ".puts": Signature(1, 2),
-    ".fail": Signature(suspends=True),
-    ".send": Signature(3, 5, True),
-    ".remove_plan": Signature(1, 2),
+    ".print": Declaration(),
+    ".findall": Declaration(arity=3),
+    ".length": Declaration(arity=2),
+    ".add_plan": Declaration(arity=(1, 3), brings_in=True, changes_plans=True),
+    ".puts": Declaration(arity=(1, 2)),
+    ".fail": Declaration(suspends=True),
+    ".send": Declaration(arity=(3, 5), suspends=True, body_only=True, performative=1),
+    ".broadcast": Declaration(arity=2, suspends=True, body_only=True, performative=0),
+    ".remove_plan": Declaration(arity=(1, 2), changes_plans=True),
 }
 KNOWN = KnownActions(STANDARD, lambda name: f"write {name}" if name.startswith("my.") else None)
 

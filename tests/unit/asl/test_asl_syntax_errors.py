@@ -5,6 +5,7 @@ from textwrap import dedent
 import pytest
 from asl_lab import errors, places
 
+from jacaros.asl.declaration import Declaration
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program
 
@@ -160,7 +161,12 @@ def test_carets_stand_under_the_mistake_also_behind_tabs():
         ('+!g <- X = "a" + "b".', 1, "'+' needs numbers", "strings and lists are joined by .concat"),
         ("+!g <- X = math.flor(1) + 1.", 1, "'math.flor' with 1 arguments is not a function", "did you mean"),
         ("+!g <- .print(a)[b].", 1, "'.print' is an internal action, which cannot have annotations", None),
-        ("+!g : .send(a,tell,b) <- c.", 1, "'.send' acts and cannot stand in a context", "do it in the body"),
+        (
+            "+!g : .foreach(p,{a}) <- c.",
+            1,
+            "'.foreach' acts and cannot stand in a context",
+            "do it in the body",
+        ),
         (".print(a).", 1, "'.print' cannot stand outside a plan", "is it a step of the plan before"),
         ("!!g.", 1, "an initial goal has one '!'", "write !goal."),
         ("p(a).q(b).", 1, "'.q' is read as one word", "put a blank or a line end after the final"),
@@ -183,6 +189,18 @@ def test_common_mistakes(text: str, line: int, message: str, hint: str | None):
     if hint is not None:
         assert first.hint is not None
         assert first.hint.startswith(hint)
+
+
+def test_a_context_refuses_an_internal_action_that_is_declared_to_act():
+    actions = {
+        ".tell": Declaration(body_only=True),
+        ".look": Declaration(),
+        "my.run": Declaration(body_only=True),
+    }
+    with pytest.raises(AslError) as refused:
+        load_program("robot.asl", "+!g : .look & not .tell(a) & my.run <- c.", actions=actions)
+    (wrong,) = refused.value.diagnostics
+    assert wrong.message == "'.tell' acts and cannot stand in a context"
 
 
 def test_one_mistake_gives_one_error():

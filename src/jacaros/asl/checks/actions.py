@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Final, Protocol
+from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import conditions, parts_of
+from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.functions import ARITIES
 from jacaros.asl.spelling import MOST_ASKED, close_matches, is_slip_of
@@ -14,26 +15,6 @@ _PERFORMATIVES: Final = (
     *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
     *("tellHow", "untellHow", "signal"),
 )
-
-
-class Signature(Protocol):
-    """What is to be known of an internal action; ``maximum`` is None for any number of arguments."""
-
-    @property
-    def minimum(self) -> int:
-        """The least number of arguments."""
-
-    @property
-    def maximum(self) -> int | None:
-        """The greatest number of arguments."""
-
-    @property
-    def result_hint(self) -> str:
-        """How its author gives it one argument more, for a result; empty when that is not the mistake."""
-
-    @property
-    def suspends(self) -> bool:
-        """Whether it acts or waits, so that it cannot be asked as a condition."""
 
 
 def _no_hint(_: str) -> str | None:
@@ -45,14 +26,18 @@ class KnownActions:
     """The internal actions that a program may use.
 
     Attributes:
-        signatures: by name; those of the language have a leading dot.
+        declared: by name; those of the language have a leading dot.
         hint: what to do about a name that is not among them, as far as that is known.
         is_unseen: whether a name may be among them when the project's Python code runs.
     """
 
-    signatures: Mapping[str, Signature]
+    declared: Mapping[str, Declaration]
     hint: Callable[[str], str | None] = _no_hint
     is_unseen: Callable[[str], bool] = lambda _: False
+
+    def of(self, call: nodes.InternalAction) -> Declaration:
+        """Return what is known of the action that is called."""
+        return self.declared.get(call.name, UNDECLARED)
 
 
 def unknown_actions(
@@ -66,7 +51,7 @@ def unknown_actions(
         if not isinstance(node, nodes.InternalAction):
             continue
         name = node.name
-        if name in known.signatures or name in functions or name in registered:
+        if name in known.declared or name in functions or name in registered:
             continue
         if name in ARITIES:
             yield _wrong_function(node)
@@ -88,7 +73,7 @@ def unknown_actions(
 
 
 def _meant_action(name: str, known: KnownActions) -> str | None:
-    close = close_matches(name, known.signatures)
+    close = close_matches(name, known.declared)
     return known.hint(name) or (f"did you mean {close[0]}?" if close else None)
 
 
@@ -101,14 +86,12 @@ def wrong_arguments(found: Sequence[nodes.Node], known: KnownActions) -> Iterato
     """Internal actions with too few or too many arguments."""
     for node in found:
         if isinstance(node, nodes.InternalAction):
-            signature = known.signatures.get(node.name)
+            action = known.declared.get(node.name)
             count = len(node.arguments)
-            if signature is not None and not (
-                signature.minimum <= count and (signature.maximum is None or count <= signature.maximum)
-            ):
-                told = _arguments_message(node, signature.minimum, signature.maximum, "the internal action")
-                if signature.maximum is not None and count == signature.maximum + 1 and signature.result_hint:
-                    told = replace(told, hint=f"{told.hint}; {signature.result_hint}")
+            if action is not None and not action.takes(count):
+                told = _arguments_message(node, action.minimum, action.maximum, "the internal action")
+                if action.maximum is not None and count == action.maximum + 1 and action.result_hint:
+                    told = replace(told, hint=f"{told.hint}; {action.result_hint}")
                 yield told
 
 
@@ -137,24 +120,23 @@ def acting_conditions(found: Sequence[nodes.Node], known: KnownActions) -> Itera
     for node in found:
         for formula in conditions(node):
             for part in parts_of(formula):
-                if isinstance(part, nodes.InternalAction):
-                    signature = known.signatures.get(part.name)
-                    if signature is not None and signature.suspends:
-                        yield Diagnostic(
-                            "warning",
-                            f"{part.name} acts or takes time and never holds as a condition",
-                            part.span,
-                            "make it a step of the body",
-                            "acting-condition",
-                        )
+                if isinstance(part, nodes.InternalAction) and known.of(part).suspends:
+                    yield Diagnostic(
+                        "warning",
+                        f"{part.name} acts or takes time and never holds as a condition",
+                        part.span,
+                        "make it a step of the body",
+                        "acting-condition",
+                    )
 
 
-def unknown_performatives(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
     """Performatives that are nearly those of the language; any other word may be one of the program's own."""
-    places = {".send": 1, ".broadcast": 0}
     for node in found:
-        place = places.get(node.name) if isinstance(node, nodes.InternalAction) else None
-        if not isinstance(node, nodes.InternalAction) or place is None or len(node.arguments) <= place:
+        if not isinstance(node, nodes.InternalAction):
+            continue
+        place = known.of(node).performative
+        if place is None or len(node.arguments) <= place:
             continue
         word = node.arguments[place]
         if not isinstance(word, nodes.Literal) or word.arguments or word.functor in _PERFORMATIVES:

@@ -1,22 +1,16 @@
 """What a program asks about beliefs, and what it says that could make them."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses, in_order, parts_of
+from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.spelling import is_slip_of
 from jacaros.asl.walk import walk
 
-_SENDS: Final = frozenset({".send", ".broadcast"})
-_ADDING: Final = frozenset({".include", ".add_plan", ".create_agent", ".clone", ".load_agent"})
-"""Internal actions that bring in plans or agents which do not stand in the program."""
-_QUERIES: Final = {".count": 0, ".findall": 1, ".setof": 1}
-"""Internal actions with a condition among their arguments."""
-_PRINTING: Final = frozenset({".print", ".println", ".printf", ".puts", ".log"})
-"""Internal actions that only show their arguments."""
 _WORD: Final = re.compile(r"\w+")
 _SHORTEST: Final = 5
 """Shorter names are too easily like each other."""
@@ -55,8 +49,8 @@ class Beliefs:
     said: set[str] = field(default_factory=set)
 
 
-def beliefs_of(program: nodes.Program) -> Beliefs:
-    """Look through a program, with all that it includes."""
+def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Beliefs:
+    """Look through a program, with all that it includes; *actions* are the internal actions by name."""
     found = Beliefs()
     heads: set[int] = set()
     for belief in program.beliefs:
@@ -70,12 +64,15 @@ def beliefs_of(program: nodes.Program) -> Beliefs:
     asked: set[int] = set()
     for clause in clauses(program):
         for node, is_asked in in_order(clause):
-            _look_at(node, is_asked, asked, found)
+            if isinstance(node, nodes.InternalAction):
+                _look_at_call(node, actions.get(node.name, UNDECLARED), asked, found)
+            else:
+                _look_at(node, is_asked, asked, found)
     for plan in program.plans:
         _react(plan, found)
     printed: set[int] = set()
     for node in walk(program.beliefs, program.goals, program.plans):
-        if isinstance(node, nodes.InternalAction) and node.name in _PRINTING:
+        if isinstance(node, nodes.InternalAction) and actions.get(node.name, UNDECLARED).prints:
             printed.update(map(id, walk(node.arguments)))
         elif isinstance(node, nodes.Literal) and id(node) not in asked:
             found.mentioned.add(_name(node))
@@ -121,20 +118,23 @@ def _look_at(node: nodes.Node, is_asked: bool, asked: set[int], found: Beliefs) 
         found.is_open = found.is_open or isinstance(node.operand, nodes.Variable)
         if isinstance(node.operand, nodes.Literal) and "+" in node.operator:
             _make(node.operand, found)
-    elif isinstance(node, nodes.InternalAction):
-        if node.name == ".wait":
-            for change in _awaited(node):
-                asked.add(id(change))
-                _ask(change.operand, asked, found)
-                _note_event(change.operator, change.operand, found)
-        found.is_open = found.is_open or node.name in _ADDING
-        if node.name in _SENDS and node.arguments:
-            _make(node.arguments[-1], found)
-        for condition in node.arguments[_QUERIES.get(node.name, len(node.arguments)) :][:1]:
-            for part in parts_of(condition):
-                _ask(part, asked, found)
     elif is_asked:
         _ask(node, asked, found)
+
+
+def _look_at_call(node: nodes.InternalAction, action: Declaration, asked: set[int], found: Beliefs) -> None:
+    if action.awaits:
+        for change in _awaited(node):
+            asked.add(id(change))
+            _ask(change.operand, asked, found)
+            _note_event(change.operator, change.operand, found)
+    found.is_open = found.is_open or action.brings_in
+    if action.performative is not None and node.arguments:
+        _make(node.arguments[-1], found)
+    if action.condition is not None:
+        for condition in node.arguments[action.condition :][:1]:
+            for part in parts_of(condition):
+                _ask(part, asked, found)
 
 
 def _ask(node: nodes.Node, asked: set[int], found: Beliefs) -> None:

@@ -7,14 +7,16 @@ from pathlib import Path
 from typing import Final
 
 from jacaros.asl import nodes
+from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.spelling import MOST_ASKED, close_matches
 
-_ADDING_PLANS: Final = frozenset({".add_plan", ".include"})
 _Signature = tuple[str | nodes.Variable | None, str, int]
 
 
-def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+def goals_without_plan(
+    program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
+) -> Iterator[Diagnostic]:
     """Goals that are posted and that no plan (nor ``-!`` handler) is for.
 
     Programs with plans for any goal (``+!G``) and programs that add plans are left alone; those with tests need no
@@ -34,8 +36,10 @@ def goals_without_plan(program: nodes.Program, found: Sequence[nodes.Node]) -> I
                 handled.add(signature)
         elif isinstance(node, nodes.Achieve) and isinstance(node.goal, nodes.Literal):
             posted.append(node.goal)
-        elif isinstance(node, nodes.InternalAction) and node.name in _ADDING_PLANS:
-            return
+        elif isinstance(node, nodes.InternalAction):
+            action = known.of(node)
+            if action.brings_in and action.changes_plans:
+                return
     if any(map(_is_test, program.plans)):
         everywhere |= _goals_of_tests()
     reported: set[_Signature] = set()

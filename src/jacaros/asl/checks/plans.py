@@ -4,23 +4,25 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from jacaros.asl import nodes
+from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.checks.contradiction import contradiction
 from jacaros.asl.checks.formulas import is_true
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.spelling import is_slip_of
 from jacaros.asl.walk import walk
 
-_REMOVING: Final = frozenset({".remove_plan", ".add_plan", ".include"})
 _LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency")
 
 
-def never_selected(program: nodes.Program, found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+def never_selected(
+    program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
+) -> Iterator[Diagnostic]:
     """Plans behind one that is always taken before them.
 
     Programs that change their plans or choose among them by rules of their own are left alone.
     """
     for node in found:
-        if isinstance(node, nodes.InternalAction) and node.name in _REMOVING:
+        if isinstance(node, nodes.InternalAction) and known.of(node).changes_plans:
             return
         if isinstance(node, nodes.BeliefChange) and isinstance(node.operand, nodes.PlanTerm | nodes.Variable):
             return

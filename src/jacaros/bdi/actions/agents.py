@@ -10,7 +10,7 @@ from jacaros.version import VERSION
 _CLASSES = ("agentClass", "agentArchClass", "beliefBaseClass")
 
 
-@internal_action(".my_name", arity=1)
+@internal_action(".my_name", arity=1, repeatable=True)
 def my_name(ctx: Context, name: Term) -> bool:
     """``.my_name(N)``: *N* is the agent's name, an atom."""
     return ctx.unify(name, atom(ctx.agent.name))
@@ -22,7 +22,7 @@ def all_names(ctx: Context, names: Term) -> bool:
     return ctx.unify(names, make_list([atom(name) for name in ctx.architecture.agent_names()]))
 
 
-@internal_action(".create_agent", arity=(1, 3))
+@internal_action(".create_agent", arity=(1, 3), brings_in=True, restricted=2)
 def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = None) -> bool:
     """``.create_agent(Name[, File[, Options]])`` makes an agent that runs a program (default ``Name.asl``).
 
@@ -55,7 +55,7 @@ def _class_option(option: Term) -> tuple[str, str]:
     return symbol.name, characters(arguments_of(option)[0])
 
 
-@internal_action(".clone", arity=1)
+@internal_action(".clone", arity=1, brings_in=True)
 def clone(ctx: Context, name: Term) -> bool:
     """``.clone(Name)`` makes an agent with the same beliefs, rules, plans, events and intentions.
 
@@ -85,7 +85,7 @@ def kill_agent(ctx: Context, name: Term, deadline: Term = 0.0) -> bool:
     return ctx.architecture.kill_agent(characters(name), max(delay, 0.0))
 
 
-@internal_action(".stopMAS", arity=(0, 2), suspends=True)
+@internal_action(".stopMAS", arity=(0, 2), suspends=True, body_only=True)
 def stop_mas(ctx: Context, delay: Term = 0.0, code: Term = 0.0) -> None:
     """``.stopMAS([Ms[, Code]])`` ends the whole run after some milliseconds, with an exit code (default 0).
 

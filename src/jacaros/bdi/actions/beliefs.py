@@ -10,7 +10,7 @@ from jacaros.bdi.rules.context import Context
 from jacaros.bdi.state.belief_base import parts, without_sources
 from jacaros.bdi.state.literals import own_annotations
 from jacaros.bdi.state.rule import Rule
-from jacaros.terms.order import compare
+from jacaros.terms.order import annotation_set, compare
 from jacaros.terms.plans import RULE
 from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
@@ -106,22 +106,22 @@ def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
     return ctx.unify(target, TRUE if holds else FALSE)
 
 
-@internal_action(".findall", arity=3)
-def findall(ctx: Context, template: Term, formula: Term, target: Term) -> bool:
+@internal_action(".findall", arity=3, condition=1, collects=True, repeatable=True)
+def findall(found: list[Term]) -> Term:
     """``.findall(T, F, L)``: L is the list of T for all answers of F, in order, duplicates kept."""
-    return bool(ctx.agent.collect_formula(".findall", (template, formula, target), ctx.trail))
+    return make_list(found)
 
 
-@internal_action(".setof", arity=3)
-def setof(ctx: Context, template: Term, formula: Term, target: Term) -> bool:
+@internal_action(".setof", arity=3, condition=1, collects=True, repeatable=True)
+def setof(found: list[Term]) -> Term:
     """``.setof(T, F, L)``: like `.findall`, sorted and without duplicates."""
-    return bool(ctx.agent.collect_formula(".setof", (template, formula, target), ctx.trail))
+    return make_list(annotation_set(tuple(found)))
 
 
-@internal_action(".count", arity=2)
-def count(ctx: Context, formula: Term, target: Term) -> bool:
+@internal_action(".count", arity=2, condition=0, collects=True, repeatable=True)
+def count(found: list[Term]) -> Term:
     """``.count(F, N)``: N is the number of answers of F."""
-    return bool(ctx.agent.collect_formula(".count", (formula, target), ctx.trail))
+    return float(len(found))
 
 
 def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:

@@ -10,7 +10,7 @@ from jacaros.terms.text import text
 from jacaros.terms.values import Functor, String, Term, Var, atom, make_list
 
 
-@internal_action(".list_files", arity=(2, 3))
+@internal_action(".list_files", arity=(2, 3), restricted=0)
 def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
     """``.list_files(Folder[, Regex], L)``: *L* is the sorted list of the files in a folder and the folders in it.
 
@@ -34,7 +34,7 @@ def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
     return ctx.unify(rest[-1], make_list([String(name) for name in found]))
 
 
-@internal_action(".save_agent", arity=(1, 2))
+@internal_action(".save_agent", arity=(1, 2), restricted=0)
 def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
     """``.save_agent(File[, Goals])`` writes the beliefs, rules and plans of the agent as a program.
 
@@ -53,7 +53,7 @@ def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
         raise ActionError(f".save_agent: {path} cannot be written: {fault.strerror or fault}") from fault
 
 
-@internal_action(".include", arity=(1, 2))
+@internal_action(".include", arity=(1, 2), brings_in=True, changes_plans=True, restricted=0)
 def include(ctx: Context, file: Term, namespace: Term = None) -> bool:
     """``.include(File[, Namespace])`` takes the beliefs, goals and plans of a program file in.
 

@@ -63,7 +63,7 @@ def _matches_goal(ctx: Context, goal: Term, literal: Term, identity: Term, numbe
     return number is not None and ctx.unify_all((goal, literal), (identity, float(number)))
 
 
-@internal_action(".desire", arity=(1, 2), backtracks=True)
+@internal_action(".desire", arity=(1, 2), backtracks=True, repeatable=True)
 def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
     """``.desire(G [,Id])``: each goal the agent has, begun or not."""
     for literal, number in list(goals.desires(ctx.agent)):
@@ -71,7 +71,7 @@ def desire(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
             yield
 
 
-@internal_action(".intend", arity=(1, 2), backtracks=True)
+@internal_action(".intend", arity=(1, 2), backtracks=True, repeatable=True)
 def intend(ctx: Context, goal: Term, identity: Term = None) -> Iterator[None]:
     """``.intend(G [,Id])``: each goal on the stack of an intention that is not suspended."""
     for literal, number in list(goals.intended(ctx.agent)):
@@ -242,7 +242,7 @@ def drop_all_desires(ctx: Context) -> None:
     goals.drop_all_intentions(ctx.agent)
 
 
-@internal_action(".suspend", arity=(0, 1), suspends=True)
+@internal_action(".suspend", arity=(0, 1), suspends=True, body_only=True)
 def suspend(ctx: Context, goal: Term = None) -> Any:
     """``.suspend [(G)]``: the intentions with the goal (or the own one) stop until `.resume`."""
     current = ctx.intention

@@ -1,11 +1,12 @@
 """How a Python function becomes an internal action.
 
-    @internal_action(".member", backtracks=True)
+    @internal_action(".member", arity=2, backtracks=True)
     def member(ctx, item, collection):
         for candidate in list_items(collection):
             if ctx.unify(item, candidate):
                 yield
 
+The decorator holds all that is known of an action: parser, checker, compiler and mind ask it there and know no names.
 The arguments arrive with all bindings applied (`jacaros.terms.substitution.resolve`); unbound ones are `Var`.  A plain
 function succeeds unless it returns False.  A generator (``backtracks``) yields once for every answer; bindings
 made before a yield are taken back before the next one is looked for.  A function that suspends the intention
@@ -13,12 +14,14 @@ made before a yield are taken back before the next one is looked for.  A functio
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
+from jacaros.asl.declaration import Declaration
 from jacaros.terms.values import Term
 
 Function = Callable[..., Any]
+Declared = TypeVar("Declared", bound=Function)
 Written = tuple[Term | None, ...]
 """The arguments of a call as far as they are written out in a program; None for those that are known at run time."""
 
@@ -43,53 +46,53 @@ class Crashed(Exception):
     """Mixed into the failures of a project's own Python code that nobody meant: people are told of them too."""
 
 
+def _undefined(*_: object) -> None:
+    raise NotImplementedError("the declaration of an internal action has no function yet")
+
+
 @dataclass(frozen=True, slots=True)
-class InternalAction:
-    """An internal action as the registry keeps it.
+class InternalAction(Declaration):
+    """An internal action with all that is known of it, as the registry keeps it.
+
+    As a decorator it registers a function as the standard internal action that it declares.
 
     Attributes:
         name: with the leading dot of the standard ones.
         function: called with a `Context` and the arguments.
         backtracks: the function is a generator of answers.
-        suspends: it may suspend the intention, or acts on it: not for contexts and rules.
-        minimum, maximum: number of arguments allowed; maximum None for any number.
         direct: asked for a quicker function for a call with the arguments that a program writes out, or None: it is called
             with the agent itself and all arguments, bindings not applied, and never suspends.
         values: gives what the first argument is in each answer, called with the others while that one is a variable without
             value; None where this takes the function itself.  It must not look at beliefs.
-        result_hint: how its author gives it one argument more, for the result; empty when it has all or is not in Python.
+        collects: the function is called with a list instead: what the template is in each answer of the `condition`.
+            It returns the value of the last argument.  The template is the argument before the condition, if there is one.
+        by_name: it reaches variables by their names, so all variables of the plan are kept for it.
+        repeatable: it only looks, so it may be called once more to explain a failure; it neither acts nor throws dice.
+        restricted: fewest arguments with which a restricted run refuses it; None for never.
     """
 
     name: str
-    function: Function
+    function: Function = _undefined
     backtracks: bool = False
-    suspends: bool = False
-    minimum: int = 0
-    maximum: int | None = None
     direct: Callable[[Written], Function | None] | None = None
     values: Callable[..., Iterable[Term]] | None = None
-    result_hint: str = ""
+    collects: bool = False
+    by_name: bool = False
+    repeatable: bool = False
+    restricted: int | None = None
 
+    def __call__(self, function: Declared) -> Declared:
+        """Register *function* under the name."""
+        STANDARD[self.name] = replace(self, function=function)
+        return function
+
+    def is_collecting(self, count: int) -> bool:
+        """Return whether a call with that number of arguments collects answers."""
+        return self.collects and self.takes(count)
+
+
+internal_action = InternalAction
 
 Registry = dict[str, InternalAction]
 STANDARD: Registry = {}
 """The internal actions of the language; an agent may have more."""
-
-
-def internal_action(
-    name: str,
-    *,
-    arity: int | tuple[int, int | None] = (0, None),
-    backtracks: bool = False,
-    suspends: bool = False,
-    direct: Callable[[Written], Function | None] | None = None,
-    values: Callable[..., Iterable[Term]] | None = None,
-) -> Callable[[Function], Function]:
-    """Register a standard internal action; *arity* is a number of arguments, or least and most (None: any)."""
-    least, most = (arity, arity) if isinstance(arity, int) else arity
-
-    def register(function: Function) -> Function:
-        STANDARD[name] = InternalAction(name, function, backtracks, suspends, least, most, direct, values)
-        return function
-
-    return register

@@ -7,7 +7,7 @@ from jacaros.terms.order import compare, ordered_by_python, sorted_set
 from jacaros.terms.values import Term, Var, make_list
 
 
-@internal_action(".union", arity=3)
+@internal_action(".union", arity=3, repeatable=True)
 def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     """``.union(A, B, R)``: *R* is the sorted list of what is in the list *A* or in *B*, each once.
 
@@ -18,7 +18,7 @@ def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     return ctx.unify(result, make_list(sorted_set([*second, *first])))
 
 
-@internal_action(".intersection", arity=3)
+@internal_action(".intersection", arity=3, repeatable=True)
 def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     """``.intersection(A, B, R)``: *R* is the sorted list of what is in both lists, each once.
 
@@ -29,7 +29,7 @@ def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     return ctx.unify(result, make_list(_parted(second, first)[0]))
 
 
-@internal_action(".difference", arity=3)
+@internal_action(".difference", arity=3, repeatable=True)
 def difference(ctx: Context, left: Term, right: Term, result: Term) -> bool:
     """``.difference(A, B, R)``: *R* is the sorted list of what is in the list *A* but not in *B*, each once.
 

@@ -28,7 +28,7 @@ from jacaros.terms.values import (
 )
 
 
-@internal_action(".length", arity=2)
+@internal_action(".length", arity=2, repeatable=True)
 def length(ctx: Context, collection: Term, result: Term) -> bool:
     """``.length(C, N)``: *N* is the number of elements of a list, set, map or queue, or of characters.
 
@@ -38,7 +38,7 @@ def length(ctx: Context, collection: Term, result: Term) -> bool:
     return size is not None and ctx.unify(result, float(size))
 
 
-@internal_action(".empty", arity=1)
+@internal_action(".empty", arity=1, repeatable=True)
 def empty(_ctx: Context, collection: Term) -> bool:
     """``.empty(C)``: the list, string, set, map or queue has no elements.  Fails for any other term."""
     return collection is NIL or _size(collection) == 0
@@ -50,7 +50,7 @@ def _size(collection: Term) -> int | None:
     return list_length(collection) if is_list(collection) else None
 
 
-@internal_action(".member", arity=2, backtracks=True)
+@internal_action(".member", arity=2, backtracks=True, repeatable=True)
 def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
     """``.member(X, C)``: *X* is an element of a list, set or queue; one answer for each that unifies.
 
@@ -84,7 +84,7 @@ def _holds(collection: SetValue | QueueValue, item: Term) -> bool:
     return any(equal(item, other) for other in collection)
 
 
-@internal_action(".nth", arity=3, backtracks=True)
+@internal_action(".nth", arity=3, backtracks=True, repeatable=True)
 def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[None]:
     """``.nth(I, L, X)``: the element at position *I* (from 0) of a list, or character of a string, is *X*.
 
@@ -114,7 +114,7 @@ def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[Non
         yield
 
 
-@internal_action(".concat", arity=(2, None))
+@internal_action(".concat", arity=(2, None), repeatable=True)
 def concat(ctx: Context, *arguments: Term) -> bool:
     """``.concat(A, ..., R)``: *R* is the list or string made of the others joined.
 
@@ -156,7 +156,7 @@ def _unquoted(term: Term) -> str:
     return characters(term)
 
 
-@internal_action(".delete", arity=(3, 4))
+@internal_action(".delete", arity=(3, 4), repeatable=True)
 def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
     """``.delete(What, C, R)``: *R* is the list or string *C* without something.
 
@@ -225,7 +225,7 @@ def _delete_range(ctx: Context, start: int, end: int, collection: Term, result: 
     return ctx.unify(result, make_list(items))
 
 
-@internal_action(".reverse", arity=2)
+@internal_action(".reverse", arity=2, repeatable=True)
 def reverse(ctx: Context, collection: Term, result: Term) -> bool:
     """``.reverse(C, R)``: *R* is the list or string *C* turned around; an open end of a list stays the end.
 
@@ -246,7 +246,7 @@ def reverse(ctx: Context, collection: Term, result: Term) -> bool:
     return ctx.unify(String(characters(collection)[::-1]), result)
 
 
-@internal_action(".sort", arity=2)
+@internal_action(".sort", arity=2, repeatable=True)
 def sort(ctx: Context, collection: Term, result: Term) -> bool:
     """``.sort(L, R)``: *R* is the list *L* in the standard order of terms, with its duplicates.
 
@@ -272,7 +272,7 @@ def shuffle(ctx: Context, collection: Term, result: Term) -> bool:
     return ctx.unify(result, make_list(items))
 
 
-@internal_action(".max", arity=(2, 3))
+@internal_action(".max", arity=(2, 3), repeatable=True)
 def greatest(ctx: Context, *arguments: Term) -> bool:
     """``.max(L, X)``: *X* is the greatest element of a list in the standard order.  Fails for an empty list.
 
@@ -285,7 +285,7 @@ def greatest(ctx: Context, *arguments: Term) -> bool:
     return _extreme(ctx, arguments, 1, ".max")
 
 
-@internal_action(".min", arity=(2, 3))
+@internal_action(".min", arity=(2, 3), repeatable=True)
 def least(ctx: Context, *arguments: Term) -> bool:
     """``.min(L, X)``: *X* is the smallest element of a list in the standard order.  Fails for an empty list.
 
@@ -324,7 +324,7 @@ def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
     return map(float, range(start, end + (1 if by > 0 else -1), by))
 
 
-@internal_action(".range", arity=(3, 4), backtracks=True, values=_numbers)
+@internal_action(".range", arity=(3, 4), backtracks=True, values=_numbers, repeatable=True)
 def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0) -> Iterator[None]:
     """``.range(X, First, Last[, Step])``: *X* is each number from *First* to *Last* inclusive, in turn.
 

@@ -187,7 +187,7 @@ class _Question:
             self.timer.cancel()
 
 
-@internal_action(".send", arity=(3, 5), suspends=True, direct=_direct)
+@internal_action(".send", arity=(3, 5), suspends=True, direct=_direct, body_only=True, performative=1)
 def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Any:
     """``.send(To, Performative, Content [, Answer [, Timeout]])``: a message; with an answer, a synchronous question.
 
@@ -229,7 +229,7 @@ def _ask(
     return waiting
 
 
-@internal_action(".broadcast", arity=2, suspends=True)
+@internal_action(".broadcast", arity=2, suspends=True, body_only=True, performative=0)
 def broadcast(ctx: Context, performative: Term, content: Term) -> None:
     """``.broadcast(Performative, Content)``: to all other agents."""
     act = _name(performative, "the performative")

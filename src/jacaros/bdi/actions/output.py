@@ -16,7 +16,7 @@ _LEVELS = {"severe": "error", "warning": "warning", "fine": "debug", "finer": "d
 _EXPRESSION = re.compile(r"#\{([^{}]+)\}")
 
 
-@internal_action(".print")
+@internal_action(".print", prints=True)
 def print_(ctx: Context, *arguments: Term) -> None:
     """``.print(A, ...)`` shows its arguments joined without separators.
 
@@ -26,13 +26,13 @@ def print_(ctx: Context, *arguments: Term) -> None:
     ctx.architecture.print("".join(map(display, arguments)))
 
 
-@internal_action(".println")
+@internal_action(".println", prints=True)
 def println(ctx: Context, *arguments: Term) -> None:
     """``.println(A, ...)`` does the same as ``.print``."""
     ctx.architecture.print("".join(map(display, arguments)))
 
 
-@internal_action(".printf", arity=(1, None))
+@internal_action(".printf", arity=(1, None), prints=True)
 def printf(ctx: Context, template: Term, *arguments: Term) -> None:
     """``.printf(Format, A, ...)`` shows a text made by a format of Java, such as ``%8.2f``.
 
@@ -58,7 +58,7 @@ def _value(term: Term) -> float | str | bool:
     return term if isinstance(term, float) else display(term)
 
 
-@internal_action(".puts", arity=(1, 2))
+@internal_action(".puts", arity=(1, 2), prints=True, by_name=True)
 def puts(ctx: Context, template: Term, result: Term = None) -> bool:
     """``.puts(Text[, Result])`` shows a text in which every ``#{expression}`` is replaced by its value.
 
@@ -87,7 +87,7 @@ def _fill(ctx: Context, template: str) -> str:
     return _EXPRESSION.sub(value, template)
 
 
-@internal_action(".log", arity=(1, None))
+@internal_action(".log", arity=(1, None), prints=True)
 def log(ctx: Context, level: Term, *arguments: Term) -> None:
     """``.log(Level, A, ...)`` tells people something outside of the program's output.
 
@@ -115,7 +115,7 @@ def verbose(ctx: Context, level: Term) -> None:
     ctx.agent.options = replace(ctx.agent.options, verbose=wanted)
 
 
-@internal_action(".print_unifier", arity=0)
+@internal_action(".print_unifier", arity=0, by_name=True)
 def print_unifier(ctx: Context) -> None:
     """``.print_unifier`` shows the variables of the plan that have a value, one a line, and ``done``."""
     if ctx.intention is not None:

@@ -22,7 +22,7 @@ def _term(ctx: Context, plan: Plan) -> Term:
     return plan_terms.plan_term(ctx.agent, plan)
 
 
-@internal_action(".add_plan", arity=(1, 3))
+@internal_action(".add_plan", arity=(1, 3), brings_in=True, changes_plans=True)
 def add_plan(ctx: Context, plan: Term, source: Term = None, where: Term = None) -> None:
     """``.add_plan(P [,Source [,begin]])``: P is a plan term, a string, or a list of them."""
     first = where is not None and bare(where) is atom("begin")
@@ -34,7 +34,7 @@ def add_plan(ctx: Context, plan: Term, source: Term = None, where: Term = None) 
         raise ActionError(f"the text is no plan: {fault}") from fault
 
 
-@internal_action(".remove_plan", arity=(1, 2))
+@internal_action(".remove_plan", arity=(1, 2), changes_plans=True)
 def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> bool:
     """``.remove_plan(Label)``: also a list of labels, or a plan term; fails when there is none."""
     if is_list(wanted):

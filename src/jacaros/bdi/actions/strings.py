@@ -11,7 +11,7 @@ from jacaros.terms.text import text
 from jacaros.terms.values import String, Term, Var, atom, make_list
 
 
-@internal_action(".substring", arity=(2, 4), backtracks=True)
+@internal_action(".substring", arity=(2, 4), backtracks=True, repeatable=True)
 def substring(
     ctx: Context, part: Term, whole_term: Term, start: Term = None, end: Term = None
 ) -> Iterator[None]:
@@ -60,7 +60,7 @@ def _cut(source: str, start: Term, end: Term) -> String:
     return String(source[first:last])
 
 
-@internal_action(".replace", arity=4)
+@internal_action(".replace", arity=4, repeatable=True)
 def replace(ctx: Context, source: Term, pattern: Term, by: Term, result: Term) -> bool:
     """``.replace(S, Regex, By, R)``: *R* is *S* with every match of a regular expression (of Java) replaced.
 
@@ -79,19 +79,19 @@ def replace(ctx: Context, source: Term, pattern: Term, by: Term, result: Term) -
     return ctx.unify(String(replaced), result)
 
 
-@internal_action(".upper_case", arity=2)
+@internal_action(".upper_case", arity=2, repeatable=True)
 def upper_case(ctx: Context, source: Term, result: Term) -> bool:
     """``.upper_case(S, R)``: *R* is the string *S* in capitals; other terms are taken as written."""
     return ctx.unify(result, String(characters(source).upper()))
 
 
-@internal_action(".lower_case", arity=2)
+@internal_action(".lower_case", arity=2, repeatable=True)
 def lower_case(ctx: Context, source: Term, result: Term) -> bool:
     """``.lower_case(S, R)``: *R* is the string *S* in small letters; other terms are taken as written."""
     return ctx.unify(result, String(characters(source).lower()))
 
 
-@internal_action(".term2string", arity=2)
+@internal_action(".term2string", arity=2, repeatable=True, by_name=True)
 def term2string(ctx: Context, term: Term, written: Term) -> bool:
     """``.term2string(T, S)``: *S* is the text of the term *T*, strings in quotes.
 

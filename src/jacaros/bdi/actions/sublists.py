@@ -11,7 +11,7 @@ from jacaros.terms.values import NIL, String, Term, Var, is_list, make_list, par
 Bounds = tuple[int, int]
 
 
-@internal_action(".sublist", arity=2, backtracks=True)
+@internal_action(".sublist", arity=2, backtracks=True, repeatable=True)
 def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     """``.sublist(S, L)``: *S* is a contiguous part of the list *L*; one answer for each that unifies.
 
@@ -26,7 +26,7 @@ def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     return _answers(ctx, part, items, bounds)
 
 
-@internal_action(".prefix", arity=2, backtracks=True)
+@internal_action(".prefix", arity=2, backtracks=True, repeatable=True)
 def prefix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     """``.prefix(P, L)``: the list (or string) *L* begins with *P*; longer answers come first.
 
@@ -37,7 +37,7 @@ def prefix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     return _answers(ctx, part, items, ((0, end) for end in range(len(items), 0, -1)))
 
 
-@internal_action(".suffix", arity=2, backtracks=True)
+@internal_action(".suffix", arity=2, backtracks=True, repeatable=True)
 def suffix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     """``.suffix(S, L)``: the list (or string) *L* ends with *S*; longer answers come first.
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from datetime import datetime
 
 
-@internal_action(".time", arity=(3, 4))
+@internal_action(".time", arity=(3, 4), repeatable=True)
 def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Term) -> bool:
     """``.time(H, M, S[, Ms])``: the time of day in UTC, as whole numbers.  Fails when it is another."""
     now = _now(ctx)
@@ -22,7 +22,7 @@ def time(ctx: Context, hour: Term, minute: Term, second: Term, *millisecond: Ter
     return ctx.unify(make_list(asked), make_list([float(part) for part in parts[: len(asked)]]))
 
 
-@internal_action(".date", arity=3)
+@internal_action(".date", arity=3, repeatable=True)
 def date(ctx: Context, year: Term, month: Term, day: Term) -> bool:
     """``.date(Y, M, D)``: the date in UTC, month and day counted from 1.  Fails when it is another."""
     now = _now(ctx)

@@ -23,44 +23,44 @@ from jacaros.terms.values import (
 from jacaros.terms.values import NIL as EMPTY
 
 
-@internal_action(".string", arity=1)
+@internal_action(".string", arity=1, repeatable=True)
 def is_string(_ctx: Context, term: Term) -> bool:
     """``.string(X)``: *X* is a string."""
     return term.__class__ is String
 
 
-@internal_action(".list", arity=1)
+@internal_action(".list", arity=1, repeatable=True)
 def is_a_list(_ctx: Context, term: Term) -> bool:
     """``.list(X)``: *X* is a list, be it empty."""
     return is_list(term)
 
 
-@internal_action(".number", arity=1)
+@internal_action(".number", arity=1, repeatable=True)
 def is_number(_ctx: Context, term: Term) -> bool:
     """``.number(X)``: *X* is a number, or an expression that waits for its variables."""
     return term.__class__ is float or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
 
 
-@internal_action(".atom", arity=1)
+@internal_action(".atom", arity=1, repeatable=True)
 def is_atom(_ctx: Context, term: Term) -> bool:
     """``.atom(X)``: *X* is an atom, neither negated nor annotated."""
     return isinstance(term, Functor) and term.kind == PLAIN and not term.negated and term is not EMPTY
 
 
-@internal_action(".literal", arity=1)
+@internal_action(".literal", arity=1, repeatable=True)
 def is_literal(_ctx: Context, term: Term) -> bool:
     """``.literal(X)``: *X* is an atom or structure, also a negated or annotated one, but no list."""
     symbol = functor_of(term)
     return symbol is not None and symbol.kind not in (ARITHMETIC, FUNCTION)
 
 
-@internal_action(".structure", arity=1)
+@internal_action(".structure", arity=1, repeatable=True)
 def is_structure(ctx: Context, term: Term) -> bool:
     """``.structure(X)``: *X* is a list, or a literal other than a plain atom (so does Jason run)."""
     return is_list(term) or (is_literal(ctx, term) and not is_atom(ctx, term))
 
 
-@internal_action(".ground", arity=1)
+@internal_action(".ground", arity=1, repeatable=True)
 def has_no_variables(_ctx: Context, term: Term) -> bool:
     """``.ground(X)``: there is no unbound variable in *X*."""
     return is_ground(term)
@@ -90,7 +90,7 @@ _TESTS: dict[str, Callable[[Context, Term], bool]] = {
 }
 
 
-@internal_action(".type", arity=2, backtracks=True)
+@internal_action(".type", arity=2, backtracks=True, repeatable=True)
 def type_(ctx: Context, term: Term, kind: Term) -> Iterator[None]:
     """``.type(X, T)``: *T* is a type of *X*; with *T* unbound, each of them in turn.
 

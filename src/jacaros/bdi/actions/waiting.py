@@ -80,7 +80,7 @@ class _Wait:
             agent.condition_waits.remove(self.entry)
 
 
-@internal_action(".wait", arity=(1, 3), suspends=True)
+@internal_action(".wait", arity=(1, 3), suspends=True, body_only=True, awaits=True)
 def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> Any:
     """``.wait(Ms)``, ``.wait({+e} [,Ms [,Elapsed]])``, ``.wait(Condition [,Ms [,Elapsed]])``.
 
@@ -116,7 +116,7 @@ def _wait_for_condition(ctx: Context, formula: Term, limit: Term, elapsed: Term)
         return False
 
     agent = ctx.agent
-    waited.entry = ConditionWait(holds, waited, asked_by(formula, agent.beliefs))
+    waited.entry = ConditionWait(holds, waited, asked_by(formula, agent.beliefs, agent.actions))
     agent.condition_waits.add(waited.entry)
     agent.called = True
     if limit is not None:

@@ -19,6 +19,7 @@ from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.explaining.step_text import unbracketed
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.formulas import solve_formula
+from jacaros.bdi.rules.functions import OF_AGENT
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import Table
 from jacaros.bdi.state.circumstance import Circumstance
@@ -40,62 +41,6 @@ FACTS_PER_STEP = 16
 """Beliefs that are compared with a question in one step."""
 LONGEST_CONJUNCT, LONGEST_VALUE = 100, 40
 """Characters of a conjunct and of the value of a variable that are shown."""
-
-REPEATABLE = frozenset(
-    {
-        ".atom",
-        ".concat",
-        ".count",
-        ".date",
-        ".delete",
-        ".desire",
-        ".difference",
-        ".empty",
-        ".findall",
-        ".ground",
-        ".intend",
-        ".intersection",
-        ".length",
-        ".list",
-        ".literal",
-        ".lower_case",
-        ".map.get",
-        ".map.key",
-        ".map.value",
-        ".max",
-        ".member",
-        ".min",
-        ".my_name",
-        ".nth",
-        ".number",
-        ".prefix",
-        ".queue.head",
-        ".queue.to_list",
-        ".range",
-        ".replace",
-        ".reverse",
-        ".set.to_list",
-        ".setof",
-        ".sort",
-        ".string",
-        ".structure",
-        ".sublist",
-        ".substring",
-        ".suffix",
-        ".term2string",
-        ".time",
-        ".type",
-        ".union",
-        ".upper_case",
-    }
-)
-"""Internal actions that may be called once more: they look, and neither do anything nor throw dice."""
-
-
-_PRINTING = frozenset({".print", ".println", ".printf", ".puts", ".log"})
-"""Internal actions that hold always; nothing is printed again."""
-_ABOUT_THE_AGENT = frozenset({".count", "system.time"})
-"""Functions that need the agent and have no effects."""
 
 
 class NotRepeatable(Exception):
@@ -266,7 +211,8 @@ class _LookOnly:
     def __init__(self, agent: Circumstance, budget: SearchBudget) -> None:
         self.beliefs = _Beliefs(self, agent, budget)
         self.actions = _Actions(agent)
-        self.context = _Silent(agent)
+        self.context = _Silent(agent, self)
+        self.architecture = agent.architecture
         self.rule_depth = agent.rule_depth
         self._agent = agent
         self._repeatable: dict[int, nodes.Node] = {}
@@ -286,7 +232,8 @@ class _LookOnly:
             return
         for node in walk(formula):
             if isinstance(node, nodes.FunctionCall):
-                if node.name not in functions and node.name not in _ABOUT_THE_AGENT:
+                own = OF_AGENT.get(node.name)
+                if node.name not in functions and not (own is not None and own.repeatable):
                     raise NotRepeatable
             elif isinstance(node, nodes.Literal) and isinstance(node.namespace, nodes.Variable):
                 raise NotRepeatable
@@ -294,12 +241,9 @@ class _LookOnly:
 
     def call_own(self, term: Term) -> Term:
         """The value of a function that needs the agent, as `jacaros.bdi.rules.functions.call_own` has it."""
-        if term[0].name != ".count":
-            return self._agent.call_own(term)
-        trail = Trail()
-        number = sum(1 for _ in self.answers(resolve(term[1]), trail))
-        undo(trail, 0)
-        return float(number)
+        own = OF_AGENT.get(term[0].name)
+        view: Any = self
+        return self._agent.call_own(term) if own is None else own.evaluate(view, term)
 
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Say nothing: the warning has been logged."""
@@ -307,6 +251,17 @@ class _LookOnly:
 
 class _Silent(Context):
     """A context for internal actions whose errors have been reported already."""
+
+    __slots__ = ("_view",)
+
+    def __init__(self, agent: Circumstance, view: _LookOnly) -> None:
+        super().__init__(agent)
+        self._view, self.trail = view, Trail()
+
+    def answers(self, formula: Term) -> Iterator[None]:
+        """The answers of a formula, in the same view of the agent."""
+        for _ in self._view.answers(formula, self.trail):
+            yield
 
     def report(self, action: str, fault: object) -> None:
         """Say nothing."""
@@ -324,11 +279,12 @@ class _Actions:
         Raises:
             NotRepeatable: it may have an effect.
         """
-        if name in _PRINTING:
-            return InternalAction(name, lambda *_: True)
-        if name not in REPEATABLE and name in self._actions:
+        action = self._actions.get(name)
+        if action is not None and action.prints:
+            return InternalAction(name, lambda *_: True)  # it always holds; nothing is printed again
+        if action is not None and not action.repeatable:
             raise NotRepeatable
-        return self._actions.get(name)
+        return action
 
 
 class _Beliefs:

@@ -6,12 +6,12 @@ Formulae of the program itself are compiled (`jacaros.bdi.fast.generated.conditi
 from collections.abc import Generator
 from typing import Any
 
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.calls import (
     answers_of,
     cannot_wait,
     holds,
     refuse_quietly,
-    takes_time,
     unknown,
 )
 from jacaros.bdi.rules.deconstruction import deconstruct
@@ -20,7 +20,7 @@ from jacaros.bdi.state.belief_base import literal
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.rule import OpenFact
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.order import annotation_set, at_most, less
+from jacaros.terms.order import at_most, less
 from jacaros.terms.substitution import equal, rename, resolve
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import (
@@ -36,8 +36,6 @@ from jacaros.terms.values import (
     Term,
     Var,
     atom,
-    functor,
-    make_list,
 )
 
 Search = Generator[Any, Any, None]
@@ -148,28 +146,23 @@ def _holds(name: str, left: Term, right: Term, trail: Trail) -> bool:
     return less(right, left) if name == ">" else at_most(right, left)
 
 
-_COLLECTING = {".findall": 3, ".setof": 3, ".count": 2}
-
-
 def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], trail: Trail) -> Search:
     mark = len(trail)
-    if _COLLECTING.get(symbol.name) == len(arguments):
-        if collect_formula(agent, symbol.name, arguments, trail):
-            yield ()
-        undo(trail, mark)
-        return
     context = agent.context
     action = agent.actions.get(symbol.name)
     if action is None:
         unknown(context, symbol.name)
         return
-    if not action.minimum <= len(arguments) or (
-        action.maximum is not None and len(arguments) > action.maximum
-    ):
+    if not action.takes(len(arguments)):
         refuse_quietly(context, action, len(arguments))
         return
-    if takes_time(action):
+    if action.body_only:
         cannot_wait(context, action)
+        return
+    if action.collects:
+        if collect_formula(agent, action, arguments, trail):
+            yield ()
+        undo(trail, mark)
         return
     values = [resolve(a) for a in arguments]
     if action.backtracks:
@@ -180,21 +173,17 @@ def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], t
     undo(trail, mark)
 
 
-def collect_formula(agent: Circumstance, name: str, arguments: tuple[Term, ...], trail: Trail) -> bool:
-    """``.findall``, ``.setof`` and ``.count`` over a formula known only now."""
-    template, formula, target = arguments if len(arguments) == 3 else (0.0, *arguments)
+def collect_formula(
+    agent: Circumstance, action: InternalAction, arguments: tuple[Term, ...], trail: Trail
+) -> bool:
+    """Collect the answers of a formula that is known only now, as ``.findall`` does."""
+    template, formula, target = (0.0, *arguments)[-3:]
     mark = len(trail)
     found = []
     for _ in run(solve_formula(agent, formula, trail), agent.rule_depth):
         found.append(rename(template))
     undo(trail, mark)
-    if name == ".count":
-        return unify(target, float(len(found)), trail)
-    items = annotation_set(tuple(found)) if name == ".setof" else found
-    return unify(target, make_list(items), trail)
-
-
-COUNT = functor(".count", 1)
+    return unify(target, action.function(found), trail)
 
 
 def solve_in_namespaces(

@@ -1,8 +1,8 @@
 """Arithmetic functions that need an agent: those about its beliefs, its clock, its dice, and those of its program."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from jacaros.asl.functions import FunctionNames
 from jacaros.bdi.rules.formulas import solve_formula
@@ -46,12 +46,9 @@ def call_function(agent: Circumstance, term: Term) -> Term:
 def call_own(agent: Circumstance, term: Term) -> Term:
     """The value of a function that needs the agent; None when it is none of these or has no value yet."""
     name = term[0].name
-    if name == ".count":
-        return float(sum(1 for _ in agent.context.answers(resolve(term[1]))))
-    if name == "system.time":
-        return float(round(agent.architecture.now() * 1000))
-    if name == "math.random":
-        return _random(agent, term)
+    standard = OF_AGENT.get(name)
+    if standard is not None:
+        return standard.evaluate(agent, term)
     evaluator = agent.evaluators.get(name)
     if evaluator is not None:
         return evaluator(*term[1:])
@@ -59,9 +56,36 @@ def call_own(agent: Circumstance, term: Term) -> Term:
     return None if function is None else _call_registered(agent, function, term)
 
 
+class FunctionOfAgent(NamedTuple):
+    """A function of the language that needs the agent.
+
+    Attributes:
+        evaluate: gives the value of a call; None while it has none.
+        repeatable: it may be called once more to explain a failure.
+    """
+
+    evaluate: Callable[[Circumstance, Term], Term]
+    repeatable: bool = True
+
+
+def _count(agent: Circumstance, term: Term) -> Term:
+    return float(sum(1 for _ in agent.context.answers(resolve(term[1]))))
+
+
+def _time(agent: Circumstance, _: Term) -> Term:
+    return float(round(agent.architecture.now() * 1000))
+
+
 def _random(agent: Circumstance, term: Term) -> Term:
     limit = settle(term[1]) if len(term) > 1 else 1.0
     return agent.architecture.random.random() * limit if limit.__class__ is float else None
+
+
+OF_AGENT: Final = {
+    ".count": FunctionOfAgent(_count),
+    "system.time": FunctionOfAgent(_time),
+    "math.random": FunctionOfAgent(_random, repeatable=False),
+}
 
 
 def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Term) -> Term:

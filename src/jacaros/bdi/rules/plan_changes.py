@@ -67,9 +67,9 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
     term = resolve(term)
     if term.__class__ is String:
         written = str(term).strip()
-        for node in parse_plans(
-            written if written.endswith(".") else written + ".", functions=known_names(agent)
-        ):
+        if not written.endswith("."):
+            written += "."
+        for node in parse_plans(written, functions=known_names(agent), actions=agent.actions):
             _add_node(agent, node, source, first)
         return
     if is_list(term):

@@ -1,8 +1,9 @@
 """Waits for conditions (``.wait(p(X) & not q)``), found by the beliefs that they ask for."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.state.belief_base import BeliefBase, Row
 from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import (
@@ -23,8 +24,6 @@ from jacaros.terms.values import (
 
 Asked = tuple[Functor, tuple[int, ...], Row]
 """The beliefs that a literal asks for: their functor, the places of the arguments that are known, and these."""
-
-_COLLECTING = {".findall": 3, ".setof": 3, ".count": 2}
 
 
 class ConditionWait:
@@ -117,7 +116,7 @@ class ConditionWaits(dict[int, ConditionWait]):
         return [due[number] for number in sorted(due)]
 
 
-def asked_by(formula: Term, beliefs: BeliefBase) -> list[Asked] | None:
+def asked_by(formula: Term, beliefs: BeliefBase, actions: Mapping[str, InternalAction]) -> list[Asked] | None:
     """The beliefs that a condition depends on; None when it may depend on anything.
 
     Facts alone are followed: rules, internal actions and functions may look at whatever they like.
@@ -131,7 +130,10 @@ def asked_by(formula: Term, beliefs: BeliefBase) -> list[Asked] | None:
             return None
         if symbol.kind == LOGIC:
             todo.extend(arguments)
-        elif symbol.kind == ACTION and _COLLECTING.get(symbol.name) == len(arguments):
+        elif symbol.kind == ACTION:
+            action = actions.get(symbol.name)
+            if action is None or not action.is_collecting(len(arguments)):
+                return None
             *template, inner, result = arguments
             todo.append(inner)
             if not _is_passive((*template, result)):

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import cast
 
-from jacaros.bdi.fast.generated.function import ActionInfo
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.unit import Select, compile_select
 from jacaros.bdi.state.intention import Frame
 from jacaros.bdi.state.plan import Plan
@@ -40,7 +40,7 @@ class PlanLibrary:
             program.report = report
             for _, fault in look_at_large_plans(program.plans, program.actions):
                 report(f"{fault}; it is left out")
-        self.actions: Mapping[str, ActionInfo] = program.actions
+        self.actions: Mapping[str, InternalAction] = program.actions
         self.report = report
         self.plans: list[Plan] = program.plans
         self.own: list[Plan] = []

@@ -6,7 +6,7 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.walk import walk
-from jacaros.bdi.fast.generated.function import ActionInfo
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.unit import Select, compile_select
 from jacaros.bdi.state.plan import Plan, label_of, with_subplans
 from jacaros.bdi.state.triggers import Trigger
@@ -32,7 +32,7 @@ class ProgramPlans:
         report: told what cannot be compiled; the first agent of the program puts itself here.
     """
 
-    def __init__(self, plan_nodes: Sequence[nodes.Plan], actions: Mapping[str, ActionInfo]) -> None:
+    def __init__(self, plan_nodes: Sequence[nodes.Plan], actions: Mapping[str, InternalAction]) -> None:
         self.actions = actions
         self.nodes = plan_nodes  # held, so that nothing else can be at its place in memory
         self.plans = [
@@ -106,7 +106,7 @@ def concerns(plan: Plan, trigger: Trigger) -> bool:
 def made(
     trigger: Trigger,
     plans: Sequence[Plan],
-    actions: Mapping[str, ActionInfo],
+    actions: Mapping[str, InternalAction],
     sources: dict[Trigger, str],
     report: Callable[[str], None],
 ) -> Select | None:
@@ -124,7 +124,7 @@ def made(
     return select
 
 
-def _told(plan: Plan, actions: Mapping[str, ActionInfo], report: Callable[[str], None]) -> bool:
+def _told(plan: Plan, actions: Mapping[str, InternalAction], report: Callable[[str], None]) -> bool:
     """Report a plan that has to be left out, once."""
     if plan.fault is None and too_large(plan, actions):
         report(f"{plan.fault}; it is left out")
@@ -138,7 +138,7 @@ _LARGE = 100
 
 
 def look_at_large_plans(
-    plans: Sequence[Plan], actions: Mapping[str, ActionInfo]
+    plans: Sequence[Plan], actions: Mapping[str, InternalAction]
 ) -> Iterator[tuple[Plan, str]]:
     """The plans that are too large to be compiled, each with what is to be said of it."""
     for plan in plans:
@@ -146,7 +146,7 @@ def look_at_large_plans(
             yield plan, plan.fault or ""
 
 
-def too_large(plan: Plan, actions: Mapping[str, ActionInfo]) -> bool:
+def too_large(plan: Plan, actions: Mapping[str, InternalAction]) -> bool:
     """Whether a plan cannot be compiled.  A context that cannot be is searched, which takes longer."""
     for searched in (False, True):
         plan.searched = plan.searched or searched

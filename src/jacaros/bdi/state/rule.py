@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import fresh_names, lower, lower_value
-from jacaros.bdi.fast.generated.function import ActionInfo
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.predicates import given_positions
 from jacaros.bdi.fast.generated.unit import compile_rule_function, compile_search_function
 from jacaros.bdi.rules.searching import run, solve
@@ -31,7 +31,7 @@ class Rule:
     __slots__ = ("_function", "actions", "node", "shared", "written")
 
     def __init__(
-        self, node: nodes.Rule, actions: Mapping[str, ActionInfo], shared: dict[Any, Any] | None = None
+        self, node: nodes.Rule, actions: Mapping[str, InternalAction], shared: dict[Any, Any] | None = None
     ) -> None:
         self.written = node
         self.node = _with_source(node)
@@ -109,7 +109,7 @@ class OpenFact:
         literal: Term,
         annotations: tuple[Term, ...],
         written: nodes.Literal | None = None,
-        actions: Mapping[str, ActionInfo] | None = None,
+        actions: Mapping[str, InternalAction] | None = None,
         shared: dict[Any, Any] | None = None,
     ) -> None:
         self.literal, self.annotations = literal, annotations

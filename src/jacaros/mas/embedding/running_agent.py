@@ -145,7 +145,7 @@ class _Awaited:
         self._formula = formula
         self._term, self._names = question(formula)
         self._found: dict[str, Any] = {}
-        self._entry = ConditionWait(self._holds, self, asked_by(self._term, mind.beliefs))
+        self._entry = ConditionWait(self._holds, self, asked_by(self._term, mind.beliefs, mind.actions))
         mind.condition_waits.add(self._entry)
         mind.called = True
         mind.architecture.ready()

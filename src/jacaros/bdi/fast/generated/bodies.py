@@ -20,7 +20,6 @@ from jacaros.bdi.fast.generated.building import (
 )
 from jacaros.bdi.fast.generated.control_statements import STATEMENTS
 from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder, Unit
-from jacaros.bdi.fast.generated.internal_actions import accepts
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.values import functor
 
@@ -125,9 +124,9 @@ def _constraint(compiler: BodyCompiler, step: nodes.Constraint, name: str, next_
 def _is_called(compiler: BodyCompiler, node: nodes.InternalAction) -> bool:
     """Whether an internal action is simply called, without a search."""
     action = compiler.unit.actions.get(node.name)
-    if node.name in (".findall", ".setof", ".count"):
-        return False
-    return action is None or (not action.backtracks and accepts(action, len(node.arguments)))
+    return action is None or not (
+        action.backtracks or action.collects or not action.takes(len(node.arguments))
+    )
 
 
 def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_name: str) -> None:

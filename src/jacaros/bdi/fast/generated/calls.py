@@ -113,14 +113,6 @@ def unknown(context: Any, name: str) -> bool:
     return False
 
 
-_ACTS = frozenset({".send", ".broadcast", ".wait", ".stopMAS", ".suspend"})
-
-
-def takes_time(action: Any) -> bool:
-    """Whether an internal action cannot be a condition, because it waits, or acts on others."""
-    return bool(action.suspends) and (action.name[0] != "." or action.name in _ACTS)
-
-
 def cannot_wait(context: Any, action: Any) -> bool:
     """A condition calls an internal action that may suspend the intention: it does not hold."""
     context.report(action.name, "it takes time, or acts on the intention, and cannot be a condition")

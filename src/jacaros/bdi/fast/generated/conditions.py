@@ -18,6 +18,7 @@ from typing import Any, cast
 from jacaros.asl import nodes
 from jacaros.asl.constant import Constant
 from jacaros.asl.variables import names_in, operands
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.answers import loop_binding, loop_over_answers, undoing
 from jacaros.bdi.fast.generated.building import as_name, build, is_number, is_static, tuple_of
 from jacaros.bdi.fast.generated.function import TOP, FunctionBuilder
@@ -179,9 +180,9 @@ def _yield(fn: FunctionBuilder, results: list[str]) -> None:
 
 
 def _internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
-    special = _SPECIAL.get((node.name, len(node.arguments)))
-    if special is not None:
-        special(fn, node, then)
+    action = fn.unit.actions.get(node.name)
+    if action is not None and action.is_collecting(len(node.arguments)):
+        _collecting(fn, action, node, then)
     else:
         internal_action(fn, node, then)
 
@@ -220,38 +221,18 @@ def _result(fn: FunctionBuilder, target: nodes.Node, value: str, then: Then) -> 
     fn.line(f"if len(t) > {mark}: undo(t, {mark})")
 
 
-def _findall(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
-    template, formula, target = node.arguments
+def _collecting(fn: FunctionBuilder, action: InternalAction, node: nodes.InternalAction, then: Then) -> None:
+    template, formula, target = (nodes.Number(0.0), *node.arguments)[-3:]
     if _is_question(fn, formula):
-        _result(fn, target, f"make_list({collect(fn, template, formula)})", then)
+        _result(fn, target, f"{fn.constant(action.function)}({collect(fn, template, formula)})", then)
     else:
-        _dynamic_collect(fn, node, then)
-
-
-def _setof(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
-    template, formula, target = node.arguments
-    if _is_question(fn, formula):
-        _result(fn, target, f"make_list(annotation_set(tuple({collect(fn, template, formula)})))", then)
-    else:
-        _dynamic_collect(fn, node, then)
-
-
-def _count(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
-    formula, target = node.arguments
-    if _is_question(fn, formula):
-        _result(fn, target, f"float(len({collect(fn, nodes.Number(0.0), formula)}))", then)
-    else:
-        _dynamic_collect(fn, node, then)
+        arguments = tuple_of([build(fn, a) for a in node.arguments])
+        undoing(fn, f"agent.collect_formula({fn.constant(action)}, {arguments}, t)", names_in(node), then)
 
 
 def _is_question(fn: FunctionBuilder, formula: nodes.Node) -> bool:
     """Whether a formula can be compiled here; a variable without annotations stands for one known later."""
     return not isinstance(formula, (nodes.Variable, Constant))
-
-
-def _dynamic_collect(fn: FunctionBuilder, node: nodes.InternalAction, then: Then) -> None:
-    arguments = tuple_of([build(fn, a) for a in node.arguments])
-    undoing(fn, f"agent.collect_formula({node.name!r}, {arguments}, t)", names_in(node), then)
 
 
 # --- which code is written for which formula ---------------------------------------------------------------
@@ -262,12 +243,6 @@ def searched(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
     formula = build(fn, node)
     loop_binding(fn, f"agent.solve_formula({formula}, t)", names_in(node), then)
 
-
-_SPECIAL: dict[tuple[str, int], Callable[..., None]] = {
-    (".findall", 3): _findall,
-    (".setof", 3): _setof,
-    (".count", 2): _count,
-}
 
 _WRITERS: dict[type, Callable[..., None]] = {
     nodes.And: _and,

@@ -1,51 +1,16 @@
 """One generated Python function: its text and what is known about variables at the point being written."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import Protocol
 
 from jacaros.asl import nodes
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.writer import Writer
 from jacaros.terms.values import Term
 
 FIRST_SLOT = 5
 """A frame is ``[next step, goal, annotations, serial, plan, variable, ...]``."""
-
-
-class ActionInfo(Protocol):
-    """What the compiler needs to know of an internal action."""
-
-    @property
-    def name(self) -> str:
-        """With the leading dot of the standard ones."""
-
-    @property
-    def function(self) -> Callable[..., Any]:
-        """Called with a context and the arguments."""
-
-    @property
-    def backtracks(self) -> bool:
-        """Whether it is a generator of answers."""
-
-    @property
-    def suspends(self) -> bool:
-        """Whether it may suspend the intention."""
-
-    @property
-    def minimum(self) -> int:
-        """Least number of arguments."""
-
-    @property
-    def maximum(self) -> int | None:
-        """Greatest number of arguments, None for any."""
-
-    @property
-    def direct(self) -> Callable[[tuple[Term | None, ...]], Callable[..., Any] | None] | None:
-        """Asked for a quicker function for a call with the arguments that are written out; None when there is none."""
-
-    @property
-    def values(self) -> Callable[..., Iterable[Term]] | None:
-        """Gives what the first argument is in each answer while it has no value, called with the others; or None."""
 
 
 TOP = "NESTED"
@@ -56,7 +21,7 @@ class Unit(Protocol):
     """The unit that the function becomes part of: constants, and further functions."""
 
     @property
-    def actions(self) -> Mapping[str, ActionInfo]:
+    def actions(self) -> Mapping[str, InternalAction]:
         """The internal actions known at compile time."""
 
     def constant(self, value: Term) -> str:

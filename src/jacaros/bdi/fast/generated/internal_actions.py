@@ -2,10 +2,10 @@
 
 from jacaros.asl import nodes
 from jacaros.asl.variables import names_in
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.answers import undoing
 from jacaros.bdi.fast.generated.building import build, resolved
-from jacaros.bdi.fast.generated.calls import takes_time
-from jacaros.bdi.fast.generated.function import ActionInfo, FunctionBuilder
+from jacaros.bdi.fast.generated.function import FunctionBuilder
 from jacaros.bdi.fast.generated.matching import Then, match, settle_fresh
 
 
@@ -25,9 +25,9 @@ def internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then)
             match(fn, variable, value, then)
         return
     arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
-    if fn.quiet and takes_time(action):
+    if fn.quiet and action.body_only:
         undoing(fn, f"cannot_wait(agent.context, {constant})", names, then)
-    elif not accepts(action, len(node.arguments)):
+    elif not action.takes(len(node.arguments)):
         refusal = "refuse_quietly(agent.context, " if fn.quiet else "refuse("
         undoing(fn, f"{refusal}{constant}, {len(node.arguments)})", names, then)
     elif not action.backtracks:
@@ -43,9 +43,9 @@ def internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then)
         fn.line(f"if len(t) > {mark}: undo(t, {mark})")
 
 
-def _gives_values(fn: FunctionBuilder, action: ActionInfo, node: nodes.InternalAction) -> bool:
+def _gives_values(fn: FunctionBuilder, action: InternalAction, node: nodes.InternalAction) -> bool:
     """Whether a call is answered by values for its first argument, a variable that is met here for the first time."""
-    if action.values is None or not fn.quiet or not accepts(action, len(node.arguments)):
+    if action.values is None or not fn.quiet or not action.takes(len(node.arguments)):
         return False
     variable, *others = node.arguments
     return (
@@ -56,9 +56,3 @@ def _gives_values(fn: FunctionBuilder, action: ActionInfo, node: nodes.InternalA
         and (variable.unnamed or variable.name not in fn.values)
         and all(name in fn.values and name != variable.name for other in others for name in names_in(other))
     )
-
-
-def accepts(action: object, count: int) -> bool:
-    """Whether an internal action takes so many arguments."""
-    maximum = getattr(action, "maximum", None)
-    return bool(getattr(action, "minimum", 0) <= count and (maximum is None or count <= maximum))

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.asl import nodes
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.building import functor_of_literal
-from jacaros.bdi.fast.generated.function import ActionInfo
 from jacaros.bdi.fast.generated.predicates import compile_search
 from jacaros.bdi.fast.generated.unit import CodeUnit, write_select
 from jacaros.bdi.fast.generated.writer import Writer
@@ -37,7 +37,7 @@ class Piece:
 
 
 def pieces(
-    plans: Sequence[Plan], rules: Iterable[nodes.Rule], actions: Mapping[str, ActionInfo]
+    plans: Sequence[Plan], rules: Iterable[nodes.Rule], actions: Mapping[str, InternalAction]
 ) -> Iterator[Piece]:
     """All code that is made of a program, in the order of the program; of a predicate, what answers when nothing is given.
 
@@ -55,7 +55,7 @@ def pieces(
 
 
 def _of_plans(
-    plans: Sequence[Plan], actions: Mapping[str, ActionInfo], outer: Plan | None
+    plans: Sequence[Plan], actions: Mapping[str, InternalAction], outer: Plan | None
 ) -> Iterator[Piece]:
     for kind in dict.fromkeys(_kind_of(plan) for plan in plans):
         own = [plan for plan in plans if _kind_of(plan) is kind or _is_candidate_too(plan, kind)]

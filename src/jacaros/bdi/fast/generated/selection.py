@@ -21,8 +21,6 @@ from jacaros.terms.values import CONS, NIL, String, Term, atom
 ALL_UNIFIERS = atom("all_unifs")
 _WORTH_A_TABLE = 6
 """So many different first arguments make a look-up cheaper than trying one plan after the other."""
-_BY_NAME = (".term2string", ".puts", ".print_unifier")
-"""Internal actions that reach variables by their names: all variables of the plan are kept for them."""
 
 
 class SelectCompiler:
@@ -192,7 +190,8 @@ class SelectCompiler:
         if plan.scope is not None:
             # Sub-plans of this one may ask for what it took over from its outer plan.
             counts = {name: count + (name in plan.scope.slots) for name, count in counts.items()}
-        if any(a.name in _BY_NAME for a in nodes_in(nodes.InternalAction, node.body)):
+        called = (self.unit.actions.get(a.name) for a in nodes_in(nodes.InternalAction, node.body))
+        if any(action is not None and action.by_name for action in called):
             counts = {name: count + 1 for name, count in counts.items()}
         frame = Frame(counts)
         for variable in fn.values:

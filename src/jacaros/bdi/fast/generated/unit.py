@@ -6,9 +6,9 @@ from types import FunctionType
 from typing import Any, NamedTuple
 
 from jacaros.asl import nodes
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated import runtime
 from jacaros.bdi.fast.generated.body_compiler import BodyCompiler
-from jacaros.bdi.fast.generated.function import ActionInfo
 from jacaros.bdi.fast.generated.predicates import compile_search
 from jacaros.bdi.fast.generated.selection import SelectCompiler, compile_goal_condition, compile_rule
 from jacaros.bdi.fast.generated.writer import Writer, compile_all
@@ -28,7 +28,7 @@ class CodeUnit:
         writers: what has been written and not been executed yet.
     """
 
-    def __init__(self, filename: str, actions: Mapping[str, ActionInfo]) -> None:
+    def __init__(self, filename: str, actions: Mapping[str, InternalAction]) -> None:
         self.filename = filename
         self.actions = actions
         self.globals: dict[str, Any] = dict(runtime.NAMES)
@@ -80,7 +80,7 @@ def _prefix(value: Term) -> str:
 def compile_select(
     trigger: Trigger,
     plans: Sequence[Plan],
-    actions: Mapping[str, ActionInfo],
+    actions: Mapping[str, InternalAction],
     outer: Plan | None = None,
     every: bool = False,
 ) -> tuple[Select, str]:
@@ -118,7 +118,7 @@ class WrittenSelect(NamedTuple):
 def write_select(
     trigger: Trigger,
     plans: Sequence[Plan],
-    actions: Mapping[str, ActionInfo],
+    actions: Mapping[str, InternalAction],
     outer: Plan | None = None,
     every: bool = False,
 ) -> WrittenSelect:
@@ -148,7 +148,7 @@ def compile_search_function(
     pattern: int,
     before: Sequence[nodes.Rule],
     after: Sequence[nodes.Rule],
-    actions: Mapping[str, ActionInfo],
+    actions: Mapping[str, InternalAction],
     trampoline: bool,
 ) -> FunctionType:
     """The generator function of a predicate for one pattern of use, see `jacaros.bdi.fast.generated.predicates`."""
@@ -159,7 +159,7 @@ def compile_search_function(
     return function
 
 
-def compile_rule_function(rule: nodes.Rule, actions: Mapping[str, ActionInfo]) -> FunctionType:
+def compile_rule_function(rule: nodes.Rule, actions: Mapping[str, InternalAction]) -> FunctionType:
     """The generator function of a rule."""
     unit = CodeUnit(_file_of(rule), actions)
     name = compile_rule(unit, rule)
