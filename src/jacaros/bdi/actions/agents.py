@@ -1,10 +1,29 @@
-"""Internal actions on the system of agents."""
+"""Internal actions on the system of agents and its services, and chance.
+
+A service is a string; other terms are taken as written.  Types of services are accepted and ignored, as in Jason's local
+infrastructure.  The directory is an agent, ``df``, that exists from its first use on.  Random numbers come from the agent's
+own generator: a run with a seed repeats itself.
+"""
+
+from collections.abc import Iterator
+from itertools import count
 
 from jacaros.bdi.actions.arguments import characters, elements, number, string, whole
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.text import text
-from jacaros.terms.values import FALSE, TRUE, String, Term, Var, arguments_of, atom, functor_of, make_list
+from jacaros.terms.values import (
+    FALSE,
+    TRUE,
+    String,
+    Term,
+    Var,
+    arguments_of,
+    atom,
+    functor_of,
+    is_list,
+    make_list,
+)
 from jacaros.version import VERSION
 
 _CLASSES = ("agentClass", "agentArchClass", "beliefBaseClass")
@@ -105,3 +124,68 @@ def stop_mas(ctx: Context, delay: Term = 0.0, code: Term = 0.0) -> None:
 def version(ctx: Context, result: Term) -> bool:
     """``.version(V)``: *V* is the version of JaCaROS, a string."""
     return ctx.unify(result, String(VERSION))
+
+
+@internal_action(".df_register", arity=(1, 2))
+def register_service(ctx: Context, service: Term, kind: Term = None) -> None:
+    """``.df_register(Service[, Type])``: the agent provides a service; subscribers are told."""
+    del kind
+    ctx.architecture.register_service(characters(service))
+
+
+@internal_action(".df_deregister", arity=(1, 2))
+def deregister_service(ctx: Context, service: Term, kind: Term = None) -> None:
+    """``.df_deregister(Service[, Type])``: the agent does not provide it any more."""
+    del kind
+    ctx.architecture.deregister_service(characters(service))
+
+
+@internal_action(".df_search", arity=(2, 3))
+def find_providers(ctx: Context, service: Term, *rest: Term) -> bool:
+    """``.df_search(Service[, Type], L)``: *L* is the list of the agents that provide a service, atoms."""
+    found = ctx.architecture.providers(characters(service))
+    return ctx.unify(rest[-1], make_list([atom(name) for name in found]))
+
+
+@internal_action(".df_subscribe", arity=(1, 2))
+def subscribe_to_service(ctx: Context, service: Term, kind: Term = None) -> None:
+    """``.df_subscribe(Service[, Type])``: the agent is told ``provider(Agent, Service)`` of each provider by ``df``,
+    those of now and those to come."""
+    del kind
+    ctx.architecture.subscribe_to_service(characters(service))
+
+
+@internal_action(".random", arity=(1, 3), backtracks=True)
+def random(ctx: Context, first: Term, second: Term = 1.0, third: Term = 1.0) -> Iterator[None]:
+    """``.random(X[, N])``: *X* is a number from 0 (inclusive) to 1 (exclusive).
+
+    ``.random(L, X[, N])``: *X* is an element of the list *L*; fails for an empty list.
+
+    There are *N* answers (default 1), endlessly many when it is 0.
+
+    Raises:
+        WrongArguments: *X* has a value already, *N* is no number.
+    """
+    generator = ctx.architecture.random
+    choices = elements(first, "the list of .random") if is_list(first) else None
+    result, amount = (first, second) if choices is None else (second, third)
+    if result.__class__ is not Var:
+        raise WrongArguments(
+            f".random needs a list or a variable, and a variable behind a list, not {text(result)}"
+        )
+    draws = 1 if amount == 1.0 else whole(amount, "the number of answers of .random")
+    if choices == []:
+        return
+    for _ in range(draws) if draws else count():
+        if ctx.unify(result, generator.random() if choices is None else generator.choice(choices)):
+            yield
+
+
+@internal_action(".set_random_seed", arity=1)
+def set_random_seed(ctx: Context, seed: Term) -> None:
+    """``.set_random_seed(N)``: the agent's draws from now on follow from *N*.
+
+    Raises:
+        WrongArguments: *N* is no number.
+    """
+    ctx.architecture.random.seed(whole(seed, "the argument of .set_random_seed"))

@@ -1,21 +1,32 @@
-"""Internal actions about beliefs, rules and conditions."""
+"""Internal actions about beliefs, their namespaces, rules and conditions."""
 
 from collections.abc import Iterator
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import fresh_names, lower
+from jacaros.bdi.actions.arguments import elements
 from jacaros.bdi.actions.internal_action import WrongArguments, internal_action
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.state.belief_base import parts, without_sources
 from jacaros.bdi.state.literals import own_annotations
 from jacaros.bdi.state.rule import Rule
-from jacaros.terms.order import annotation_set, compare
+from jacaros.terms.order import annotation_set, compare, ordered_by_python
 from jacaros.terms.plans import RULE
 from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo, unify, unify_annotations
-from jacaros.terms.values import FALSE, TRUE, Term, Var, bare, functor_of, make_list
+from jacaros.terms.values import (
+    FALSE,
+    TRUE,
+    Functor,
+    Term,
+    Var,
+    atom,
+    bare,
+    functor_of,
+    make_list,
+)
 
 
 @internal_action(".abolish", arity=1)
@@ -124,6 +135,49 @@ def count(found: list[Term]) -> Term:
     return float(len(found))
 
 
+@internal_action(".max", arity=(2, 3), repeatable=True)
+def greatest(ctx: Context, *arguments: Term) -> bool:
+    """``.max(L, X)``: *X* is the greatest element of a list in the standard order.  Fails for an empty list.
+
+    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*.  Fails without
+    answers.
+
+    Raises:
+        WrongArguments: *L* is no list.
+    """
+    return _extreme(ctx, arguments, 1, ".max")
+
+
+@internal_action(".min", arity=(2, 3), repeatable=True)
+def least(ctx: Context, *arguments: Term) -> bool:
+    """``.min(L, X)``: *X* is the smallest element of a list in the standard order.  Fails for an empty list.
+
+    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*.  Fails without
+    answers.
+
+    Raises:
+        WrongArguments: *L* is no list.
+    """
+    return _extreme(ctx, arguments, -1, ".min")
+
+
+def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) -> bool:
+    """*sign* is 1 for the greatest and -1 for the smallest; the first one among equals counts."""
+    if len(arguments) == 3:
+        found = best(ctx, arguments[0], arguments[1], sign)
+        return found is not None and ctx.unify(arguments[2], found)
+    items = elements(arguments[0], f"the first argument of {name}")
+    if not items:
+        return False
+    if ordered_by_python(items):
+        return ctx.unify(arguments[1], max(items) if sign > 0 else min(items))
+    extreme = items[0]
+    for item in items[1:]:
+        if sign * compare(item, extreme) > 0:
+            extreme = item
+    return ctx.unify(arguments[1], extreme)
+
+
 def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
     """The greatest (sign 1) or smallest (sign -1) instance of a template, None without answers."""
     found: Term | None = None
@@ -141,3 +195,60 @@ def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
 def perceive(ctx: Context) -> None:
     """Look at the environment at once: nothing is left unseen between two cycles anyway."""
     del ctx
+
+
+@internal_action(".namespace", arity=1, backtracks=True)
+def namespace(ctx: Context, target: Term) -> Iterator[None]:
+    """``.namespace(N)``: each namespace in use."""
+    names: dict[str, None] = {"default": None}
+    for symbol, table in ctx.agent.beliefs.items():
+        if symbol.namespace and len(table):
+            names[symbol.namespace] = None
+    for plan in ctx.agent.library.plans:
+        symbol = plan.trigger_functor()
+        if symbol is not None and symbol.namespace:
+            names[symbol.namespace] = None
+
+    for name in names:
+        if ctx.unify(target, atom(name)):
+            yield
+
+
+def _properties(ctx: Context, namespace: Term) -> dict[Term, Term]:
+    """The properties of a namespace, by key; a change of them stays."""
+    if not isinstance(namespace, Functor):
+        raise WrongArguments(f"the first argument must be the name of a namespace, not {text(namespace)}")
+    found: dict[Term, Term] = ctx.agent.namespace_properties.setdefault(namespace.name, {})
+    return found
+
+
+@internal_action(".namespace_set_prop", arity=3)
+def set_property(ctx: Context, namespace: Term, key: Term, value: Term) -> None:
+    """``.namespace_set_prop(N, Key, Value)`` gives a namespace a property.
+
+    Raises:
+        WrongArguments: *N* or *Key* is no atom.
+    """
+    if not isinstance(key, Functor):
+        raise WrongArguments(f"the key of a property must be an atom, not {text(key)}")
+    _properties(ctx, namespace)[key] = value
+
+
+@internal_action(".namespace_get_prop", arity=(2, 4), backtracks=True)
+def get_property(ctx: Context, namespace: Term, key: Term, *rest: Term) -> Iterator[None]:
+    """``.namespace_get_prop(N, Key[, Value[, Default]])``: a property of a namespace, or the default value.
+
+    With *Key* unbound, an answer for each property.
+
+    Raises:
+        WrongArguments: *N* is no atom.
+    """
+    held = _properties(ctx, namespace)
+    if key.__class__ is Var:
+        for each, value in list(held.items()):
+            if ctx.unify_all((key, each), *(((rest[0], value),) if rest else ())):
+                yield
+        return
+    value = held.get(key, rest[1] if len(rest) > 1 else None)
+    if value is not None and (not rest or ctx.unify(rest[0], value)):
+        yield

@@ -3,13 +3,12 @@
 from collections.abc import Iterator
 
 from jacaros.bdi.actions.arguments import characters, elements, members, number, whole
-from jacaros.bdi.actions.beliefs import best
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.actions.java_regex import replace_all
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.deep import as_key
-from jacaros.terms.order import compare, ordered_by_python, sorted_terms
+from jacaros.terms.order import compare, ordered_by_python, sorted_set, sorted_terms
 from jacaros.terms.substitution import ATOMIC, equal, is_ground
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
@@ -272,49 +271,6 @@ def shuffle(ctx: Context, collection: Term, result: Term) -> bool:
     return ctx.unify(result, make_list(items))
 
 
-@internal_action(".max", arity=(2, 3), repeatable=True)
-def greatest(ctx: Context, *arguments: Term) -> bool:
-    """``.max(L, X)``: *X* is the greatest element of a list in the standard order.  Fails for an empty list.
-
-    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*.  Fails without
-    answers.
-
-    Raises:
-        WrongArguments: *L* is no list.
-    """
-    return _extreme(ctx, arguments, 1, ".max")
-
-
-@internal_action(".min", arity=(2, 3), repeatable=True)
-def least(ctx: Context, *arguments: Term) -> bool:
-    """``.min(L, X)``: *X* is the smallest element of a list in the standard order.  Fails for an empty list.
-
-    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*.  Fails without
-    answers.
-
-    Raises:
-        WrongArguments: *L* is no list.
-    """
-    return _extreme(ctx, arguments, -1, ".min")
-
-
-def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) -> bool:
-    """*sign* is 1 for the greatest and -1 for the smallest; the first one among equals counts."""
-    if len(arguments) == 3:
-        found = best(ctx, arguments[0], arguments[1], sign)
-        return found is not None and ctx.unify(arguments[2], found)
-    items = elements(arguments[0], f"the first argument of {name}")
-    if not items:
-        return False
-    if ordered_by_python(items):
-        return ctx.unify(arguments[1], max(items) if sign > 0 else min(items))
-    extreme = items[0]
-    for item in items[1:]:
-        if sign * compare(item, extreme) > 0:
-            extreme = item
-    return ctx.unify(arguments[1], extreme)
-
-
 def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
     """The values of *X* in ``.range(X, First, Last[, Step])``."""
     start, end = whole(first, "the second argument of .range"), whole(last, "the third argument of .range")
@@ -346,3 +302,135 @@ def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0)
     for candidate in _numbers(first, last, step):
         if ctx.unify(value, candidate):
             yield
+
+
+@internal_action(".union", arity=3, repeatable=True)
+def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
+    """``.union(A, B, R)``: *R* is the sorted list of what is in the list *A* or in *B*, each once.
+
+    Raises:
+        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
+    """
+    first, second = _two_lists(left, right, result, ".union")
+    return ctx.unify(result, make_list(sorted_set([*second, *first])))
+
+
+@internal_action(".intersection", arity=3, repeatable=True)
+def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
+    """``.intersection(A, B, R)``: *R* is the sorted list of what is in both lists, each once.
+
+    Raises:
+        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
+    """
+    first, second = _two_lists(left, right, result, ".intersection")
+    return ctx.unify(result, make_list(_parted(second, first)[0]))
+
+
+@internal_action(".difference", arity=3, repeatable=True)
+def difference(ctx: Context, left: Term, right: Term, result: Term) -> bool:
+    """``.difference(A, B, R)``: *R* is the sorted list of what is in the list *A* but not in *B*, each once.
+
+    Raises:
+        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
+    """
+    first, second = _two_lists(left, right, result, ".difference")
+    return ctx.unify(result, make_list(_parted(first, second)[1]))
+
+
+def _two_lists(left: Term, right: Term, result: Term, name: str) -> tuple[list[Term], list[Term]]:
+    if result.__class__ is not Var:
+        elements(result, f"the third argument of {name}")
+    return elements(left, f"the first argument of {name}"), elements(right, f"the second argument of {name}")
+
+
+def _parted(items: list[Term], others: list[Term]) -> tuple[list[Term], list[Term]]:
+    """The items that are also among *others*, and those that are not, both sorted, each once."""
+    if ordered_by_python(items) and ordered_by_python(others):
+        among = set(others)
+        ordered = sorted_set(items)
+        return [item for item in ordered if item in among], [item for item in ordered if item not in among]
+    shared: list[Term] = []
+    own: list[Term] = []
+    remaining = iter(sorted_set(others))
+    other = next(remaining, None)
+    for item in sorted_set(items):
+        while other is not None and compare(other, item) < 0:
+            other = next(remaining, None)
+        (own if other is None or compare(other, item) else shared).append(item)
+    return shared, own
+
+
+Bounds = tuple[int, int]
+
+
+@internal_action(".sublist", arity=2, backtracks=True, repeatable=True)
+def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
+    """``.sublist(S, L)``: *S* is a contiguous part of the list *L*; one answer for each that unifies.
+
+    Parts that begin further left come first, longer ones before shorter ones, the empty list last.
+
+    Raises:
+        WrongArguments: *S* is neither a list nor unbound, or *L* is no list.
+    """
+    items = _whole_of(part, whole, ".sublist")
+    size = len(items)
+    bounds = ((start, end) for start in range(size) for end in range(size, start, -1))
+    return _parts(ctx, part, items, bounds)
+
+
+@internal_action(".prefix", arity=2, backtracks=True, repeatable=True)
+def prefix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
+    """``.prefix(P, L)``: the list (or string) *L* begins with *P*; longer answers come first.
+
+    Raises:
+        WrongArguments: *P* is neither such a value nor unbound, or *L* is neither list nor string.
+    """
+    items = _whole_of(part, whole, ".prefix", strings=True)
+    return _parts(ctx, part, items, ((0, end) for end in range(len(items), 0, -1)))
+
+
+@internal_action(".suffix", arity=2, backtracks=True, repeatable=True)
+def suffix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
+    """``.suffix(S, L)``: the list (or string) *L* ends with *S*; longer answers come first.
+
+    Raises:
+        WrongArguments: *S* is neither such a value nor unbound, or *L* is neither list nor string.
+    """
+    items = _whole_of(part, whole, ".suffix", strings=True)
+    size = len(items)
+    return _parts(ctx, part, items, ((start, size) for start in range(size)))
+
+
+def _whole_of(part: Term, whole: Term, name: str, strings: bool = False) -> list[Term] | String:
+    """The elements of the second argument; the first one is checked too."""
+    if strings and whole.__class__ is String:
+        fits = part.__class__ in (String, Var)
+        items: list[Term] | String = whole
+    else:
+        fits = part.__class__ is Var or is_list(part)
+        items = elements(whole, f"the second argument of {name}")
+    if not fits:
+        raise WrongArguments(f"the first argument of {name} must be a part or a variable, not {text(part)}")
+    return items
+
+
+def _parts(ctx: Context, part: Term, items: list[Term] | String, bounds: Iterator[Bounds]) -> Iterator[None]:
+    """The parts that unify, the empty one after all others; only those of the right length are built."""
+    length = _known_length(part)
+    for start, end in bounds:
+        if length in (None, end - start) and ctx.unify(part, _cut(items, start, end)):
+            yield
+    if ctx.unify(part, _cut(items, 0, 0)):
+        yield
+
+
+def _cut(items: list[Term] | String, start: int, end: int) -> Term:
+    return String(items[start:end]) if isinstance(items, String) else make_list(items[start:end])
+
+
+def _known_length(part: Term) -> int | None:
+    """The length of a closed list or string, None when it may have any."""
+    if part.__class__ is String:
+        return len(part)
+    items, end = parted(part)
+    return len(items) if end is NIL else None

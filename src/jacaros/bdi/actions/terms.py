@@ -1,26 +1,35 @@
-"""Internal actions that make terms of terms: copies and annotations."""
+"""Internal actions that test terms, and make terms of terms: types, copies and annotations."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from jacaros.bdi.actions.internal_action import internal_action
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.state.belief_base import is_source, without_sources
 from jacaros.bdi.state.intention import STEP
+from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.order import annotation_set
-from jacaros.terms.plans import PLAN, body_steps, is_body, step_parts
-from jacaros.terms.substitution import rename
+from jacaros.terms.plans import PLAN, RULE, body_steps, is_body, step_parts
+from jacaros.terms.substitution import is_ground, rename
 from jacaros.terms.values import (
+    ACTION,
+    ARITHMETIC,
+    FUNCTION,
+    PLAIN,
     SOURCE,
     Annotated,
+    Functor,
     String,
     Term,
+    Var,
     annotations_of,
+    atom,
     functor,
     functor_of,
     is_list,
     list_items,
     make_list,
 )
+from jacaros.terms.values import NIL as EMPTY
 
 CODE_LINE, CODE_SRC = functor("code_line", 1), functor("code_src", 1)
 
@@ -114,3 +123,82 @@ def _only_operand(term: Term) -> Term:
     """What the only step of a plan body is about; any other term is itself."""
     steps = list(body_steps(term)) if is_body(term) else []
     return step_parts(steps[0])[1][0] if len(steps) == 1 else term
+
+
+@internal_action(".string", arity=1, repeatable=True)
+def is_string(_ctx: Context, term: Term) -> bool:
+    """``.string(X)``: *X* is a string."""
+    return term.__class__ is String
+
+
+@internal_action(".list", arity=1, repeatable=True)
+def is_a_list(_ctx: Context, term: Term) -> bool:
+    """``.list(X)``: *X* is a list, be it empty."""
+    return is_list(term)
+
+
+@internal_action(".number", arity=1, repeatable=True)
+def is_number(_ctx: Context, term: Term) -> bool:
+    """``.number(X)``: *X* is a number, or an expression that waits for its variables."""
+    return term.__class__ is float or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
+
+
+@internal_action(".atom", arity=1, repeatable=True)
+def is_atom(_ctx: Context, term: Term) -> bool:
+    """``.atom(X)``: *X* is an atom, neither negated nor annotated."""
+    return isinstance(term, Functor) and term.kind == PLAIN and not term.negated and term is not EMPTY
+
+
+@internal_action(".literal", arity=1, repeatable=True)
+def is_literal(_ctx: Context, term: Term) -> bool:
+    """``.literal(X)``: *X* is an atom or structure, also a negated or annotated one, but no list."""
+    symbol = functor_of(term)
+    return symbol is not None and symbol.kind not in (ARITHMETIC, FUNCTION)
+
+
+@internal_action(".structure", arity=1, repeatable=True)
+def is_structure(ctx: Context, term: Term) -> bool:
+    """``.structure(X)``: *X* is a list, or a literal other than a plain atom (so does Jason run)."""
+    return is_list(term) or (is_literal(ctx, term) and not is_atom(ctx, term))
+
+
+@internal_action(".ground", arity=1, repeatable=True)
+def has_no_variables(_ctx: Context, term: Term) -> bool:
+    """``.ground(X)``: there is no unbound variable in *X*."""
+    return is_ground(term)
+
+
+@internal_action(".internal_action", arity=1)
+def is_internal_action(_ctx: Context, term: Term) -> bool:
+    """``.internal_action(X)``: *X* is the call of an internal action, such as ``.print(a)``."""
+    symbol = functor_of(term)
+    return symbol is not None and symbol.kind == ACTION
+
+
+_TESTS: dict[str, Callable[[Context, Term], bool]] = {
+    "number": is_number,
+    "atom": is_atom,
+    "literal": is_literal,
+    "string": is_string,
+    "list": is_a_list,
+    "set": lambda _, term: isinstance(term, SetValue),
+    "map": lambda _, term: isinstance(term, MapValue),
+    "structure": is_structure,
+    "rule": lambda _, term: term.__class__ is tuple and term[0] is RULE,
+    "plan": lambda _, term: is_body(term),
+    "queue": lambda _, term: isinstance(term, QueueValue),
+    "ground": has_no_variables,
+    "free": lambda _, term: term.__class__ is Var,
+}
+
+
+@internal_action(".type", arity=2, backtracks=True, repeatable=True)
+def type_(ctx: Context, term: Term, kind: Term) -> Iterator[None]:
+    """``.type(X, T)``: *T* is a type of *X*; with *T* unbound, each of them in turn.
+
+    Types are ``number atom literal string list set map structure rule plan queue ground free``, in this order
+    (``plan`` is a plan body; ``free`` an unbound variable).
+    """
+    for name, test in _TESTS.items():
+        if test(ctx, term) and ctx.unify(kind, atom(name)):
+            yield
