@@ -7,6 +7,7 @@ from jacaros.asl.control_actions import control_statement
 from jacaros.asl.cursor import CLOSERS, SyntaxPanic
 from jacaros.asl.lexer import Token
 from jacaros.asl.term_parser import TermParser
+from jacaros.terms.operators import BINARY
 
 _CONTROL: Final = frozenset({"if", "while", "for"})
 _STEP_STARTS: Final = _CONTROL | frozenset(
@@ -16,9 +17,7 @@ _STEP_STARTS: Final = _CONTROL | frozenset(
 _CHANGES: Final = frozenset({"+", "-", "-+", "++", "--", "+<", "+>", "-++"})
 _ENDS: Final = frozenset({".", "}", ")", "]", "{", "<-", "end", "error"})
 """What may stand behind a body, and what is reported better where it is found."""
-_FORMULA_AFTER_GROUP: Final = frozenset(
-    {"<", "<=", ">", ">=", "==", "\\==", "=", "=..", "*", "/", "**", "div", "mod", "&", "|"}
-)
+_FORMULA_AFTER_GROUP: Final = frozenset(BINARY) - {"+", "-"}
 """What shows that the round brackets before it held a formula and not a group of steps."""
 
 
@@ -320,17 +319,16 @@ class BodyParser(TermParser):
         if isinstance(term, nodes.FunctionCall):
             action = nodes.InternalAction(term.name, term.arguments, span=term.span)
             return nodes.Constraint(action, span=term.span)
-        if isinstance(term, nodes.Not | nodes.And | nodes.Or):
+        if isinstance(term, nodes.Connective):
             return self._condition_as_action(term)
         return self._no_step(term)
 
     def _no_step(self, term: nodes.Term) -> NoReturn:
         self.fail("not-a-step", "this is a term and no step of a body", term.span)
 
-    def _condition_as_action(self, term: nodes.Not | nodes.And | nodes.Or) -> nodes.ExternalAction:
+    def _condition_as_action(self, term: nodes.Connective) -> nodes.ExternalAction:
         """A bare condition is an action of that name in the language; people mean a test."""
-        word = {nodes.Not: "not", nodes.And: "&", nodes.Or: "|"}[type(term)]
-        operands = (term.operand,) if isinstance(term, nodes.Not) else (term.left, term.right)
+        word = term.operator
         if term.span is not None:
             hint = (
                 "to test the condition write ?(not f)" if word == "not" else f"to test it write ?(a {word} b)"
@@ -341,4 +339,4 @@ class BodyParser(TermParser):
                 term.span,
                 hint,
             )
-        return nodes.ExternalAction(nodes.Literal(word, operands, span=term.span), span=term.span)
+        return nodes.ExternalAction(nodes.Literal(word, term.operands, span=term.span), span=term.span)

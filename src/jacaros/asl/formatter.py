@@ -4,12 +4,10 @@ Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text re
 """
 
 from functools import singledispatch
-from typing import Final
 
 from jacaros.asl import nodes
+from jacaros.terms.operators import BINARY
 from jacaros.terms.text import number_text, quoted
-
-_SPACED: Final = frozenset({"div", "mod"})
 
 
 @singledispatch
@@ -52,11 +50,10 @@ def _(node: nodes.ListTerm) -> str:
 
 @format_term.register
 def _(node: nodes.Arithmetic) -> str:
-    operator = f" {node.operator} " if node.operator in _SPACED else node.operator
     if len(node.operands) == 1:
-        return f"({operator}{format_term(node.operands[0])})"
+        return f"({node.operator}{format_term(node.operands[0])})"
     left, right = node.operands
-    return f"({format_term(left)}{operator}{format_term(right)})"
+    return f"({format_term(left)}{BINARY[node.operator].between}{format_term(right)})"
 
 
 @format_term.register(nodes.FunctionCall)

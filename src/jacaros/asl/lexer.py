@@ -12,20 +12,25 @@ from typing import Final, NamedTuple
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import SourceFile, Span
+from jacaros.terms.operators import BINARY, WORDS
 
-RESERVED: Final = frozenset({"true", "false", "not", "div", "mod", "if", "else", "elif", "for", "while"})
+RESERVED: Final = WORDS | {"true", "false", "if", "else", "elif", "for", "while"}
 """Words that can never be atoms."""
 
+_OPERATORS: Final = "|".join(
+    re.escape(s) for s in sorted(BINARY, key=len, reverse=True) if len(s) > 1 and s not in WORDS
+)
+_SIGNS: Final = re.escape("".join(each for each in BINARY if len(each) == 1))
 # The groups that begin with "open" are beginnings without an end.  Blanks before a token belong to its match.
 _TOKEN: Final = re.compile(
-    r"""
+    rf"""
     [^\S\n]*
     (?: (?P<atom>(?:[a-z]|\.[^\W\d])\w*(?:\.[^\W\d]\w*)*)
       | (?P<comment>//[^\n]*)
       | (?P<long_comment>/\*(?s:.*?)\*/)
       | (?P<open_comment>/\*(?s:.*))
-      | (?P<punctuation>[,;(){}]|<-|<:|<=|>=|=\.\.|==|\\==|:-|::|\*\*|\|&\||\|\|\||!!|\.(?![0-9])
-          |[-+*/\[\]:!?&|=<>@~^])
+      | (?P<punctuation>[,;(){{}}]|<-|<:|:-|::|\|&\||\|\|\||!!|{_OPERATORS}|\.(?![0-9])
+          |[{_SIGNS}\[\]:!?@~^])
       | (?P<variable>[A-Z_]\w*)
       | (?P<lines>\n\s*)
       | (?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?)

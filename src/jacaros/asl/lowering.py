@@ -7,14 +7,12 @@ from jacaros.asl.constant import Constant
 from jacaros.terms import plans
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.negation import qualify
+from jacaros.terms.operators import named
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve
 from jacaros.terms.values import (
     ACTION,
-    ARITHMETIC,
     FUNCTION,
-    LOGIC,
-    RELATION,
     Annotated,
     Functor,
     String,
@@ -97,30 +95,14 @@ def _list(node: nodes.ListTerm, lookup: Lookup) -> Term:
     return make_list(items, lower(node.tail, lookup)) if node.tail is not None else make_list(items)
 
 
-def _arithmetic(node: nodes.Arithmetic, lookup: Lookup) -> Term:
+def _operation(node: nodes.Arithmetic | nodes.Relation | nodes.Connective, lookup: Lookup) -> Term:
     operands = [lower(o, lookup) for o in node.operands]
-    return (functor(node.operator, len(operands), kind=ARITHMETIC), *operands)
+    return (named(node.operator, len(operands)).functor, *operands)
 
 
 def _function(node: nodes.FunctionCall, lookup: Lookup) -> Term:
     symbol = functor(node.name, len(node.arguments), kind=FUNCTION)
     return (symbol, *(lower(a, lookup) for a in node.arguments))
-
-
-def _relation(node: nodes.Relation, lookup: Lookup) -> Term:
-    return (functor(node.operator, 2, kind=RELATION), lower(node.left, lookup), lower(node.right, lookup))
-
-
-def _not(node: nodes.Not, lookup: Lookup) -> Term:
-    return (functor("not", 1, kind=LOGIC), lower(node.operand, lookup))
-
-
-def _and(node: nodes.And, lookup: Lookup) -> Term:
-    return (functor("&", 2, kind=LOGIC), lower(node.left, lookup), lower(node.right, lookup))
-
-
-def _or(node: nodes.Or, lookup: Lookup) -> Term:
-    return (functor("|", 2, kind=LOGIC), lower(node.left, lookup), lower(node.right, lookup))
 
 
 def _internal_action(node: nodes.InternalAction, lookup: Lookup) -> Term:
@@ -211,12 +193,12 @@ _LOWER: dict[type, Callable[..., Term]] = {
     nodes.Variable: _variable,
     nodes.Literal: _literal,
     nodes.ListTerm: _list,
-    nodes.Arithmetic: _arithmetic,
+    nodes.Arithmetic: _operation,
     nodes.FunctionCall: _function,
-    nodes.Relation: _relation,
-    nodes.Not: _not,
-    nodes.And: _and,
-    nodes.Or: _or,
+    nodes.Relation: _operation,
+    nodes.Not: _operation,
+    nodes.And: _operation,
+    nodes.Or: _operation,
     nodes.InternalAction: _internal_action,
     nodes.PlanTerm: _plan_term,
     nodes.RuleTerm: _rule_term,

@@ -146,7 +146,7 @@ class ListTerm(Node):
 
 
 class Arithmetic(Node):
-    """``+ - * / div mod **`` with two operands, ``-`` (and ``+``) with one."""
+    """An arithmetic operation of two numbers, such as ``X mod 2``, or of one, ``-X`` or ``+X``."""
 
     __slots__ = __match_args__ = ("operator", "operands")
 
@@ -167,48 +167,66 @@ class FunctionCall(Node):
         self.span = span
 
 
-class Relation(Node):
-    """``left op right`` with one of ``< <= > >= == \\== = =..``."""
+class _Binary(Node):
+    """Two operands."""
 
-    __slots__ = __match_args__ = ("operator", "left", "right")
+    __slots__ = __match_args__ = ("left", "right")
 
-    def __init__(self, operator: str, left: "Term", right: "Term", *, span: Span | None = None) -> None:
-        self.operator: Final = operator
+    def __init__(self, left: "Term", right: "Term", *, span: Span | None = None) -> None:
         self.left: Final = left
         self.right: Final = right
         self.span = span
+
+    @property
+    def operands(self) -> "tuple[Term, ...]":
+        """Both of them, in the order of the text."""
+        return self.left, self.right
+
+
+class Relation(_Binary):
+    r"""``left op right``, such as ``X < 3`` or ``X \== Y``."""
+
+    __slots__ = ("operator",)
+    __match_args__ = ("operator", "left", "right")
+
+    def __init__(self, operator: str, left: "Term", right: "Term", *, span: Span | None = None) -> None:
+        super().__init__(left, right, span=span)
+        self.operator: Final = operator
+
+
+class And(_Binary):
+    """``A & B``."""
+
+    __slots__ = ()
+    operator: Final = "&"
+
+
+class Or(_Binary):
+    """``A | B``."""
+
+    __slots__ = ()
+    operator: Final = "|"
 
 
 class Not(Node):
     """``not F``."""
 
     __slots__ = __match_args__ = ("operand",)
+    operator: Final = "not"
 
     def __init__(self, operand: "Term", *, span: Span | None = None) -> None:
         self.operand: Final = operand
         self.span = span
 
-
-class And(Node):
-    """``A & B``."""
-
-    __slots__ = __match_args__ = ("left", "right")
-
-    def __init__(self, left: "Term", right: "Term", *, span: Span | None = None) -> None:
-        self.left: Final = left
-        self.right: Final = right
-        self.span = span
+    @property
+    def operands(self) -> "tuple[Term, ...]":
+        """The one operand."""
+        return (self.operand,)
 
 
-class Or(Node):
-    """``A | B``."""
-
-    __slots__ = __match_args__ = ("left", "right")
-
-    def __init__(self, left: "Term", right: "Term", *, span: Span | None = None) -> None:
-        self.left: Final = left
-        self.right: Final = right
-        self.span = span
+Connective = And | Or | Not
+CONNECTIVES: Final[dict[str, Any]] = {kind.operator: kind for kind in (And, Or, Not)}
+"""The classes of the connectives by their operators."""
 
 
 class InternalAction(Node):

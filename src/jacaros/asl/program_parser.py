@@ -278,10 +278,8 @@ def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
     stack = [formula]
     while stack:
         term = stack.pop()
-        if isinstance(term, nodes.And | nodes.Or):
-            stack += [term.left, term.right]
-        elif isinstance(term, nodes.Not):
-            stack.append(term.operand)
+        if isinstance(term, nodes.Connective):
+            stack += term.operands
         elif isinstance(term, nodes.InternalAction) and _acts(term.name, parser.names):
             parser.report(
                 "action-in-context",

@@ -101,14 +101,10 @@ class Reflection:
         symbol = term[0]
         if symbol is CONS:
             return self._list(term)
-        if symbol.kind == ARITHMETIC:
-            return nodes.Arithmetic(symbol.name, tuple(self.term(a) for a in term[1:]))
         if symbol.kind == FUNCTION:
             return nodes.FunctionCall(symbol.name, tuple(self.term(a) for a in term[1:]))
-        if symbol.kind == RELATION:
-            return nodes.Relation(symbol.name, self.term(term[1]), self.term(term[2]))
-        if symbol.kind == LOGIC:
-            return self._logic(symbol.name, term)
+        if symbol.kind in (ARITHMETIC, RELATION, LOGIC):
+            return self._operation(symbol, term)
         if symbol is plans.PLAN:
             return nodes.PlanTerm(self.plan(term))
         if symbol in plans.TRIGGERS:
@@ -119,10 +115,13 @@ class Reflection:
             return nodes.BodyTerm(self.body(term))
         return self._literal(symbol, term[1:])
 
-    def _logic(self, name: str, term: tuple[Term, ...]) -> nodes.Term:
-        if name == "not":
-            return nodes.Not(self.term(term[1]))
-        return (nodes.And if name == "&" else nodes.Or)(self.term(term[1]), self.term(term[2]))
+    def _operation(self, symbol: Functor, term: tuple[Term, ...]) -> nodes.Term:
+        operands = tuple(self.term(a) for a in term[1:])
+        if symbol.kind == ARITHMETIC:
+            return nodes.Arithmetic(symbol.name, operands)
+        if symbol.kind == RELATION:
+            return nodes.Relation(symbol.name, *operands)
+        return cast("nodes.Term", nodes.CONNECTIVES[symbol.name](*operands))
 
     def _list(self, term: Term) -> nodes.ListTerm:
         items, end = parted(term)

@@ -6,6 +6,8 @@ from typing import Final, NamedTuple
 
 from jacaros.asl.lexer import RESERVED, Token
 from jacaros.asl.spelling import is_slip_of
+from jacaros.terms.operators import WORDS, symbols_of
+from jacaros.terms.values import ARITHMETIC
 
 _FUSED: Final = {
     "&&": "'and' is &, 'or' is |: write one '&'",
@@ -189,7 +191,7 @@ def _misspelt(tokens: Sequence[Token], index: int) -> Slip | None:
         and tokens[index + 1].kind in _BEGINS_OPERAND
         and tokens[index + 1].line == token.line
     ):
-        return _meant(token, ("div", "mod"))
+        return _meant(token, [word for word in symbols_of(ARITHMETIC) if word in WORDS])
     return None
 
 

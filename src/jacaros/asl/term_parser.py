@@ -9,21 +9,8 @@ from jacaros.asl.lexer import Token
 from jacaros.asl.literal_parser import LiteralParser
 from jacaros.asl.source import Span
 from jacaros.asl.spelling import close_matches
-
-_OR, _AND, _NOT, _RELATION, _SUM, _POWER = 1, 2, 3, 4, 5, 7
-_LEVELS: Final = {
-    "|": _OR,
-    "&": _AND,
-    **dict.fromkeys(("<", "<=", ">", ">=", "==", "\\==", "=", "=.."), _RELATION),
-    "+": _SUM,
-    "-": _SUM,
-    "*": 6,
-    "/": 6,
-    "div": 6,
-    "mod": 6,
-    "**": _POWER,
-}
-"""The binary operators, loosest first.  Unary minus binds tighter than all of them."""
+from jacaros.terms.operators import AND, BINARY, NOT, OR, PREFIX, SUM, Operator
+from jacaros.terms.values import ARITHMETIC, RELATION
 
 MAX_CHAIN: Final = 250
 """Operators in a row: each is one level more for all that go down into the term."""
@@ -44,17 +31,17 @@ class TermParser(LiteralParser):
         """A formula: what stands in contexts, tests and statements, and behind ``:-``."""
         return self.expression(formula=True)
 
-    def expression(self, loosest: int = _OR, formula: bool = False) -> nodes.Term:
+    def expression(self, loosest: int = OR, formula: bool = False) -> nodes.Term:
         """An expression whose operators bind at least as tightly as *loosest*."""
         left = self.operand(formula)
         chained = 0
         while True:
             operator = self.token
-            level = _LEVELS.get(operator.kind)
-            if level is None or level < loosest:
+            found = BINARY.get(operator.kind)
+            if found is None or found.level < loosest:
                 return left
-            if level >= _SUM:
-                if level == _SUM and not self._continues_sum(left):
+            if found.kind == ARITHMETIC:
+                if found.level == SUM and not self._continues_sum(left):
                     return left
                 chained += 1
                 if chained > MAX_CHAIN:
@@ -63,21 +50,21 @@ class TermParser(LiteralParser):
                         "this sum has too many parts",
                         hint=f"at most {MAX_CHAIN} operators follow each other without brackets",
                     )
-                left = self._arithmetic(left, level)
-            elif level == _RELATION:
+                left = self._arithmetic(left, found)
+            elif found.kind == RELATION:
                 left = self._relation(left)
             else:
-                left = self._connective(left, level, formula)
+                left = self._connective(left, found, formula)
 
     def element(self) -> nodes.Term:
         """An element of a list or an annotation: formulae stand in brackets, as ``|`` begins the tail."""
         start = self.token
-        element = self.expression(_SUM)
+        element = self.expression(SUM)
         if isinstance(element, nodes.Not) and start.kind == "not":
             self.report(
                 "formula-in-list", "a formula in a list stands in brackets", element.span, "as in [(not a)]"
             )
-        elif self.token.kind in _LEVELS and self.token.kind != "|":
+        elif self.token.kind in BINARY and self.token.kind != "|":
             self.report(
                 "formula-in-list",
                 "a formula in a list stands in brackets",
@@ -85,7 +72,7 @@ class TermParser(LiteralParser):
                 "as in [(X < 2)]",
             )
             self.advance()
-            self.expression(_AND)
+            self.expression(AND)
         return element
 
     def operand(self, formula: bool = False) -> nodes.Term:
@@ -115,12 +102,12 @@ class TermParser(LiteralParser):
 
     def _prefixed(self, formula: bool) -> nodes.Term:
         token = self.token
-        if token.kind not in ("-", "+", "not"):
+        if token.kind not in PREFIX:
             self.unexpected("a term")
         self.advance()
         self.enter()
         if token.kind == "not":
-            negated = self.expression(_NOT, formula)
+            negated = self.expression(NOT, formula)
             self.leave()
             return nodes.Not(negated, span=self.span_from(token))
         operand = self.operand()
@@ -146,15 +133,14 @@ class TermParser(LiteralParser):
             return True  # X-Y <- ...: the end of a context, and no deletion of Y
         return not self.at_plan() and (number or not self.token.first)
 
-    def _arithmetic(self, left: nodes.Term, level: int) -> nodes.Term:
+    def _arithmetic(self, left: nodes.Term, found: Operator) -> nodes.Term:
         operator = self.advance()
-        # All are left associative but **.
-        if level == _POWER:
+        if found.right:
             self.enter()
-            right = self.expression(level)
+            right = self.expression(found.level)
             self.leave()
         else:
-            right = self.expression(level + 1)
+            right = self.expression(found.level + 1)
         if self._require_number(operator, left):
             self._require_number(operator, right)
         return nodes.Arithmetic(operator.kind, (left, right), span=_across(left, right))
@@ -193,20 +179,18 @@ class TermParser(LiteralParser):
             )
         elif left is self._placed and isinstance(left, nodes.Literal | nodes.Variable):
             left = nodes.replace(left, namespace=None)
-        right = self.expression(_SUM)
+        right = self.expression(SUM)
         return nodes.Relation(operator.kind, left, right, span=_across(left, right))
 
-    def _connective(self, left: nodes.Term, level: int, formula: bool) -> nodes.Term:
+    def _connective(self, left: nodes.Term, found: Operator, formula: bool) -> nodes.Term:
         """A chain of ``&`` or ``|``, which is right associative; read in a loop, as it may be long."""
-        operator = self.token.kind
         parts = [left]
-        while self.accept(operator):
-            parts.append(self.expression(level + 1, formula))
-        combine = nodes.And if level == _AND else nodes.Or
+        while self.accept(found.symbol):
+            parts.append(self.expression(found.level + 1, formula))
         result = parts.pop()
         while parts:
             first = parts.pop()
-            result = combine(first, result, span=_across(first, result))
+            result = nodes.CONNECTIVES[found.symbol](first, result, span=_across(first, result))
         return result
 
 

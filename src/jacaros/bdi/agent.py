@@ -43,7 +43,7 @@ from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.bdi.state.triggers import trigger
 from jacaros.bdi.state.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
-from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.plans import is_body
 from jacaros.terms.substitution import ATOMIC, free_variables, rename, resolve
 from jacaros.terms.unifier import undo, unify

@@ -25,6 +25,7 @@ from weakref import WeakValueDictionary
 from jacaros.env.ids import ArtifactId
 from jacaros.env.values import Atom, Out, Structure, plain
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.operators import WORDS
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
 from jacaros.terms.values import (
@@ -52,7 +53,6 @@ from jacaros.terms.values import (
 Outputs = list[tuple[Var, Out]]
 """Where unbound variables stand in an action, and the places where an operation leaves their values."""
 
-_WORDS_OF_THE_LANGUAGE = frozenset({"not", "div", "mod"})
 _CARRIED_AS_STRUCTURES = (PLAIN, ARITHMETIC, FUNCTION)
 
 
@@ -218,7 +218,7 @@ def atom_of(name: str) -> Functor:
 
 
 def _is_word(name: str) -> bool:
-    return name.isidentifier() and name[0].islower() and name not in _WORDS_OF_THE_LANGUAGE
+    return name.isidentifier() and name[0].islower() and name not in WORDS
 
 
 def _structure_to_term(value: Structure, references: References) -> Term:

@@ -16,7 +16,7 @@ from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.declaring import Declared
 from jacaros.extension.faults import FAULTS, ActionCrashed, FunctionCrashed, action_fault, crash_text
 from jacaros.extension.literal import Literal, literal_of, term_of
-from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, functor_of

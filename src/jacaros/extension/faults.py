@@ -10,7 +10,7 @@ from jacaros.env.values import Atom, Structure
 from jacaros.errors import InternalError
 from jacaros.extension.literal import Literal, term_of
 from jacaros.project_modules import place_of
-from jacaros.terms.arithmetic import ArithmeticFault
+from jacaros.terms.operators import ArithmeticFault
 
 FAULTS = (Exception, SystemExit, CancelledError)
 """What Python code of a project may raise without ending more than the step that called it."""

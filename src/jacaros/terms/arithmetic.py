@@ -5,85 +5,8 @@ from collections.abc import Callable
 from contextvars import ContextVar
 from typing import Protocol
 
-from jacaros.terms.values import (
-    ARITHMETIC,
-    FUNCTION,
-    Annotated,
-    Term,
-    Var,
-    deref,
-    functor,
-)
-
-
-class ArithmeticFault(Exception):
-    """An operation without a result, such as a division by zero of ``div``; it fails the step."""
-
-
-def divide(left: float, right: float) -> float:
-    """Division of reals: ``x / 0`` is infinite or not a number, as in IEEE."""
-    if right == 0.0:
-        if left == 0.0 or left != left:
-            return math.nan
-        return math.copysign(math.inf, left) * math.copysign(1.0, right)
-    return left / right
-
-
-def to_int(value: float) -> int:
-    """Truncate as Java casts a double to a 32-bit integer."""
-    if value != value:
-        return 0
-    return math.trunc(max(-(2.0**31), min(2.0**31 - 1, value)))
-
-
-def integer_divide(left: float, right: float) -> float:
-    """``div``: both operands and the quotient truncated towards zero.
-
-    Raises:
-        ArithmeticFault: when the divisor is zero.
-    """
-    dividend, divisor = to_int(left), to_int(right)
-    if divisor == 0:
-        raise ArithmeticFault("integer division by zero")
-    quotient = abs(dividend) // abs(divisor)
-    return float(quotient if (dividend < 0) == (divisor < 0) else -quotient)
-
-
-def remainder(left: float, right: float) -> float:
-    """``mod``: the remainder that has the sign of the dividend."""
-    if right == 0.0 or not math.isfinite(left):
-        return math.nan
-    return math.fmod(left, right)
-
-
-def power(left: float, right: float) -> float:
-    """``**``; infinite or not a number where there is no real result, and ``1 ** x`` is 1 for finite x only."""
-    if abs(left) == 1.0 and not math.isfinite(right):
-        return math.nan
-    try:
-        result = left**right
-    except ZeroDivisionError:
-        return math.inf
-    except OverflowError:
-        return -math.inf if left < 0 and right % 2 == 1 else math.inf
-    return result if result.__class__ is float else math.nan
-
-
-OPERATIONS: dict[str, Callable[[float, float], float]] = {
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
-    "/": divide,
-    "div": integer_divide,
-    "mod": remainder,
-    "**": power,
-}
-
-ADD = functor("+", 2, kind=ARITHMETIC)
-SUBTRACT = functor("-", 2, kind=ARITHMETIC)
-MULTIPLY = functor("*", 2, kind=ARITHMETIC)
-NEGATE = functor("-", 1, kind=ARITHMETIC)
-AFFIRM = functor("+", 1, kind=ARITHMETIC)
+from jacaros.terms.operators import COMPUTE, named
+from jacaros.terms.values import ARITHMETIC, FUNCTION, Annotated, Term, Var, deref
 
 Evaluator = Callable[..., Term]
 functions: dict[str, Evaluator] = {}
@@ -172,10 +95,7 @@ def _apply(term: Term, operands: list[Term]) -> Term:
     for operand in operands:
         if operand.__class__ is not float and _is_open(operand):
             return term
-    numbers = [_number(o, term) for o in operands]
-    if len(numbers) == 1:
-        return -numbers[0] if term[0].name == "-" else numbers[0]
-    return OPERATIONS[term[0].name](numbers[0], numbers[1])
+    return COMPUTE[term[0]](*[_number(o, term) for o in operands])
 
 
 def _is_open(operand: Term) -> bool:
@@ -205,21 +125,7 @@ def call(term: Term) -> Term:
     return term if value is None else value
 
 
-def binary(operator: str, left: Term, right: Term) -> Term:
+def calculated(symbol: str, *operands: Term) -> Term:
     """The value of an operation on any terms: the slow path of compiled arithmetic."""
-    left, right = settle(left), settle(right)
-    if left.__class__ is float and right.__class__ is float:
-        return OPERATIONS[operator](left, right)
-    return _evaluate((functor(operator, 2, kind=ARITHMETIC), left, right))
-
-
-def negate(operand: Term) -> Term:
-    """The value of unary minus on any term."""
-    operand = settle(operand)
-    return -operand if operand.__class__ is float else _evaluate((NEGATE, operand))
-
-
-def affirm(operand: Term) -> Term:
-    """The value of unary plus on any term."""
-    operand = settle(operand)
-    return operand if operand.__class__ is float else _evaluate((AFFIRM, operand))
+    values = [settle(operand) for operand in operands]
+    return _apply((named(symbol, len(values)).functor, *values), values)

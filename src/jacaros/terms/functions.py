@@ -4,8 +4,9 @@ import math
 from collections.abc import Callable
 
 from jacaros.terms import arithmetic
-from jacaros.terms.arithmetic import ArithmeticFault, functions, settle
+from jacaros.terms.arithmetic import functions, settle
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.values import Annotated, String, Term, is_list, list_items, list_length
 

@@ -314,13 +314,3 @@ def merge_annotations(
             merged.insert(place, annotation)
             new.append(annotation)
     return tuple(merged), tuple(new)
-
-
-def less(left: Term, right: Term) -> bool:
-    """``<`` on any terms."""
-    return compare(left, right) < 0
-
-
-def at_most(left: Term, right: Term) -> bool:
-    """``<=`` on any terms."""
-    return compare(left, right) <= 0

@@ -6,7 +6,8 @@ from typing import Any
 from jacaros.terms import values
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.deep import Turns, rebuild
-from jacaros.terms.order import annotation_set
+from jacaros.terms.operators import BINARY
+from jacaros.terms.order import annotation_set, compare
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
@@ -311,6 +312,18 @@ def _renamed(term: Term, names: dict[Var, Var]) -> Term:
         tail = None if term.tail is None else _rename(term.tail, names)
         return Annotated(_rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail)
     return term
+
+
+def related(symbol: str, left: Term, right: Term) -> bool:
+    """Whether a relation that binds nothing holds: of numbers by value, of other terms by order or by equality."""
+    relation = BINARY[symbol]
+    assert relation.numbers is not None
+    left, right = settle(left), settle(right)
+    if left.__class__ is float and right.__class__ is float:
+        return bool(relation.numbers(left, right))
+    if relation.orders:
+        return bool(relation.numbers(compare(left, right), 0))
+    return bool(relation.numbers(equal(left, right), True))
 
 
 def equal(left: Term, right: Term) -> bool:

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from typing import Any, cast
 
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.operators import BINARY
 from jacaros.terms.plans import (
     BODIES,
     BODY_END,
@@ -223,10 +224,10 @@ def _list(term: Term) -> _Pieces:
 def _operator(term: tuple[Term, ...]) -> _Pieces:
     symbol = term[0]
     if symbol.arity == 1:
-        return ["not (", term[1], ")"] if symbol.name == "not" else ["(" + symbol.name, term[1], ")"]
-    if symbol.kind == ARITHMETIC and symbol.name not in ("div", "mod"):
-        return ["(", term[1], symbol.name, term[2], ")"]
-    return ["(", term[1], f" {symbol.name} ", term[2], ")"]
+        return (
+            [f"{symbol.name} (", term[1], ")"] if symbol.kind == LOGIC else [f"({symbol.name}", term[1], ")"]
+        )
+    return ["(", term[1], BINARY[symbol.name].between, term[2], ")"]
 
 
 def _plan_piece(term: tuple[Term, ...]) -> _Pieces:

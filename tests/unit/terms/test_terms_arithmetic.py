@@ -4,8 +4,9 @@ from collections.abc import Iterator
 import pytest
 
 import jacaros.terms.functions  # noqa: F401 - the functions of the language
-from jacaros.terms.arithmetic import ADD, RUNNING, ArithmeticFault, binary, functions, negate, settle
+from jacaros.terms.arithmetic import RUNNING, calculated, functions, settle
 from jacaros.terms.collections import MapValue, SetValue
+from jacaros.terms.operators import BINARY, ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, unify
@@ -62,25 +63,25 @@ def warnings() -> Iterator[list[str]]:
     ],
 )
 def test_operations_on_doubles(left: float, operator: str, right: float, value: float) -> None:
-    assert binary(operator, left, right) == value
+    assert calculated(operator, left, right) == value
 
 
 @pytest.mark.parametrize(
     ("left", "operator", "right"), [(0.0, "/", 0.0), (1.0, "mod", 0.0), (-8.0, "**", 1 / 3)]
 )
 def test_operations_without_a_real_result_give_no_number(left: float, operator: str, right: float) -> None:
-    assert math.isnan(binary(operator, left, right))
+    assert math.isnan(calculated(operator, left, right))
 
 
 def test_integer_division_by_zero_is_a_fault() -> None:
     with pytest.raises(ArithmeticFault, match="division by zero"):
-        binary("div", 1.0, 0.5)
+        calculated("div", 1.0, 0.5)
 
 
 def test_expressions_are_evaluated_once_their_variables_have_values() -> None:
     operand, result = Var("Z"), Var("Y")
     trail = Trail()
-    assert unify(result, (ADD, operand, 1.0), trail)
+    assert unify(result, (BINARY["+"].functor, operand, 1.0), trail)
     assert text(result) == "(Z+1)"
     unify(operand, 2.0, trail)
     assert resolve(result) == 3.0
@@ -89,15 +90,15 @@ def test_expressions_are_evaluated_once_their_variables_have_values() -> None:
 
 
 def test_minus_of_terms() -> None:
-    assert negate(2.0) == -2.0
-    assert text(negate(Var("X"))) == "(-X)"
+    assert calculated("-", 2.0) == -2.0
+    assert text(calculated("-", Var("X"))) == "(-X)"
 
 
 @pytest.mark.parametrize("operand", [atom("a"), String("2"), make_list([1.0])])
 def test_an_operand_that_is_no_number_gives_no_number_and_a_warning(
     operand: Term, warnings: list[str]
 ) -> None:
-    assert math.isnan(binary("+", operand, 1.0))
+    assert math.isnan(calculated("+", operand, 1.0))
     assert "'+' is no number" in warnings[0]
 
 
@@ -189,7 +190,7 @@ def test_a_function_added_by_a_program_is_called() -> None:
     functions["my.double"] = lambda value: value * 2
     try:
         assert call("my.double", 4.0) == 8.0
-        assert binary("+", (functor("my.double", 1, kind=FUNCTION), 4.0), 1.0) == 9.0
+        assert calculated("+", (functor("my.double", 1, kind=FUNCTION), 4.0), 1.0) == 9.0
     finally:
         del functions["my.double"]
 

@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import pytest
 
-from jacaros.terms.arithmetic import ADD
 from jacaros.terms.collections import MapValue, SetValue
 from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.operators import BINARY
 from jacaros.terms.order import annotation_set, compare, sorted_terms
 from jacaros.terms.substitution import equal, free_variables, is_ground, is_key, rename, resolve
 from jacaros.terms.text import text
@@ -90,7 +90,7 @@ def test_a_variable_is_found_deep_inside_its_own_value() -> None:
 
 
 def test_deep_arithmetic_has_its_value() -> None:
-    assert resolve(nested(0.0, lambda t: structure("f", (ADD, 1.0, 2.0), t)))[1] == 3.0
+    assert resolve(nested(0.0, lambda t: structure("f", (BINARY["+"].functor, 1.0, 2.0), t)))[1] == 3.0
 
 
 def circle(length: int) -> Var:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from jacaros.terms.arithmetic import ADD
 from jacaros.terms.collections import SetValue
 from jacaros.terms.excerpt import excerpt
+from jacaros.terms.operators import BINARY
 from jacaros.terms.plans import make_body, step
 from jacaros.terms.text import text
 from jacaros.terms.values import CONS, Annotated, String, Term, Var, atom, functor, make_list, structure
@@ -27,7 +27,7 @@ def bound(value: Term) -> Var:
         structure("f", bound(structure("g", atom("b"))), make_list([1.0, bound(2.0)])),
         make_list([1.0], Var("T")),
         Annotated(structure("p", bound(1.0)), (atom("a"), structure("b", bound(2.0)))),
-        (ADD, 1.0, bound(2.0)),
+        (BINARY["+"].functor, 1.0, bound(2.0)),
         structure("f", SetValue()),
         structure("f", make_body([step("!", atom("go"))])),
     ],

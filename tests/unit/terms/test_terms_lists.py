@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jacaros.terms.arithmetic import ADD
+from jacaros.terms.operators import BINARY
 from jacaros.terms.order import compare, sorted_terms
 from jacaros.terms.substitution import equal, free_variables, is_ground, is_key, rename, resolve
 from jacaros.terms.text import text
@@ -138,7 +138,7 @@ def test_a_variable_in_a_list_is_found_until_it_has_a_value() -> None:
 
 def test_arithmetic_in_a_list_is_evaluated_when_its_variables_have_values() -> None:
     variable = Var("X")
-    made = resolve(make_list([(ADD, variable, 1.0), 3.0]))
+    made = resolve(make_list([(BINARY["+"].functor, variable, 1.0), 3.0]))
     variable.ref = 1.0
     assert list(list_items(resolve(made))) == [2.0, 3.0]
 

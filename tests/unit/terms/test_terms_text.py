@@ -1,7 +1,7 @@
 import pytest
 
-from jacaros.terms.arithmetic import ADD, NEGATE
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.terms.operators import BINARY, PREFIX
 from jacaros.terms.plans import BODY_TERM, NO_LABEL, PLAN, RULE, make_body, step, trigger
 from jacaros.terms.text import display, double_text, number_text, text
 from jacaros.terms.unifier import Trail, unify
@@ -92,7 +92,7 @@ def filled(kind: type, *items: Term) -> Term:
         (Var("X"), "X"),
         ((functor("+", 2, kind=ARITHMETIC), Var("X"), 1.0), "(X+1)"),
         ((functor("div", 2, kind=ARITHMETIC), Var("X"), 2.0), "(X div 2)"),
-        ((NEGATE, Var("X")), "(-X)"),
+        ((PREFIX["-"].functor, Var("X")), "(-X)"),
         ((functor("<", 2, kind=RELATION), Var("X"), 1.0), "(X < 1)"),
         ((functor("&", 2, kind=LOGIC), atom("a"), atom("b")), "(a & b)"),
         ((functor("not", 1, kind=LOGIC), atom("a")), "not (a)"),
@@ -143,7 +143,7 @@ def test_print_marks_variables_without_value_only_at_the_top() -> None:
 def test_text_applies_bindings_and_evaluates() -> None:
     variable = Var("X")
     unify(variable, 2.0, Trail())
-    assert text(structure("f", variable, (ADD, variable, 1.0))) == "f(2,3)"
+    assert text(structure("f", variable, (BINARY["+"].functor, variable, 1.0))) == "f(2,3)"
 
 
 def test_long_lists_are_written_whole() -> None:

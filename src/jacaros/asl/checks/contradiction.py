@@ -2,22 +2,12 @@
 
 from collections.abc import Sequence
 from math import inf
-from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import conjuncts, is_true
 from jacaros.asl.formatter import format_term
 from jacaros.asl.walk import walk
-
-_COMPARE: Final = {
-    "<": lambda one, two: one < two,
-    "<=": lambda one, two: one <= two,
-    ">": lambda one, two: one > two,
-    ">=": lambda one, two: one >= two,
-    "==": lambda one, two: one == two,
-    "=": lambda one, two: one == two,
-    "\\==": lambda one, two: one != two,
-}
+from jacaros.terms.operators import BINARY
 
 
 def contradiction(formula: nodes.Term) -> str | None:
@@ -37,8 +27,8 @@ def _constant(parts: Sequence[nodes.Term]) -> str | None:
             isinstance(part, nodes.Relation)
             and isinstance(part.left, nodes.Number)
             and isinstance(part.right, nodes.Number)
-            and part.operator in _COMPARE
-            and not _COMPARE[part.operator](part.left.value, part.right.value)
+            and (holds := BINARY[part.operator].numbers) is not None
+            and not holds(part.left.value, part.right.value)
         ):
             return f"{format_term(part)} never holds"
     return None

@@ -36,10 +36,8 @@ def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
     stack = [formula]
     while stack:
         term = stack.pop()
-        if isinstance(term, nodes.And | nodes.Or):
-            stack += [term.right, term.left]
-        elif isinstance(term, nodes.Not):
-            stack.append(term.operand)
+        if isinstance(term, nodes.Connective):
+            stack += reversed(term.operands)
         else:
             yield term
 
@@ -63,7 +61,7 @@ def in_order(root: nodes.Node) -> Iterator[tuple[nodes.Node, bool]]:
         yield node, asked
         below = list(children(node))
         roots = [id(condition) for condition in conditions(node)]
-        inherits = asked and isinstance(node, nodes.And | nodes.Or | nodes.Not)
+        inherits = asked and isinstance(node, nodes.Connective)
         step = isinstance(node, nodes.Constraint)
         stack.extend((child, inherits or step or id(child) in roots) for child in reversed(below))
 

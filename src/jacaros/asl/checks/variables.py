@@ -10,9 +10,9 @@ from jacaros.asl.checks.formulas import Clause, in_order
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.spelling import MOST_ASKED, close_matches
 from jacaros.asl.walk import walk
+from jacaros.terms.operators import BINARY
 
 _WORD: Final = re.compile(r"\b[A-Z]\w*")
-_ORDERING = frozenset({"<", "<=", ">", ">="})
 _CONSTANTS: Final = {
     "True": "true is written in lower case",
     "TRUE": "true is written in lower case",
@@ -104,7 +104,7 @@ def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:
     """``X == 3`` where X has no value yet, ``X = X + 1``, which never hold; ``x > 3``, which does not depend on x."""
     met: set[str] = set()
     for node, asked in in_order(clause):
-        if isinstance(node, nodes.Relation) and node.operator in _ORDERING:
+        if isinstance(node, nodes.Relation) and BINARY[node.operator].orders:
             yield from _ordered_atom(node)
         if isinstance(node, nodes.Variable):
             met.add(node.name)

@@ -18,12 +18,12 @@ from jacaros.asl.layout.document import (
     row,
 )
 from jacaros.asl.layout.pieces import Piece
+from jacaros.terms.operators import BINARY, symbols_of
+from jacaros.terms.values import LOGIC
 
-_BINARY: Final = frozenset(
-    {"&", "|", "<", "<=", ">", ">=", "==", "\\==", "=", "=..", "+", "-", "*", "/", "**", "div", "mod"}
-    | {":-", ":", "<-", "<:", "|&|", "|||"}
-)
+_BINARY: Final = frozenset(BINARY) | {":-", ":", "<-", "<:", "|&|", "|||"}
 _OPERANDS: Final = frozenset({"atom", "variable", "number", "string", "true", "false"})
+_CONNECTIVES: Final = tuple(symbols_of(LOGIC))
 _CLOSING: Final = frozenset(CLOSERS.values())
 
 
@@ -101,9 +101,9 @@ class ExpressionLayout(ABC):
 
     def formula(self, begin: int, end: int) -> Document:
         """A condition; one that is too long is broken behind its ``|`` and ``&``."""
-        return self._chain(begin, end, ("|", "&"))
+        return self._chain(begin, end, _CONNECTIVES)
 
-    def _chain(self, begin: int, end: int, operators: tuple[str, ...]) -> Document:
+    def _chain(self, begin: int, end: int, operators: Sequence[str]) -> Document:
         if not operators:
             return self.plain(begin, end)
         places = self.split(begin, end, operators[0])

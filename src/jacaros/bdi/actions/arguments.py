@@ -1,8 +1,8 @@
 """Checks of arguments, shared by the internal actions."""
 
 from jacaros.bdi.actions.internal_action import WrongArguments
-from jacaros.terms.arithmetic import to_int
 from jacaros.terms.collections import QueueValue, SetValue
+from jacaros.terms.operators import to_int
 from jacaros.terms.text import text
 from jacaros.terms.values import String, Term, is_list, list_items
 

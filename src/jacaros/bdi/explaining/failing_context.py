@@ -27,9 +27,10 @@ from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Rule
 from jacaros.bdi.state.search_budget import SearchBudget, SearchLimit
-from jacaros.terms.arithmetic import RUNNING, ArithmeticFault, functions
+from jacaros.terms.arithmetic import RUNNING, functions
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.excerpt import excerpt
+from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify

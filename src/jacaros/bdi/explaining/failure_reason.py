@@ -11,9 +11,9 @@ from jacaros.bdi.explaining.step_text import step_text
 from jacaros.bdi.fast.generated.body_compiler import StepInfo
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
 from jacaros.bdi.state.literals import annotations_of_event, literal_of
-from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.excerpt import excerpt
+from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text

@@ -14,8 +14,8 @@ from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.search_budget import SearchLimit
 from jacaros.errors import InternalError
-from jacaros.terms.arithmetic import ArithmeticFault
 from jacaros.terms.deep import CyclicTerm
+from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import ATOMIC, resolve
 from jacaros.terms.text import display, text
 from jacaros.terms.values import List, String, Term, Var, atom, functor

@@ -20,8 +20,7 @@ from jacaros.bdi.state.belief_base import literal
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.rule import OpenFact
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.order import at_most, less
-from jacaros.terms.substitution import equal, rename, resolve
+from jacaros.terms.substitution import related, rename, resolve
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import (
     ACTION,
@@ -133,17 +132,9 @@ def _relation(name: str, left: Term, right: Term, trail: Trail) -> Search:
 def _holds(name: str, left: Term, right: Term, trail: Trail) -> bool:
     if name == "=":
         return unify(left, right, trail)
-    if name == "==":
-        return equal(left, right)
-    if name == "\\==":
-        return not equal(left, right)
     if name == "=..":
         return deconstruct(left, right, trail)
-    if name == "<":
-        return less(left, right)
-    if name == "<=":
-        return at_most(left, right)
-    return less(right, left) if name == ">" else at_most(right, left)
+    return related(name, left, right)
 
 
 def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], trail: Trail) -> Search:

@@ -8,7 +8,8 @@ from jacaros.asl.functions import FunctionNames
 from jacaros.bdi.rules.formulas import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.terms.arithmetic import RUNNING, ArithmeticFault, settle
+from jacaros.terms.arithmetic import RUNNING, settle
+from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo

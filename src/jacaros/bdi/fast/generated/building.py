@@ -7,10 +7,11 @@ from jacaros.asl.constant import Constant
 from jacaros.asl.lowering import lower
 from jacaros.asl.variables import variables_in
 from jacaros.bdi.fast.generated.function import FunctionBuilder
+from jacaros.terms.operators import named
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_END, BODY_SEQUENCE, BODY_TERM, NO_LABEL, PLAN, RULE, TRIGGER
 from jacaros.terms.substitution import resolve
-from jacaros.terms.values import ACTION, FUNCTION, LOGIC, RELATION, Functor, Term, atom, functor
+from jacaros.terms.values import ACTION, FUNCTION, Functor, Term, atom, functor
 from jacaros.terms.values import PLAN as PLAN_KIND
 
 _STATIC = (nodes.Literal, nodes.ListTerm, nodes.String)
@@ -51,7 +52,7 @@ def _has_calls(node: object) -> bool:
         return True
     if isinstance(node, nodes.Arithmetic):
         # A division may have no result, which is for the plan to see when it comes to it.
-        return node.operator == "div" or _has_calls(node.operands)
+        return named(node.operator, len(node.operands)).partial or _has_calls(node.operands)
     if isinstance(node, tuple):
         return any(_has_calls(item) for item in node)
     if isinstance(node, nodes.Literal):
@@ -147,28 +148,13 @@ def _list(fn: FunctionBuilder, node: nodes.ListTerm) -> str:
     return tail
 
 
-_INLINE = {"+": "+", "-": "-", "*": "*"}
-_CALLS = {"/": "divide", "div": "integer_divide", "mod": "remainder", "**": "power"}
-
-
 def _arithmetic(fn: FunctionBuilder, node: nodes.Arithmetic) -> str:
     operands = [as_name(fn, build(fn, o)) for o in node.operands]
     result = fn.local()
-    if len(operands) == 1:
-        operand = operands[0]
-        if node.operator == "-":
-            fn.line(f"{result} = -{operand} if {operand}.__class__ is float else negate({operand})")
-        else:
-            fn.line(f"{result} = {operand} if {operand}.__class__ is float else affirm({operand})")
-        return result
-    left, right = operands
-    if node.operator in _INLINE:
-        value = f"{left} {_INLINE[node.operator]} {right}"
-    else:
-        value = f"{_CALLS[node.operator]}({left}, {right})"
+    value = named(node.operator, len(operands)).code_for(*operands)
     tests = [f"{o}.__class__ is float" for o in dict.fromkeys(operands) if not is_number(o)]
     if tests:
-        value = f'{value} if {" and ".join(tests)} else binary("{node.operator}", {left}, {right})'
+        value += f' if {" and ".join(tests)} else calculated("{node.operator}", {", ".join(operands)})'
     fn.line(f"{result} = {value}")
     return result
 
@@ -203,9 +189,10 @@ def _function(fn: FunctionBuilder, node: nodes.FunctionCall) -> str:
     return result
 
 
-def _operator(fn: FunctionBuilder, name: str, kind: int, *operands: nodes.Node) -> str:
-    symbol = fn.constant(functor(name, len(operands), kind=kind))
-    return tuple_of([symbol, *(build(fn, o) for o in operands)])
+def _condition(fn: FunctionBuilder, node: nodes.Relation | nodes.Connective) -> str:
+    """A formula as a term."""
+    symbol = fn.constant(named(node.operator, len(node.operands)).functor)
+    return tuple_of([symbol, *(build(fn, o) for o in node.operands)])
 
 
 def _internal_action(fn: FunctionBuilder, node: nodes.InternalAction) -> str:
@@ -280,10 +267,10 @@ _COMPOUND: dict[type, Callable[..., str]] = {
     nodes.ListTerm: _list,
     nodes.Arithmetic: _arithmetic,
     nodes.FunctionCall: _function,
-    nodes.Relation: lambda fn, n: _operator(fn, n.operator, RELATION, n.left, n.right),
-    nodes.Not: lambda fn, n: _operator(fn, "not", LOGIC, n.operand),
-    nodes.And: lambda fn, n: _operator(fn, "&", LOGIC, n.left, n.right),
-    nodes.Or: lambda fn, n: _operator(fn, "|", LOGIC, n.left, n.right),
+    nodes.Relation: _condition,
+    nodes.Not: _condition,
+    nodes.And: _condition,
+    nodes.Or: _condition,
     nodes.InternalAction: _internal_action,
     nodes.PlanTerm: lambda fn, n: _plan(fn, n.plan),
     nodes.TriggerTerm: lambda fn, n: _trigger(fn, n.trigger),

@@ -25,7 +25,8 @@ from jacaros.bdi.fast.generated.function import TOP, FunctionBuilder
 from jacaros.bdi.fast.generated.internal_actions import internal_action
 from jacaros.bdi.fast.generated.matching import MAX_DEPTH, Then, match
 from jacaros.bdi.fast.generated.queries import TRUTHS, literal, query
-from jacaros.bdi.fast.generated.relations import BINDING_NOTHING, comparison, relation
+from jacaros.bdi.fast.generated.relations import comparison, relation
+from jacaros.terms.operators import BINARY
 
 _MAX_LOOPS = 12
 _FEW = 24
@@ -99,7 +100,7 @@ def _not(fn: FunctionBuilder, node: nodes.Not, then: Then) -> None:
 
 def _not_in_place(fn: FunctionBuilder, node: nodes.Node, then: Then) -> bool:
     """Write the search for something that must have no answer right here, if it is a simple one."""
-    if isinstance(node, nodes.Relation) and node.operator in BINDING_NOTHING:
+    if isinstance(node, nodes.Relation) and not BINARY[node.operator].binds:
         with fn.writer.block(f"if not ({comparison(fn, node)}):"):
             then()
         return True

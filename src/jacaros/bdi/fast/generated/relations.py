@@ -6,15 +6,7 @@ from jacaros.bdi.fast.generated.answers import undoing
 from jacaros.bdi.fast.generated.building import as_name, build, is_number, tuple_of
 from jacaros.bdi.fast.generated.function import FunctionBuilder
 from jacaros.bdi.fast.generated.matching import Then, match_all
-
-_COMPARE = {
-    "<": "less({0}, {1})",
-    "<=": "at_most({0}, {1})",
-    ">": "less({1}, {0})",
-    ">=": "at_most({1}, {0})",
-}
-BINDING_NOTHING = (*_COMPARE, "==", "\\==")
-"""The operators of relations that `comparison` can write."""
+from jacaros.terms.operators import BINARY
 
 
 def relation(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
@@ -79,16 +71,12 @@ def _deconstruction_in_namespace(
 
 
 def comparison(fn: FunctionBuilder, node: nodes.Relation) -> str:
-    """An expression for a relation that binds nothing."""
+    """An expression for a relation that binds nothing (see `jacaros.terms.substitution.related`)."""
+    written = BINARY[node.operator]
     left, right = as_name(fn, build(fn, node.left)), as_name(fn, build(fn, node.right))
     tests = [f"{o}.__class__ is float" for o in dict.fromkeys((left, right)) if not is_number(o)]
-    if node.operator in ("==", "\\=="):
-        plain = f"{left} == {right}"
-        general = f"equal({left}, {right})"
-        value = f"({plain} if {' and '.join(tests)} else {general})" if tests else f"({plain})"
-        return f"not {value}" if node.operator == "\\==" else value
-    general = _COMPARE[node.operator].format(left, right)
-    plain = f"{left} {node.operator} {right}"
+    known = (f"compare({left}, {right})", "0") if written.orders else (f"equal({left}, {right})", "True")
+    plain, general = written.code_for(left, right), written.code_for(*known)
     return f"({plain} if {' and '.join(tests)} else {general})" if tests else f"({plain})"
 
 

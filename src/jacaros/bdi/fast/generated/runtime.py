@@ -41,9 +41,10 @@ from jacaros.bdi.state.literals import (
     resolve_all,
 )
 from jacaros.errors import InternalError
-from jacaros.terms.arithmetic import affirm, binary, divide, integer_divide, negate, power, remainder
+from jacaros.terms.arithmetic import calculated
 from jacaros.terms.negation import qualify
-from jacaros.terms.order import annotation_set, at_most, less
+from jacaros.terms.operators import OPERATORS
+from jacaros.terms.order import annotation_set, compare
 from jacaros.terms.substitution import ATOMIC, equal, free_variables, rename, resolve
 from jacaros.terms.unifier import Trail, undo, unify, unify_annotations
 from jacaros.terms.values import BY_SELF, CONS, Annotated, Functor, List, String, Var, bare, deref, make_list
@@ -68,14 +69,13 @@ def join_branch(agent: Any, frame: list[Any]) -> Any:
 
 
 _FUNCTIONS = (
-    affirm,
     annotation_set,
     annotations_of_event,
     answers_of,
     values_of,
-    at_most,
-    binary,
+    calculated,
     cannot_wait,
+    compare,
     constructed,
     deconstruct,
     deconstruct_in,
@@ -83,30 +83,24 @@ _FUNCTIONS = (
     deeper,
     bare,
     deref,
-    divide,
     equal,
     exists,
     facts,
     first_answer_of,
     free_variables,
     holds,
-    integer_divide,
     join_branch,
-    less,
     literal_in,
     literal_of,
     make_list,
     namespace_name,
     namespace_of,
-    negate,
     own_annotations,
     positive,
-    power,
     qualify,
     refuse,
     refuse_quietly,
     release,
-    remainder,
     resolve,
     resolve_all,
     run,
@@ -125,6 +119,11 @@ _CLASSES = (Annotated, InternalError, NextPlan, Remaining, Functor, List, String
 
 NAMES: dict[str, Any] = {
     **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},
+    **{
+        each.numbers.__name__: each.numbers
+        for each in OPERATORS
+        if each.numbers is not None and not each.code
+    },
     "ATOMIC": ATOMIC,
     "BY_SELF": BY_SELF,
     "CLOSED": CLOSED,
