@@ -40,7 +40,7 @@ from jacaros.asl.loader import read_program  # noqa: E402
 from jacaros.asl.nodes import Program  # noqa: E402
 from jacaros.asl.source import SourceFile  # noqa: E402
 from jacaros.bdi.actions.internal_action import STANDARD  # noqa: E402
-from jacaros.bdi.agent import Agent  # noqa: E402
+from jacaros.bdi.mind import Mind  # noqa: E402
 from jacaros.bdi.state.act import Act, Completion  # noqa: E402
 
 CORPUS = [
@@ -213,7 +213,7 @@ def _read(path: str, including: str) -> tuple[str, str]:
 def live(program: Program) -> None:
     """Let an agent with the program live for a while."""
     host = RecordingHost(_done)
-    host.agent = agent = Agent("fuzz", program, host)
+    host.agent = agent = Mind("fuzz", program, host)
     agent.start()
     end = host.time + 1000.0
     for _ in range(CYCLES // 50):

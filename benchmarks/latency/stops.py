@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from jacaros.artifacts.ros.odometer import Odometer
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
 from jacaros.ros.backends.ros1_connections import InletTransport
@@ -23,8 +23,8 @@ STOPS: tuple[tuple[type, str, str], ...] = (
     (InletTransport, "_take", "read the socket"),
     (TopicFeed, "_take", "deserialize the message (genpy)"),
     (Odometer, "take", "deliver it to the artifact"),
-    (Agent, "perceive", "artifact: read values, step, observation, percepts"),
-    (Agent, "run", "give the agent its turn"),
+    (Mind, "perceive", "artifact: read values, step, observation, percepts"),
+    (Mind, "run", "give the agent its turn"),
     (AgentHost, "act", "mind: belief, event, plan, step"),
     (Ros1Publisher, "publish", "body, operation, and making the command"),
     (Outbox, "send", "serialize the command (rospy)"),

@@ -27,8 +27,8 @@ from jacaros.terms.values import String
 _CONSOLE = "console"
 
 
-class Mind(Protocol):
-    """What a body serves (`jacaros.bdi.agent.Agent`)."""
+class ServedMind(Protocol):
+    """What a body serves (`jacaros.bdi.mind.Mind`)."""
 
     def perceive(self, percepts: list[Percept]) -> None:
         """Take percepts in."""
@@ -70,7 +70,7 @@ class AgentBody:
     def __init__(
         self,
         agent: str,
-        mind: Mind,
+        mind: ServedMind,
         environment: Environment,
         references: References,
         writer: PerceptWriter,

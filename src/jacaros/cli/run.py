@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.cli.graph_options import (
     graph_options,
     orphan_policy,
@@ -274,7 +274,7 @@ def _can_be_woken(mas: System) -> bool:
 
 
 def _what_waits(mas: System) -> str:
-    waiting = [host.name for host in mas.directory if isinstance(host.mind, Agent) and host.mind.alive]
+    waiting = [host.name for host in mas.directory if isinstance(host.mind, Mind) and host.mind.alive]
     if not waiting:
         return "no agent has a goal or an event"
     names = ", ".join(waiting[:MOST_NAMES]) + (", ..." if len(waiting) > MOST_NAMES else "")

@@ -103,7 +103,7 @@ class BeliefBase:
         return [b for b in self if b.functor == functor and arity in (None, b.arity)]
 
 
-class Tables(belief_base.BeliefBase):
+class Tables(belief_base.BeliefTables):
     """The tables of a mind whose changes go through a `BeliefBase`."""
 
     def __init__(self, base: BeliefBase, mind: Circumstance) -> None:

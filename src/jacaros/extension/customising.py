@@ -7,9 +7,9 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Generic, TypeVar
 
-from jacaros.bdi import agent as mind
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.fast.generated.unit import Select
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.rules.option_selection import options
 from jacaros.bdi.rules.outcomes import Failure
@@ -31,7 +31,7 @@ Seen = TypeVar("Seen")
 Result = TypeVar("Result")
 
 
-class CustomMind(mind.Agent):
+class CustomMind(Mind):
     """The mind of an agent whose class is the project's: asks it about changes of beliefs, if it wants to be asked."""
 
     _revises: Callable[..., Any] | None = None
@@ -236,7 +236,7 @@ class ChoosingSelects(Selects):
 
 
 def ask(
-    owner: mind.Agent,
+    owner: Mind,
     method: Callable[..., Any],
     check: Callable[[Any], Result],
     default: Result,

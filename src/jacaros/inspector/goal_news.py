@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count
 
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.meta_events import observe_goals
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.directory import Directory
@@ -62,7 +62,7 @@ class GoalNews:
         """Hear of the goals of an agent from now on."""
         if isinstance(host, PythonAgentHost):
             host.observe(_Work(self, host.name))
-        elif isinstance(host.mind, Agent):
+        elif isinstance(host.mind, Mind):
             observe_goals(host.mind, partial(self, host.name))
 
     def __call__(self, agent: str, state: str, goal: str, which: int, intention: int, why: str = "") -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.nodes import Program
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.program_plans import ProgramPlans
 from jacaros.errors import JacarosError
@@ -90,7 +90,7 @@ class AgentClasses:
         if any(objects):
             return self._custom(spec, program, run, seed, options, code, plans, objects)
         host = AgentHost(spec.name, run, seed)
-        mind = Agent(spec.name, program, host, options, code.actions, plans)
+        mind = Mind(spec.name, program, host, options, code.actions, plans)
         code.serve(mind)
         host.mind = mind
         return host

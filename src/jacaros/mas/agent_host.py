@@ -21,8 +21,8 @@ _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
 
 
-class Mind(Protocol):
-    """An agent as its host sees it (`jacaros.bdi.agent.Agent`)."""
+class HostedMind(Protocol):
+    """An agent as its host sees it (`jacaros.bdi.mind.Mind`)."""
 
     stopped: bool
     """Set by the host: no further cycle."""
@@ -185,12 +185,12 @@ class AgentHost:
         self._ended = False
 
     @property
-    def mind(self) -> Mind:
+    def mind(self) -> HostedMind:
         """Whose host it is."""
         return self._mind
 
     @mind.setter
-    def mind(self, mind: Mind) -> None:
+    def mind(self, mind: HostedMind) -> None:
         self._mind = mind
         self.run = mind.run
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import FrameType
 
 from jacaros.asl.formatter import format_term
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import cycle
 from jacaros.bdi.rules.outcomes import FAILED
 from jacaros.bdi.state.plan import Plan
@@ -75,7 +75,7 @@ def _plan_at(host: AgentHost, frame: FrameType) -> Plan | None:
     """The plan in whose text a step stands."""
     file, line = frame.f_code.co_filename, _line(frame)
     mind = host.mind
-    return _covering(mind.library.plans, file, line) if isinstance(mind, Agent) else None
+    return _covering(mind.library.plans, file, line) if isinstance(mind, Mind) else None
 
 
 def _covering(plans: Sequence[Plan], file: str, line: int) -> Plan | None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock, Timer
 from jacaros.mas.agent_host import AgentHost
 
@@ -62,7 +62,7 @@ class AgentVitals:
     def look(self, seconds: float) -> Status:
         """Its state, *seconds* after the last look."""
         mind = self._host.mind
-        if not isinstance(mind, Agent):
+        if not isinstance(mind, Mind):
             return Status(f"agent {self._host.name}", OK, "an agent in Python")
         waiting = len(mind.events) + len(mind.inbox) + len(mind.percepts)
         self._grown = self._grown + 1 if waiting > self._waiting else 0

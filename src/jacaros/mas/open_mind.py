@@ -5,7 +5,7 @@ from typing import Any
 
 from jacaros.asl.loader import parse_formula, parse_literal
 from jacaros.asl.lowering import Names, lower_value
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import belief_update, goals
 from jacaros.bdi.state.act import Percept
 from jacaros.body.values import to_value
@@ -23,7 +23,7 @@ class OpenMind:
     """
 
     @property
-    def mind(self) -> Agent:
+    def mind(self) -> Mind:
         """The agent itself, for what this class does not offer."""
         raise NotImplementedError
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from jacaros.asl.nodes import Program
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.program_plans import ProgramPlans
 from jacaros.errors import JacarosError
 from jacaros.mas.activity import AgentTimer
@@ -124,13 +124,13 @@ class Population:
         """Make an agent with a copy of the mind of *original*; its final name, or None with the reason logged."""
         host = self._directory.find(original)
         spec = self._specs.get(original)
-        if host is None or spec is None or not isinstance(host.mind, Agent):
+        if host is None or spec is None or not isinstance(host.mind, Mind):
             told = f"error: agent {name}: there is no agent {original} to be cloned"
             self._run.console.log(told, "error")
             return None
         empty = replace(host.mind.program, beliefs=(), goals=())
         copy = self.add(replace(spec, name=self._directory.free_name(name)), empty)
-        assert isinstance(copy.mind, Agent)
+        assert isinstance(copy.mind, Mind)
         copy.mind.copy_mind_of(host.mind)
         return copy.name
 

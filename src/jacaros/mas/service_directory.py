@@ -5,7 +5,7 @@ As in Jason it is an agent, ``df``, made at its first use: what it knows are its
 
 from collections.abc import Callable, Sequence
 
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import BY_SELF, Annotated, String, Term, atom, functor
@@ -25,14 +25,14 @@ class ServiceDirectory:
         deliver: brings a message to its receiver.
     """
 
-    def __init__(self, make: Callable[[], Agent], deliver: Callable[[SpeechAct], bool]) -> None:
+    def __init__(self, make: Callable[[], Mind], deliver: Callable[[SpeechAct], bool]) -> None:
         self._make = make
         self._deliver = deliver
-        self._agent: Agent | None = None
+        self._agent: Mind | None = None
         self._watchers: list[Watcher] = []
 
     @property
-    def agent(self) -> Agent:
+    def agent(self) -> Mind:
         """The agent, made when it is first asked for."""
         if self._agent is None:
             self._agent = self._make()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl.nodes import Program
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.agent_classes import AgentClasses
@@ -234,15 +234,15 @@ class System:
         if self._surroundings is not None:
             host.body = self._surroundings.situated_body(host, spec)
 
-    def _make_directory_agent(self) -> Agent:
+    def _make_directory_agent(self) -> Mind:
         """The agent of the directory facilitator; an agent of the project that has its name takes its place."""
         host = self.directory.find(DIRECTORY_NAME)
         if host is None:
             host = AgentHost(DIRECTORY_NAME, self, f"{self._seed}/{DIRECTORY_NAME}")
-            host.mind = Agent(DIRECTORY_NAME, Program(), host)
+            host.mind = Mind(DIRECTORY_NAME, Program(), host)
             self.directory.add(DIRECTORY_NAME, host)
         mind = host.mind
-        assert isinstance(mind, Agent)
+        assert isinstance(mind, Mind)
         return mind
 
     # ---- the end

@@ -21,7 +21,7 @@ import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal 
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_term
 from jacaros.asl.lowering import lower_value
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.act import Act
@@ -106,12 +106,12 @@ class AgentHarness(OpenMind):
         wrong = code.take_errors()
         if wrong:
             raise AslError(wrong)
-        self._mind = Agent(name, tree, self._port, Options(), code.actions)
+        self._mind = Mind(name, tree, self._port, Options(), code.actions)
         code.serve(self.mind)
         self.mind.start()
 
     @property
-    def mind(self) -> Agent:
+    def mind(self) -> Mind:
         """The agent itself, for what this class does not offer."""
         return self._mind
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from random import Random
 from typing import Any, Protocol
 
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.act import Act
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Timer, VirtualClock, run
@@ -21,7 +21,7 @@ class Harness(Protocol):
     name: str
 
     @property
-    def mind(self) -> Agent:
+    def mind(self) -> Mind:
         """The agent."""
 
     others: Collection[str] | None

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from jacaros.asl.lowering import lower_value
 from jacaros.asl.source import Span
-from jacaros.bdi.agent import Agent
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.explaining.lost_goals import details
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.goals import describe
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.intention import PLAN, STEP, Intention
@@ -203,7 +203,7 @@ class Trial:
         limit = test.timeout if test.timeout is not None else self._options.timeout
         self._timers = [self._clock.call_later(limit, lambda: self._timed_out(limit))]
         host = self._mas.directory.find(test.agent)
-        if host is None or not isinstance(host.mind, Agent):
+        if host is None or not isinstance(host.mind, Mind):
             self._fail(
                 Problem(f"the test was not started: there is no agent {test.agent} any more", (), test.span)
             )
@@ -323,7 +323,7 @@ class Trial:
     def _observe(self, host: AgentHost) -> None:
         """Look on at an agent, from its making on."""
         mind = host.mind
-        if isinstance(mind, Agent):
+        if isinstance(mind, Mind):
             probe = _AgentProbe(self, host)
             mind.probe = probe
             host.intercept = probe.fakes.begin

@@ -8,7 +8,7 @@ from random import Random
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the registry of internal actions
 from jacaros.asl.loader import load_program
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.act import Act, Completion
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
@@ -44,7 +44,7 @@ class RecordingHost:
         self.memory_errors = 0
         self.goals_lost = 0
         self.exit_code = 0
-        self.agent: Agent
+        self.agent: Mind
         self._complete = complete
         self._timers: list[tuple[float, int, Ring]] = []
         self._numbers = itertools.count()
@@ -168,7 +168,7 @@ def mind(
     """An agent with this program, begun but not yet run; the host gives access to it."""
     host = RecordingHost(complete)
     tree, _ = load_program(path or f"{name}.asl", program, _reader(path))
-    host.agent = Agent(name, tree, host, options)
+    host.agent = Mind(name, tree, host, options)
     host.agent.start()
     return host
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from recording_host import printed
 
 from jacaros.bdi.state import belief_base, mixed_beliefs
-from jacaros.bdi.state.belief_base import BeliefBase, Table
+from jacaros.bdi.state.belief_base import BeliefTables, Table
 from jacaros.bdi.state.rule import OpenFact
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import Trail, unify
@@ -116,7 +116,7 @@ def test_taking_out_the_newest_leaves_no_gaps_to_read_over() -> None:
 
 
 def test_a_search_reads_what_was_there_before_an_action_in_it_changed_beliefs() -> None:
-    base = BeliefBase()
+    base = BeliefTables()
     table = base[functor("p", 1)]
     for i in range(3):
         table.add((float(i),), BY_SELF)

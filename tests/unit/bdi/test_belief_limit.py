@@ -5,7 +5,7 @@ from recording_host import RecordingHost, believed, mind
 
 from jacaros.bdi.state import circumstance
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import BeliefBase
+from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
@@ -52,7 +52,7 @@ def test_as_long_as_there_are_few_beliefs_nothing_is_counted() -> None:
     host = mind(GROW.replace("!fill(N + 1)", "if (N < 2000) { !fill(N + 1) }"))
     host.run()
     assert len(believed(host, "grown")) == 2000
-    assert host.agent.beliefs.__class__ is BeliefBase
+    assert host.agent.beliefs.__class__ is BeliefTables
 
 
 def test_what_is_replaced_or_deleted_makes_room() -> None:

@@ -9,7 +9,7 @@ from recording_host import RecordingHost, mind
 
 from jacaros.asl.loader import load_program
 from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.belief_update import tell
 from jacaros.bdi.state.act import Completion
@@ -69,7 +69,7 @@ class Storm:
 
     def __init__(self) -> None:
         self.host = RecordingHost()
-        self.host.agent = self.agent = Agent("tester", TREE, self.host, plans=PLANS)
+        self.host.agent = self.agent = Mind("tester", TREE, self.host, plans=PLANS)
         self.completed: list[int] = []
         self.still: set[float] = set()
         self.failed: set[float] = set()  # their failure events are no goals that could be dropped

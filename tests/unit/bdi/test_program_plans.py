@@ -6,7 +6,7 @@ from recording_host import RecordingHost, mind, printed
 from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.program_plans import ProgramPlans
 
 PROGRAM = """
@@ -27,7 +27,7 @@ def agents(*names: str) -> list[RecordingHost]:
     hosts = []
     for name in names:
         host = RecordingHost(None)
-        host.agent = Agent(name, program, host, plans=plans)
+        host.agent = Mind(name, program, host, plans=plans)
         host.agent.start()
         hosts.append(host)
     return hosts

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.clock import VirtualClock, run
 from jacaros.mas.console import Console
 from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentVitals
@@ -75,7 +75,7 @@ def test_a_queue_that_grows_for_some_seconds_is_a_warning(tmp_path: Path) -> Non
     def look(system: System) -> None:
         host = system.directory.find("bob")
         assert host is not None
-        assert isinstance(host.mind, Agent)
+        assert isinstance(host.mind, Mind)
         vitals = AgentVitals(host)
         levels = []
         for more in (60, 60, 60, 60, 0):

@@ -64,7 +64,7 @@ class Table:
         "unwritten",
     )
 
-    def __init__(self, functor: Functor, base: "BeliefBase | None" = None) -> None:
+    def __init__(self, functor: Functor, base: "BeliefTables | None" = None) -> None:
         self.functor = functor
         self.rows: dict[Any, tuple[Term, ...]] = {}
         self.late = _NO_LATE
@@ -388,7 +388,7 @@ def _put(index: Index, key: Any, row: Row) -> None:
         bucket[row] = None
 
 
-class BeliefBase(dict[Functor, Table]):
+class BeliefTables(dict[Functor, Table]):
     """Tables by functor, made when first asked for.
 
     Attributes:

@@ -1,12 +1,12 @@
 """A belief base with a limit (agent option ``belief_limit``).
 
-Agents have a plain `BeliefBase`, whose tables count nothing, until half of the limit is reached (`watch`); unless the limit
-is small.
+Agents have a plain `BeliefTables`, whose tables count nothing, until half of the limit is reached (`watch`); unless the
+limit is small.
 """
 
 from typing import Any
 
-from jacaros.bdi.state.belief_base import BeliefBase, Table
+from jacaros.bdi.state.belief_base import BeliefTables, Table
 from jacaros.bdi.state.budget import Holder
 from jacaros.terms.values import Functor, Term
 
@@ -16,7 +16,7 @@ INTERVAL = 10_000
 """Reasoning cycles between two counts of the beliefs in a plain base."""
 
 
-class BoundedBeliefs(BeliefBase):
+class BoundedBeliefs(BeliefTables):
     """Refuses beliefs beyond a limit: the step that adds one fails, one from outside is refused.
 
     Args:
@@ -78,9 +78,9 @@ class _BoundedTable(Table):
         return removed
 
 
-def watch(beliefs: BeliefBase, holder: Holder, limit: int) -> bool:
+def watch(beliefs: BeliefTables, holder: Holder, limit: int) -> bool:
     """Bound a plain base from now on when half of the limit is reached; True when it is bounded."""
-    if beliefs.__class__ is not BeliefBase:
+    if beliefs.__class__ is not BeliefTables:
         return True
     if 2 * sum(map(len, beliefs.values())) < limit:
         return False

@@ -8,7 +8,7 @@ from typing import Any
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import BeliefBase
+from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
 from jacaros.bdi.state.budget import budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
@@ -190,7 +190,7 @@ class Circumstance:
         self.current: Intention | None = None
         self.budgets = budgets(self)
         limit = options.belief_limit
-        self.beliefs: BeliefBase = BoundedBeliefs(self, limit) if limit <= SMALL else BeliefBase()
+        self.beliefs: BeliefTables = BoundedBeliefs(self, limit) if limit <= SMALL else BeliefTables()
         self.next_count = INTERVAL
         self.event_limit, self.intention_limit = options.event_limit, options.intention_limit
         if options.search_limit:

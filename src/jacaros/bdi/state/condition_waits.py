@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.state.belief_base import BeliefBase, Row
+from jacaros.bdi.state.belief_base import BeliefTables, Row
 from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import (
     ACTION,
@@ -116,7 +116,9 @@ class ConditionWaits(dict[int, ConditionWait]):
         return [due[number] for number in sorted(due)]
 
 
-def asked_by(formula: Term, beliefs: BeliefBase, actions: Mapping[str, InternalAction]) -> list[Asked] | None:
+def asked_by(
+    formula: Term, beliefs: BeliefTables, actions: Mapping[str, InternalAction]
+) -> list[Asked] | None:
     """The beliefs that a condition depends on; None when it may depend on anything.
 
     Facts alone are followed: rules, internal actions and functions may look at whatever they like.

@@ -6,8 +6,8 @@ from typing import Any
 
 from jacaros.asl.loader import parse_term
 from jacaros.asl.lowering import lower_value
-from jacaros.bdi.agent import Agent
 from jacaros.bdi.explaining.lost_goals import loss_of
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.condition_waits import ConditionWait, asked_by
@@ -46,7 +46,7 @@ class RunningAgent(OpenMind):
         self._end = end
 
     @property
-    def mind(self) -> Agent:
+    def mind(self) -> Mind:
         """The agent itself, for what this class does not offer.
 
         Raises:
@@ -58,7 +58,7 @@ class RunningAgent(OpenMind):
         self._waits.check()
         if self.ended:
             raise AgentEnded(f"agent {self.name} has ended")
-        if not isinstance(mind, Agent):
+        if not isinstance(mind, Mind):
             raise UsageError(
                 f"agent {self.name} is written in Python: it has no beliefs and goals of the language"
             )
@@ -121,7 +121,7 @@ class RunningAgent(OpenMind):
         mentioned = {symbol.name for symbol in _functors(term)}
         believed = [
             text(bare(each))
-            for each in (self._host.mind.beliefs.literals() if isinstance(self._host.mind, Agent) else ())
+            for each in (self._host.mind.beliefs.literals() if isinstance(self._host.mind, Mind) else ())
             if any(symbol.name in mentioned for symbol in _functors(each))
         ]
         told = f"it believes {', '.join(believed[:5])}" if believed else "it believes nothing of the kind"
@@ -139,7 +139,7 @@ class RunningAgent(OpenMind):
 class _Awaited:
     """A condition that Python code waits for, among those that the agent looks at (`Circumstance.condition_waits`)."""
 
-    def __init__(self, mind: Agent, formula: str) -> None:
+    def __init__(self, mind: Mind, formula: str) -> None:
         self.future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
         self._mind = mind
         self._formula = formula
@@ -185,7 +185,7 @@ class Goal(PursuedGoal):
     it was dropped.  A goal that nobody awaits is pursued all the same; when it fails, people are told, as of every goal.
     """
 
-    def __init__(self, written: str, mind: Agent, waits: Waits, agent_ended: Callable[[], bool]) -> None:
+    def __init__(self, written: str, mind: Mind, waits: Waits, agent_ended: Callable[[], bool]) -> None:
         super().__init__(written, WatchedGoal(mind, literal(written), self._news))
         self._mind = mind
         self._agent_ended = agent_ended

@@ -9,7 +9,7 @@ from embedding_lab import Counter, run
 import jacaros
 from jacaros import Mas
 from jacaros.asl.errors import AslError
-from jacaros.bdi.agent import Agent
+from jacaros.bdi.mind import Mind
 from jacaros.env import Artifact, operation
 from jacaros.errors import InternalError
 from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
@@ -130,11 +130,11 @@ def test_a_project_that_cannot_start_leaves_nothing_behind(tmp_path: Path) -> No
 
 
 def test_a_defect_of_jacaros_is_raised_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(self: Agent, fuel: int) -> bool:
+    def broken(self: Mind, fuel: int) -> bool:
         raise InternalError("broken")
 
     async def test(mas: Mas) -> None:
-        monkeypatch.setattr(Agent, "run", broken)
+        monkeypatch.setattr(Mind, "run", broken)
         await mas.add_agent("bob", "").until("p")
 
     with pytest.raises(InternalError, match="broken"):

@@ -64,7 +64,7 @@ from jacaros.trace import cause
 ERROR = functor("error", 1)
 
 
-class Agent(Circumstance):
+class Mind(Circumstance):
     """A mind.
 
     Args:
@@ -268,7 +268,7 @@ class Agent(Circumstance):
         """The agent will be ended after so many milliseconds; its plans may prepare for it."""
         edge_signals.shutting_down(self, milliseconds)
 
-    def copy_mind_of(self, original: "Agent") -> None:
+    def copy_mind_of(self, original: "Mind") -> None:
         """Begin with what another agent believes, wants and knows how to do; this one must be new."""
         cloning.copy_mind(original, self)
         self.architecture.ready()
