@@ -26,7 +26,11 @@ if TYPE_CHECKING:
     from jacaros.extension.errors import UnknownAgent
     from jacaros.extension.literal import Literal
     from jacaros.extension.python_agent import PythonAgent
-    from jacaros.extension.views import Event, Intention, Message, Option, Percept, Plan
+    from jacaros.extension.views import EventView as Event
+    from jacaros.extension.views import IntentionView as Intention
+    from jacaros.extension.views import Message, Option
+    from jacaros.extension.views import PerceptView as Percept
+    from jacaros.extension.views import PlanView as Plan
     from jacaros.mas.deployment import ProjectError
     from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded
     from jacaros.mas.embedding.main import run
@@ -105,11 +109,15 @@ _PLACES = {
 }
 
 
+_NAMES = {"Event": "EventView", "Intention": "IntentionView", "Percept": "PerceptView", "Plan": "PlanView"}
+"""What is called otherwise there, to tell it from a class of the mind."""
+
+
 def __getattr__(name: str) -> object:
     place = _PLACES.get(name)
     if place is None:
         raise AttributeError(f"module 'jacaros' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(place), name)
+    value = globals()[name] = getattr(import_module(place), _NAMES.get(name, name))
     return value
 
 

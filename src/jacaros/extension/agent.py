@@ -6,12 +6,12 @@ from typing import Any
 
 from jacaros.asl.loader import parse_formula
 from jacaros.asl.lowering import Names, lower
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.searching import run
-from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
 from jacaros.extension.literal import Literal, literal_of, literal_term, term_of
-from jacaros.extension.views import Event, Intention, Message, Option, Percept
+from jacaros.extension.views import EventView, IntentionView, Message, Option, PerceptView
 from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
@@ -27,14 +27,14 @@ class Agent:
     log, and the default is done in its place.
     """
 
-    _mind: Any
+    _mind: Mind
 
     # --- what may be overridden ----------------------------------------------------------------------------
 
     def init(self, *arguments: Any) -> None:
         """Called before the agent begins, with the arguments of ``agentClass my.Careful(1, fast)``."""
 
-    def select_event(self, events: Sequence[Event]) -> Event:
+    def select_event(self, events: Sequence[EventView]) -> EventView:
         """Choose the event to be handled next; asked when there are several, oldest first."""
         return events[0]
 
@@ -45,7 +45,7 @@ class Agent:
         """
         return options[0]
 
-    def select_intention(self, intentions: Sequence[Intention]) -> Intention:
+    def select_intention(self, intentions: Sequence[IntentionView]) -> IntentionView:
         """Choose the intention to make the next step; asked when there are several, in the order of their turns.
 
         An atomic intention goes first without asking.
@@ -56,7 +56,9 @@ class Agent:
         """Choose the message to be read next; asked when there are several, oldest first."""
         return messages[0]
 
-    def brf(self, added: Literal | None, removed: Literal | None, intention: Intention | None) -> bool | None:
+    def brf(
+        self, added: Literal | None, removed: Literal | None, intention: IntentionView | None
+    ) -> bool | None:
         """Revise beliefs: asked before a plan or a message adds or removes one.
 
         Args:
@@ -68,7 +70,7 @@ class Agent:
         """
         return True
 
-    def buf(self, percepts: Sequence[Percept]) -> Sequence[Percept]:
+    def buf(self, percepts: Sequence[PerceptView]) -> Sequence[PerceptView]:
         """Update beliefs: what is noticed of these changes in the environment; the others leave no trace."""
         return percepts
 
@@ -85,19 +87,16 @@ class Agent:
     @property
     def name(self) -> str:
         """Its name."""
-        name: str = self._mind.name
-        return name
+        return self._mind.name
 
     @property
     def random(self) -> Random:
         """Its random numbers, which follow from the seed of the run."""
-        random: Random = self._mind.architecture.random
-        return random
+        return self._mind.architecture.random
 
     def now(self) -> float:
         """The time of the run's clock: seconds since the Unix epoch."""
-        now: float = self._mind.architecture.now()
-        return now
+        return self._mind.architecture.now()
 
     def print(self, *values: object) -> None:
         """Print a line as ``.print`` does."""
@@ -160,7 +159,7 @@ class Agent:
         Raises:
             AslError, ValueError: it is no literal.
         """
-        found: bool = self._mind.untell(literal_term(belief))
+        found = self._mind.untell(literal_term(belief))
         self._mind.architecture.ready()
         return found
 
@@ -181,30 +180,29 @@ class Agent:
         mind = self._mind
         term = literal_term(content) if isinstance(content, str) else term_of(content)
         message = SpeechAct(performative, mind.name, receiver, rename(term), mind.next_message_id())
-        sent: bool = mind.architecture.send(message)
-        return sent
+        return mind.architecture.send(message)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r})"
 
 
-def agent_of(mind: Circumstance) -> Agent:
+def agent_of(mind: Mind) -> Agent:
     """What Python code sees of a mind; always the same object."""
     if mind.face is None:
         give_face(mind, Agent())
-    face: Agent = mind.face
-    return face
+    assert isinstance(mind.face, Agent)
+    return mind.face
 
 
-def give_face(mind: Circumstance, face: Agent) -> None:
+def give_face(mind: Mind, face: Agent) -> None:
     """Let Python code see *face* for a mind."""
     face._mind = mind
     mind.face = face
 
 
-def overridden(face: Agent, name: str) -> Callable[..., Any] | None:
+def overridden(face: Agent, name: str) -> Callable[..., object] | None:
     """The method of a subclass that overrides the one of `Agent`, or None."""
     if getattr(type(face), name) is getattr(Agent, name):
         return None
-    method: Callable[..., Any] = getattr(face, name)
+    method: Callable[..., object] = getattr(face, name)
     return method

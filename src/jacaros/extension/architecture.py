@@ -48,7 +48,7 @@ class Action:
 class Link(Protocol):
     """The next architecture of a chain; the last one is the host of the mind."""
 
-    def act(self, action: Action) -> Any:
+    def act(self, action: Action) -> bool | Awaitable[bool | None] | None:
         """Do an action."""
 
     def send(self, message: Message) -> bool:
@@ -93,8 +93,7 @@ class AgentArch:
             True when it is done (what was set in `Out` arguments is its result), False when it failed.  A coroutine
             (``async def act``) may take its time.  ``super().act(action)`` leaves it to the environment.
         """
-        result: bool | None = self.following.act(action)
-        return result
+        return self.following.act(action)
 
     def send(self, message: Message) -> bool:
         """Send a message; False when it cannot be delivered."""
@@ -116,11 +115,11 @@ class Perception:
     """What one architecture perceives, as changes since the last time."""
 
     def __init__(self) -> None:
-        self._held: dict[Any, Percept] = {}
+        self._held: dict[Term, Percept] = {}
 
     def changes(self, found: Iterable[object]) -> list[Percept]:
         """The percepts to be added and removed, so that *found* is all there is."""
-        now: dict[Any, Percept] = {}
+        now: dict[Term, Percept] = {}
         for item in found:
             symbol, row, annotations = parts(literal_term(item))
             assert symbol is not None

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.option_selection import SELECT_OPTION
 from jacaros.bdi.state import belief_base
 from jacaros.bdi.state.belief_base import Row, Table, parts
-from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from, literal_of, literal_term
@@ -20,6 +21,8 @@ from jacaros.terms.substitution import is_key
 from jacaros.terms.values import Functor, Term
 
 Annotations = tuple[Term, ...]
+Entry = Row | OpenFact | Rule
+"""What a table holds: the arguments of a belief, a belief with variables, or a rule."""
 
 
 class Keeper(Protocol):
@@ -106,7 +109,7 @@ class BeliefBase:
 class Tables(belief_base.BeliefTables):
     """The tables of a mind whose changes go through a `BeliefBase`."""
 
-    def __init__(self, base: BeliefBase, mind: Circumstance) -> None:
+    def __init__(self, base: BeliefBase, mind: Mind) -> None:
         super().__init__()
         self.base, self.mind = base, mind
         self.budget = mind.beliefs.budget
@@ -145,7 +148,7 @@ class Tables(belief_base.BeliefTables):
         finally:
             self._change = None
 
-    def ask_candidates(self, functor: Functor, arguments: Row) -> list[tuple[Any, Annotations]]:
+    def ask_candidates(self, functor: Functor, arguments: Row) -> list[tuple[Entry, Annotations]]:
         """What the class looks up for a question."""
         try:
             found = [
@@ -208,19 +211,19 @@ class AskingTable(Table):
         super().__init__(functor, tables)
         self._tables = tables
 
-    def add(self, row: Any, annotations: Annotations, last: bool = False) -> Annotations | None:
+    def add(self, row: Entry, annotations: Annotations, last: bool = False) -> Annotations | None:
         """Ask for a new row to be kept."""
         if row.__class__ is not tuple:
             return super().add(row, annotations, last)
         return annotations if self._tables.ask_add(self, row, annotations, last) else None
 
-    def set(self, row: Any, annotations: Annotations) -> bool:
+    def set(self, row: Entry, annotations: Annotations) -> bool:
         """Ask for other annotations to be kept."""
         if row.__class__ is not tuple:
             return super().set(row, annotations)
         return self._tables.ask_add(self, row, annotations, False)
 
-    def remove(self, row: Any) -> bool:
+    def remove(self, row: Entry) -> bool:
         """Ask for a row to be given up."""
         if row.__class__ is not tuple:
             return super().remove(row)
@@ -264,12 +267,12 @@ class LookingTable(AskingTable):
     def plain(self, value: bool) -> None:
         pass
 
-    def candidates(self, arguments: Row) -> Iterable[tuple[Any, Annotations]]:
+    def candidates(self, arguments: Row) -> Iterable[tuple[Entry, Annotations]]:
         """The entries that are kept, then those that are looked up."""
         return [*super().candidates(arguments), *self._tables.ask_candidates(self.functor, arguments)]
 
 
-def install(mind: Circumstance, base: BeliefBase, folder: Path, arguments: Iterable[object]) -> None:
+def install(mind: Mind, base: BeliefBase, folder: Path, arguments: Iterable[object]) -> None:
     """Let a mind keep its beliefs in a base of the project's class; before it takes up any."""
     base.agent, base.folder = agent_of(mind), folder
     mind.beliefs = base._tables = Tables(base, mind)

@@ -3,11 +3,11 @@
 import inspect
 import typing
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from jacaros.bdi.actions.internal_action import ActionError, Crashed, InternalAction, WrongArguments
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.failure import error_terms
+from jacaros.bdi.state.waiting import Waiting
 from jacaros.body.values import Outputs, to_value
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel import signature as operations
@@ -57,7 +57,7 @@ class _Callee:
         minimum, maximum: numbers of arguments that programs may give.
     """
 
-    def __init__(self, name: str, function: Callable[..., Any]) -> None:
+    def __init__(self, name: str, function: Callable[..., object]) -> None:
         self.name, self.function = name, function
         self._wants_agent = _wants_agent(function)
         self._signature = _signature(function, self._wants_agent)
@@ -88,6 +88,7 @@ class _Callee:
         """A generator: one answer for each value that it yields and that fits."""
         call = _Call(self, ctx, terms)
         search = self.function(*call.arguments)
+        assert inspect.isgenerator(search)
         while True:
             try:
                 value = next(search, search)
@@ -98,7 +99,7 @@ class _Callee:
             if call.accept(value):
                 yield
 
-    def begin(self, ctx: Context, *terms: Term) -> Any:
+    def begin(self, ctx: Context, *terms: Term) -> Waiting:
         """A coroutine: the intention waits for its end."""
         call = _Call(self, ctx, terms)
         waiting = ctx.suspend(self.name)
@@ -123,7 +124,9 @@ class _Callee:
                     failed = f"internal action {self.name} failed"
                     waiting.fail(failed, *error_terms("ia_failed", failed))
 
-        task = ctx.architecture.start_coroutine(self.function(*call.arguments), ended)
+        work = self.function(*call.arguments)
+        assert inspect.iscoroutine(work)
+        task = ctx.architecture.start_coroutine(work, ended)
         waiting.on_drop = task.cancel
         return waiting
 
@@ -247,7 +250,7 @@ def function_of(name: str, declared: Declared) -> tuple[Callable[..., Term], tup
 
 
 def _evaluator(
-    name: str, function: Callable[..., Any], signature: operations.Signature
+    name: str, function: Callable[..., object], signature: operations.Signature
 ) -> Callable[..., Term]:
     def evaluate(*terms: Term) -> Term:
         known = [resolve(term) for term in terms]
@@ -272,14 +275,14 @@ def _evaluator(
 # --- signatures --------------------------------------------------------------------------------------------
 
 
-def _signature(function: Callable[..., Any], skip_first: bool) -> operations.Signature:
+def _signature(function: Callable[..., object], skip_first: bool) -> operations.Signature:
     try:
         return operations.signature_of(function, skip_first)
     except InvalidArtifact as wrong:
         raise Undeclarable(str(wrong)) from wrong
 
 
-def _hints(function: Callable[..., Any]) -> dict[str, Any]:
+def _hints(function: Callable[..., object]) -> dict[str, object]:
     """The annotations; those that cannot be resolved stay as they are written."""
     try:
         return typing.get_type_hints(function)
@@ -287,7 +290,7 @@ def _hints(function: Callable[..., Any]) -> dict[str, Any]:
         return operations.written_annotations(function)
 
 
-def _wants_agent(function: Callable[..., Any]) -> bool:
+def _wants_agent(function: Callable[..., object]) -> bool:
     first = next(iter(inspect.signature(function).parameters), None)
     hint = _hints(function).get(first) if first is not None else None
     if isinstance(hint, str):
@@ -295,7 +298,7 @@ def _wants_agent(function: Callable[..., Any]) -> bool:
     return isinstance(hint, type) and issubclass(hint, Agent)
 
 
-def _gives_value(function: Callable[..., Any]) -> bool:
+def _gives_value(function: Callable[..., object]) -> bool:
     """Whether the annotation of what a function returns (or yields) names a value."""
     hint = _hints(function).get("return")
     if isinstance(hint, str):

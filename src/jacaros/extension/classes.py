@@ -1,6 +1,6 @@
 """From the class names of a project file to objects: agents, belief bases and architectures."""
 
-from typing import Any
+from typing import Generic, NamedTuple, TypeVar
 
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import parse_literal
@@ -15,27 +15,29 @@ from jacaros.extension.standard_bases import STANDARD_BASES, ChainBB
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.values import Term, arguments_of
 
+T = TypeVar("T")
+
 _JASON_BASES = "jason.bb."
 
 
-class Made:
-    """An object of a class that a project file names, and what it is to begin with."""
+class Made(NamedTuple, Generic[T]):
+    """An object of a class that a project file names, and the arguments of its `init`."""
 
-    def __init__(self, made: Any, arguments: tuple[object, ...]) -> None:
-        self.made, self.arguments = made, arguments
+    made: T
+    arguments: tuple[object, ...]
 
 
-def agent_object(modules: ProjectModules, written: str) -> Made | None:
+def agent_object(modules: ProjectModules, written: str) -> Made[Agent] | None:
     """An object for ``agentClass``; None when the project has no such module."""
     return _object(modules, written, Agent)
 
 
-def architecture_object(modules: ProjectModules, written: str) -> Made | None:
+def architecture_object(modules: ProjectModules, written: str) -> Made[AgentArch] | None:
     """An object for ``agentArchClass``; None when the project has no such module."""
     return _object(modules, written, AgentArch)
 
 
-def base_object(modules: ProjectModules, written: str) -> Made | None:
+def base_object(modules: ProjectModules, written: str) -> Made[BeliefBase] | None:
     """An object for ``beliefBaseClass``; None when the project has no such module."""
     name, terms = _split(written)
     if name == f"{_JASON_BASES}ChainBB":
@@ -49,7 +51,7 @@ def base_object(modules: ProjectModules, written: str) -> Made | None:
     return _object(modules, written, BeliefBase)
 
 
-def _object(modules: ProjectModules, written: str, kind: type[Any]) -> Made | None:
+def _object(modules: ProjectModules, written: str, kind: type[T]) -> Made[T] | None:
     name, terms = _split(written)
     found = find_class(modules, name, kind)
     if found is None:

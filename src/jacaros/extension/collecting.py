@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TypeVar
 
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.errors import JacarosError
@@ -14,6 +14,7 @@ from jacaros.module_outlines import INCOMPLETE, UNSEEN
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.terms.values import Term
 
+Made = TypeVar("Made")
 Limits = tuple[int, int | None]
 
 
@@ -108,7 +109,7 @@ class UnknownClass(JacarosError):
     """A project file names a class that its Python code does not have."""
 
 
-def find_class(modules: ProjectModules, name: str, kind: type[Any]) -> type[Any] | None:
+def find_class(modules: ProjectModules, name: str, kind: type[Made]) -> type[Made] | None:
     """The subclass of *kind* that ``my.Careful`` names; None when the project has no such module.
 
     Raises:
@@ -133,7 +134,7 @@ def find_class(modules: ProjectModules, name: str, kind: type[Any]) -> type[Any]
     raise UnknownClass(f"there is no class {last} in {found[0].__file__ or path}: {there}{meant}")
 
 
-def _is_own(value: object, kind: type[Any], module: ModuleType) -> bool:
+def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
     return isinstance(value, type) and issubclass(value, kind) and value.__module__ == module.__name__
 
 

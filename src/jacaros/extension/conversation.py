@@ -33,7 +33,7 @@ def content_of(value: object, performative: str = "tell") -> Term:
     return term_of(value)
 
 
-def heard(content: Term) -> Any:
+def heard(content: Term) -> object:
     """The content of a message as a Python value: a `Literal`, another value such as the text of a plan, or a list."""
     content = resolve(content)
     if is_list(content):

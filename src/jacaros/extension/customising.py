@@ -5,7 +5,7 @@ The mind itself knows nothing of this: its queues and select functions are repla
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.fast.generated.unit import Select
@@ -13,18 +13,20 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.rules.option_selection import options
 from jacaros.bdi.rules.outcomes import Failure
-from jacaros.bdi.state import act, event
+from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import literal, parts
-from jacaros.bdi.state.intention import PLAN, Frame
+from jacaros.bdi.state.event import EVENT_INTENTION, Event
+from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.plan_library import PlanLibrary, Selects
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from
-from jacaros.extension.views import Event, Intention, Message, Option, Percept
+from jacaros.extension.views import EventView, IntentionView, Message, Option, PerceptView
 from jacaros.terms.text import text
 from jacaros.terms.unifier import bind, undo
 from jacaros.terms.values import BY_SELF, Functor, Term, Var
+from jacaros.trace import Cause
 
 Item = TypeVar("Item")
 Seen = TypeVar("Seen")
@@ -34,16 +36,16 @@ Result = TypeVar("Result")
 class CustomMind(Mind):
     """The mind of an agent whose class is the project's: asks it about changes of beliefs, if it wants to be asked."""
 
-    _revises: Callable[..., Any] | None = None
-    _notices: Callable[..., Any] | None = None
+    _revises: Callable[..., object] | None = None
+    _notices: Callable[..., object] | None = None
 
     def begin_as(self, face: Agent) -> None:
         """Let an object of the project's class have its say; before the mind takes up anything."""
         give_face(self, face)
         if (choose_event := overridden(face, "select_event")) is not None:
-            self.events = ChoiceQueue(self, choose_event, Event, _is_open)
+            self.events = ChoiceQueue(self, choose_event, EventView, _is_open)
         if (choose_intention := overridden(face, "select_intention")) is not None:
-            self.intentions = ChoiceQueue(self, choose_intention, Intention, _can_run)
+            self.intentions = ChoiceQueue(self, choose_intention, IntentionView, _can_run)
         if (choose_message := overridden(face, "select_message")) is not None:
             self.inbox = ChoiceQueue(self, choose_message, Message, lambda message: True)
         if (choose_option := overridden(face, "select_option")) is not None:
@@ -53,10 +55,10 @@ class CustomMind(Mind):
         self._revises = overridden(face, "brf")
         self._notices = overridden(face, "buf")
 
-    def perceive(self, percepts: list[act.Percept]) -> None:
+    def perceive(self, percepts: list[Percept]) -> None:
         """Take note of the changes in the environment that the class lets through."""
         if self._notices is not None and percepts:
-            seen = [Percept(percept) for percept in percepts]
+            seen = [PerceptView(percept) for percept in percepts]
             kept = ask(self, self._notices, _of(seen), seen, seen)
             percepts = [percept.raw for percept in kept]
         super().perceive(percepts)
@@ -67,36 +69,38 @@ class CustomMind(Mind):
 
     def accept_kill(self, killer: str) -> bool:
         """Whether another agent may end this one."""
-        if self.face is None:
-            return True
-        accepts = overridden(self.face, "kill_acc")
+        accepts = overridden(self.look(), "kill_acc")
         return accepts is None or ask(self, accepts, bool, True, killer)
 
     # changes of beliefs, see `jacaros.bdi.rules.belief_update`
 
-    def add_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+    def add_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> object:
         """``+b``."""
         self._revise(literal_from(symbol, row, annotations), None)
         return super().add_belief(symbol, row, annotations)
 
-    def replace_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+    def replace_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> object:
         """``-+b``."""
         self.delete_any(symbol, annotations)
         return self.add_belief(symbol, row, annotations)
 
-    def add_belief_last(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+    def add_belief_last(
+        self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
+    ) -> object:
         """``+>b``."""
         self._revise(literal_from(symbol, row, annotations), None)
         return super().add_belief_last(symbol, row, annotations)
 
-    def add_belief_apart(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Any:
+    def add_belief_apart(
+        self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
+    ) -> object:
         """``++b``."""
         self._revise(literal_from(symbol, row, annotations), None)
         return super().add_belief_apart(symbol, row, annotations)
 
     def delete_belief(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], apart: bool
-    ) -> Any:
+    ) -> object:
         """``-b`` and ``--b``."""
         self._revise(None, literal_from(symbol, arguments, annotations))
         return super().delete_belief(symbol, arguments, annotations, apart)
@@ -107,12 +111,16 @@ class CustomMind(Mind):
         self._revise(None, literal_from(symbol, anything, annotations))
         super().delete_any(symbol, annotations)
 
-    def tell(self, term: Term, cause: Any = None) -> bool:
+    def tell(self, term: Term, cause: Cause | None = None) -> bool:
         """A belief from a message."""
         return self._is_refused(term, told=True) or super().tell(term, cause)
 
     def believe(
-        self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...], cause: Any = None
+        self,
+        symbol: Functor,
+        row: tuple[Term, ...],
+        annotations: tuple[Term, ...],
+        cause: Cause | None = None,
     ) -> None:
         """The same, in parts."""
         if not self._is_refused(literal(symbol, row, annotations), told=True):
@@ -144,7 +152,7 @@ class CustomMind(Mind):
         """
         if self._revises is None:
             return
-        intention = Intention(self.current) if self.current is not None else None
+        intention = IntentionView(self.current) if self.current is not None else None
         try:
             answer = self._revises(added, removed, intention)
             message = f"the agent's class refuses to {'add' if added else 'remove'} {added or removed}"
@@ -170,7 +178,7 @@ class ChoiceQueue(deque[Item], Generic[Item, Seen]):
     def __init__(
         self,
         owner: CustomMind,
-        choose: Callable[..., Any],
+        choose: Callable[..., object],
         view: Callable[[Item], Seen],
         counts: Callable[[Item], bool],
     ) -> None:
@@ -190,19 +198,19 @@ class ChoiceQueue(deque[Item], Generic[Item, Seen]):
         return item
 
 
-def _is_open(raised: event.Event) -> bool:
-    intention = raised[event.EVENT_INTENTION]
+def _is_open(raised: Event) -> bool:
+    intention = raised[EVENT_INTENTION]
     return intention is None or not intention.dropped
 
 
-def _can_run(intention: Any) -> bool:
+def _can_run(intention: Intention) -> bool:
     return not intention.dropped and intention.suspended is None
 
 
 class ChoosingSelects(Selects):
     """Select functions that look for all applicable plans and ask the agent's class for one."""
 
-    def __init__(self, library: PlanLibrary, choose: Callable[..., Any]) -> None:
+    def __init__(self, library: PlanLibrary, choose: Callable[..., object]) -> None:
         super().__init__(library)
         self._choose = choose
 
@@ -211,7 +219,7 @@ class ChoosingSelects(Selects):
         self[trigger] = select
         return select
 
-    def _selected(self, agent: CustomMind, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+    def _selected(self, agent: CustomMind, goal: tuple[Term, ...], annotations: object) -> Frame | None:
         # The context is asked once: what it drew or did may come out otherwise the next time.
         held: list[tuple[Frame, list[tuple[Var, Term]]]] = []
         found: list[Option] = []
@@ -237,8 +245,8 @@ class ChoosingSelects(Selects):
 
 def ask(
     owner: Mind,
-    method: Callable[..., Any],
-    check: Callable[[Any], Result],
+    method: Callable[..., object],
+    check: Callable[[object], Result],
     default: Result,
     *arguments: object,
 ) -> Result:
@@ -250,12 +258,12 @@ def ask(
         return default
 
 
-def _name(method: Callable[..., Any]) -> str:
+def _name(method: Callable[..., object]) -> str:
     return getattr(method, "__qualname__", repr(method))
 
 
-def _one_of(items: Sequence[Result]) -> Callable[[Any], Result]:
-    def check(chosen: Any) -> Result:
+def _one_of(items: Sequence[Result]) -> Callable[[object], Result]:
+    def check(chosen: object) -> Result:
         for item in items:
             if item is chosen:
                 return item
@@ -264,9 +272,11 @@ def _one_of(items: Sequence[Result]) -> Callable[[Any], Result]:
     return check
 
 
-def _of(seen: list[Percept]) -> Callable[[Iterable[Percept]], list[Percept]]:
-    def check(kept: Iterable[Percept]) -> list[Percept]:
-        found = list(kept)
+def _of(seen: list[PerceptView]) -> Callable[[object], list[PerceptView]]:
+    def check(kept: object) -> list[PerceptView]:
+        if not isinstance(kept, Iterable):
+            raise TypeError(f"it gives {kept!r}, which is not a list of changes")
+        found: list[PerceptView] = list(kept)
         for percept in found:
             if not any(percept is other for other in seen):
                 raise ValueError(f"it gives {percept!r}, which is none of the changes that it was given")

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar, overload
+from typing import TypeVar, overload
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+Function = TypeVar("Function", bound=Callable[..., object])
 
 _MARK = "__jacaros_declared__"
 
@@ -21,7 +21,7 @@ class Declared:
     """
 
     kind: str
-    function: Callable[..., Any]
+    function: Callable[..., object]
     name: str | None
     arity: int | tuple[int, int | None] | None = None
 
@@ -37,7 +37,7 @@ def internal_action(name: Function, /) -> Function: ...
 def internal_action(name: str | None = None, /) -> Callable[[Function], Function]: ...
 
 
-def internal_action(name: Any = None, /) -> Any:
+def internal_action(name: str | Function | None = None, /) -> object:
     """Make a function an internal action of the project's agents.
 
     The module must be found by the first part of the name: ``my.norm(X, Y, L)`` makes agents look for ``my.py``,
@@ -73,7 +73,9 @@ def arithmetic_function(
 ) -> Callable[[Function], Function]: ...
 
 
-def arithmetic_function(name: Any = None, /, *, arity: int | tuple[int, int | None] | None = None) -> Any:
+def arithmetic_function(
+    name: str | Function | None = None, /, *, arity: int | tuple[int, int | None] | None = None
+) -> object:
     """Make a function an arithmetic function of the project's programs: ``X = my.sq(3) + 1``.
 
     It is given its arguments as Python values once all of them are known, and returns a number.  An exception
@@ -92,7 +94,9 @@ def arithmetic_function(name: Any = None, /, *, arity: int | tuple[int, int | No
     return _declare(FUNCTION, name, arity)
 
 
-def _declare(kind: str, name: Any, arity: int | tuple[int, int | None] | None) -> Any:
+def _declare(
+    kind: str, name: str | Function | None, arity: int | tuple[int, int | None] | None
+) -> Function | Callable[[Function], Function]:
     if callable(name):
         return _mark(name, Declared(kind, name, None, arity))
     if name is not None and (not isinstance(name, str) or "." not in name[1:] or name.startswith(".")):
@@ -100,7 +104,7 @@ def _declare(kind: str, name: Any, arity: int | tuple[int, int | None] | None) -
     return lambda function: _mark(function, Declared(kind, function, name, arity))
 
 
-def _mark(function: Any, declared: Declared) -> Any:
+def _mark(function: Function, declared: Declared) -> Function:
     setattr(function, _MARK, (*declarations(function), declared))
     return function
 

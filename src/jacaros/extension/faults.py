@@ -3,7 +3,6 @@
 from asyncio import CancelledError
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from jacaros.bdi.actions.internal_action import ActionError, Crashed, WrongArguments
 from jacaros.env.values import Atom, Structure
@@ -11,6 +10,7 @@ from jacaros.errors import InternalError
 from jacaros.extension.literal import Literal, term_of
 from jacaros.project_modules import place_of
 from jacaros.terms.operators import ArithmeticFault
+from jacaros.terms.values import Term
 
 FAULTS = (Exception, SystemExit, CancelledError)
 """What Python code of a project may raise without ending more than the step that called it."""
@@ -24,7 +24,7 @@ class FunctionCrashed(ArithmeticFault, Crashed):
     """The Python code of an arithmetic function raised an exception."""
 
 
-def action_fault(name: str, function: Callable[..., Any], error: BaseException) -> Exception:
+def action_fault(name: str, function: Callable[..., object], error: BaseException) -> Exception:
     """How the step of an internal action fails for an exception of its function.
 
     Raises:
@@ -39,17 +39,17 @@ def action_fault(name: str, function: Callable[..., Any], error: BaseException) 
     return ActionCrashed(crash_text(name, function, error))
 
 
-def _annotation(value: Any) -> Any:
+def _annotation(value: Term) -> Term:
     return term_of(value) if isinstance(value, (Literal, Structure, Atom, str)) else value
 
 
-def crash_text(name: str, function: Callable[..., Any], error: BaseException) -> str:
+def crash_text(name: str, function: Callable[..., object], error: BaseException) -> str:
     """What people are told of an exception: the action, the exception, and where it was raised."""
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     return f"{name}: {what} ({_place(function, error)})"
 
 
-def _place(function: Callable[..., Any], error: BaseException) -> str:
+def _place(function: Callable[..., object], error: BaseException) -> str:
     code = getattr(function, "__code__", None)
     if code is None:
         return getattr(function, "__module__", "?")

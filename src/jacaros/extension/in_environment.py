@@ -11,7 +11,7 @@ from jacaros.env.session.session import Session
 from jacaros.env.session.signal_stream import SignalStream
 
 T = TypeVar("T")
-_REQUIRED: Any = object()
+_REQUIRED = object()
 
 
 class InEnvironment:
@@ -93,7 +93,7 @@ class InEnvironment:
         )
 
     def value(
-        self, name: str, index: int = 0, artifact: ArtifactId | str | None = None, default: Any = _REQUIRED
+        self, name: str, index: int = 0, artifact: ArtifactId | str | None = None, default: object = _REQUIRED
     ) -> Any:
         """A value of a property of the focused artifacts; raises `UnknownProperty` when there is no default."""
         if default is _REQUIRED:

@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Mapping, Sequence
 from inspect import iscoroutinefunction
 from random import Random
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
@@ -17,6 +17,8 @@ from jacaros.extension.in_environment import InEnvironment
 from jacaros.extension.literal import Literal
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term
+
+T = TypeVar("T")
 
 
 class Mail(Protocol):
@@ -61,7 +63,7 @@ class Host(Protocol):
     def log(self, level: str, text: str) -> None:
         """Tell people something."""
 
-    def start(self, work: Coroutine[Any, Any, Any]) -> Awaitable[Any]:
+    def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
         """Run a coroutine beside the others of the agent."""
 
     async def sleep(self, seconds: float) -> None:
@@ -119,16 +121,16 @@ class PythonAgent(InEnvironment):
     async def run(self) -> None:
         """What the agent does, from its beginning on."""
 
-    def on_message(self, message: ReceivedMessage) -> Any:
+    def on_message(self, message: ReceivedMessage) -> object:
         """Called with every message but the answers to `ask`, ``def`` or ``async def``; one after the other.
 
         A question that it does not reply to is answered with what it returns; None means that there is no answer.
         """
 
-    def on_signal(self, signal: ReceivedSignal) -> Any:
+    def on_signal(self, signal: ReceivedSignal) -> object:
         """Called with every signal of the focused artifacts, ``def`` or ``async def``; one after the other."""
 
-    def on_property(self, change: PropertyChange) -> Any:
+    def on_property(self, change: PropertyChange) -> object:
         """Called with every change of a property of the focused artifacts; as `on_signal`."""
 
     def accept_kill(self, killer: str) -> bool:
@@ -180,7 +182,7 @@ class PythonAgent(InEnvironment):
     async def _turn(self) -> None:
         await self._host.turn()
 
-    def start(self, work: Coroutine[Any, Any, Any]) -> Awaitable[Any]:
+    def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
         """Run a coroutine beside `run`; it can be awaited.
 
         It is cancelled when the agent ends, and an exception in it ends the agent, as one in `run` does.
@@ -316,7 +318,7 @@ class PythonAgent(InEnvironment):
 
     if not TYPE_CHECKING:
 
-        def __getattr__(self, name: str) -> Any:
+        def __getattr__(self, name: str) -> object:
             if name == "_host":
                 raise JacarosError(
                     f"{type(self).__name__} does not live yet: it can do this in run, not in __init__"
@@ -324,11 +326,11 @@ class PythonAgent(InEnvironment):
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
 
 
-def overridden(agent: PythonAgent, name: str) -> Callable[..., Any] | None:
+def overridden(agent: PythonAgent, name: str) -> Callable[..., object] | None:
     """The handler that a subclass has, or None."""
     if getattr(type(agent), name) is getattr(PythonAgent, name):
         return None
-    method: Callable[..., Any] = getattr(agent, name)
+    method: Callable[..., object] = getattr(agent, name)
     return method
 
 

@@ -5,7 +5,6 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from jacaros.asl.errors import AslError
 from jacaros.asl.loader import load_program, parse_literal
@@ -28,7 +27,7 @@ class TextPersistentBB(BeliefBase):
     kept.  The file is replaced as a whole when the agent ends, so that it is never half written.
     """
 
-    def init(self, *arguments: Any) -> None:
+    def init(self, *arguments: object) -> None:
         """Read what was kept."""
         names = [argument for argument in arguments if not _is_file(argument)]
         files = [str(argument) for argument in arguments if _is_file(argument)]
@@ -76,7 +75,7 @@ class IndexedBB(BeliefBase):
     Its arguments say which arguments of a predicate are the key: ``"student(key,_)"``.
     """
 
-    def init(self, *arguments: Any) -> None:
+    def init(self, *arguments: object) -> None:
         """Take note of the keys."""
         self._keys: dict[tuple[str, int], list[int]] = {}
         for argument in arguments:
@@ -122,7 +121,7 @@ class ChainBB(BeliefBase):
     def __init__(self, *links: tuple[BeliefBase, tuple[object, ...]]) -> None:
         self._beginnings = links
 
-    def init(self, *arguments: Any) -> None:
+    def init(self, *arguments: object) -> None:
         """Join the links and begin them, the last one first."""
         keeper: Keeper = self._tables
         for link, given in reversed(self._beginnings):

@@ -1,11 +1,17 @@
-"""What agent classes choose among: events, options, intentions, messages and percepts, to be looked at only."""
+"""What agent classes choose among: events, options, intentions, messages and percepts, to be looked at only.
+
+Projects import them as ``jacaros.Event``, ``Intention``, ``Percept`` and ``Plan``, without the ending that tells them from
+the classes of the mind.
+"""
 
 from typing import Any
 
-from jacaros.bdi.state import act, event, intention, speech_act
-from jacaros.bdi.state import plan as compiled
-from jacaros.bdi.state.intention import GOAL, PLAN, Frame
-from jacaros.bdi.state.literals import annotations_of_event, literal_of
+from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.event import Event, event_literal
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, Frame, Intention
+from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
 from jacaros.env.values import Structure
 from jacaros.extension.literal import Literal
@@ -15,7 +21,7 @@ from jacaros.terms.text import text
 from jacaros.terms.values import Term
 
 
-class Plan:
+class PlanView:
     """A plan of an agent.
 
     Attributes:
@@ -23,7 +29,7 @@ class Plan:
         annotations: those of the label, as Python values.
     """
 
-    def __init__(self, plan: compiled.Plan) -> None:
+    def __init__(self, plan: Plan) -> None:
         self.label = text(plan.label)
         self.annotations = tuple(to_value(resolve(annotation)) for annotation in plan.annotations)
 
@@ -43,7 +49,7 @@ class Plan:
         return f"Plan({self.label!r})"
 
 
-class Event:
+class EventView:
     """Something that happened and may need a plan.
 
     Attributes:
@@ -52,7 +58,7 @@ class Event:
         intention: number of the intention that raised it; None when it came from outside.
     """
 
-    def __init__(self, raw: event.Event) -> None:
+    def __init__(self, raw: Event) -> None:
         goal, intention, _, _ = raw
         kind = goal[0]
         self.trigger: str = kind.operator + kind.kind
@@ -62,14 +68,10 @@ class Event:
     @property
     def literal(self) -> Literal:
         """The belief or goal, with its annotations."""
-        return _literal(self._raw[event.EVENT_GOAL], self._raw[event.EVENT_ANNOTATIONS])
+        return as_literal(resolve(event_literal(self._raw)))
 
     def __str__(self) -> str:
         return f"{self.trigger}{self.literal}"
-
-
-def _literal(goal: tuple[Any, ...], annotations: Any) -> Literal:
-    return as_literal(resolve(literal_of(goal, annotations_of_event(annotations))))
 
 
 class Option:
@@ -81,9 +83,9 @@ class Option:
             that the plan does not use any more.
     """
 
-    def __init__(self, plan: compiled.Plan, frame: Frame) -> None:
+    def __init__(self, plan: Plan, frame: Frame) -> None:
         # The values are taken now: they are undone when the next option is looked for.
-        self.plan = Plan(plan)
+        self.plan = PlanView(plan)
         self.bindings: dict[str, object] = {
             name: to_value(resolve(frame[slot]))
             for name, slot in plan.slots.items()
@@ -94,26 +96,28 @@ class Option:
         return f"Option({self.plan.label!r}, {self.bindings!r})"
 
 
-class Intention:
+class IntentionView:
     """One thing that an agent is doing.
 
     Attributes:
         id: its number.
     """
 
-    def __init__(self, raw: intention.Intention) -> None:
+    def __init__(self, raw: Intention) -> None:
         self.id = raw.id
         self._raw = raw
 
     @property
     def goals(self) -> tuple[Literal, ...]:
         """What it is for: its goals and events, the first one first."""
-        return tuple(_literal(frame[GOAL], frame[2]) for frame in self._raw.frames)
+        return tuple(
+            as_literal(resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))) for frame in self._raw.frames
+        )
 
     @property
-    def plans(self) -> tuple[Plan, ...]:
+    def plans(self) -> tuple[PlanView, ...]:
         """The plans at work, the first one first."""
-        return tuple(Plan(frame[PLAN]) for frame in self._raw.frames)
+        return tuple(PlanView(frame[PLAN]) for frame in self._raw.frames)
 
     def __repr__(self) -> str:
         return f"Intention({self.id}, {[str(goal) for goal in self.goals]})"
@@ -128,7 +132,7 @@ class Message:
         id: its number; ``in_reply_to`` is that of the question that it answers, or None.
     """
 
-    def __init__(self, raw: speech_act.SpeechAct) -> None:
+    def __init__(self, raw: SpeechAct) -> None:
         self.performative, self.sender, self.receiver = raw.performative, raw.sender, raw.receiver
         self.id, self.in_reply_to = raw.id, raw.in_reply_to
         self.raw = raw
@@ -143,14 +147,14 @@ class Message:
         return f"{self.performative} from {self.sender}: {text(resolve(self._content))}"
 
 
-class Percept:
+class PerceptView:
     """Something noticed in the environment.
 
     Attributes:
         kind: ``add`` or ``remove`` for a belief, ``signal`` for an event without one.
     """
 
-    def __init__(self, raw: act.Percept) -> None:
+    def __init__(self, raw: Percept) -> None:
         self.kind = raw.kind
         self.raw = raw
 
@@ -164,7 +168,7 @@ class Percept:
         return f"Percept({self.kind!r}, {str(self.literal)!r})"
 
 
-def value_of(term: Term) -> Any:
+def value_of(term: Term) -> object:
     """A term as a Python value; atoms and structures as `Literal` with their annotations."""
     try:
         return as_literal(term)

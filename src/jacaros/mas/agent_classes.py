@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.nodes import Program
@@ -16,7 +16,14 @@ from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import NotImported, ProjectModules
 
 if TYPE_CHECKING:
+    from jacaros.extension.agent import Agent
+    from jacaros.extension.architecture import AgentArch
+    from jacaros.extension.belief_base import BeliefBase
     from jacaros.extension.classes import Made
+
+    _Objects = tuple[Made[Agent] | None, Made[BeliefBase] | None, list[Made[AgentArch]]]
+
+T = TypeVar("T")
 
 _KNOWN_ARCHITECTURES = ("jaca.", "c4jason.")
 """Packages of architectures of other systems whose work is built in here."""
@@ -104,7 +111,7 @@ class AgentClasses:
         options: Options,
         code: PythonCode,
         plans: ProgramPlans,
-        objects: "tuple[Made | None, Made | None, list[Made]]",
+        objects: "_Objects",
     ) -> AgentHost:
         # Imported here: most projects have no classes of their own.
         from jacaros.extension.belief_base import install
@@ -138,7 +145,7 @@ class AgentClasses:
             raise self._project_error(spec, told) from error
         return host
 
-    def _objects(self, spec: AgentSpec) -> "tuple[Made | None, Made | None, list[Made]]":
+    def _objects(self, spec: AgentSpec) -> "_Objects":
         """Objects for the agent class, the belief base and the architectures; the last declared comes first."""
         if not _names_classes(spec):
             return None, None, []
@@ -162,9 +169,9 @@ class AgentClasses:
         self,
         spec: AgentSpec,
         written: str | None,
-        make: "Callable[[ProjectModules, str], Made | None]",
+        make: "Callable[[ProjectModules, str], Made[T] | None]",
         kind: str,
-    ) -> "Made | None":
+    ) -> "Made[T] | None":
         name = (written or "").partition("(")[0].strip()
         if written is None or name in _DEFAULTS:
             return None

@@ -242,7 +242,7 @@ class Circumstance:
         self.running = False
         self.stopped = False
         self.accepts: Callable[[SpeechAct], bool] | None = None
-        self.face: Any = None
+        self.face: object = None
         self.edges = False
         self.drowsy = False
         self.asleep = False
