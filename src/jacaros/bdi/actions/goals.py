@@ -1,7 +1,7 @@
 """Internal actions about goals and intentions."""
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TypeVar
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import lower
@@ -14,9 +14,10 @@ from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.outcomes import SUSPENDED, Failure
 from jacaros.bdi.rules.plan_terms import bindings_of, variables_of
 from jacaros.bdi.rules.stack import achieve, pending_event
-from jacaros.bdi.state.event import EVENT_GOAL
-from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Intention
+from jacaros.bdi.state.event import EVENT_GOAL, Event
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.waiting import OWN_SUSPENSION, Waiting
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
@@ -35,10 +36,12 @@ from jacaros.terms.values import (
     structure,
 )
 
+Result = TypeVar("Result")
+
 ERROR, ERROR_MSG, REASON = functor("error", 1), functor("error_msg", 1), functor("reason", 1)
 
 
-def _on_goal(ctx: Context, goal: Term, act: Callable[[Term], Any]) -> Any:
+def _on_goal(ctx: Context, goal: Term, act: Callable[[Term], Result]) -> Result:
     """Do something to all goals that match; the variables of *goal* are bound as in the first one.
 
     Gives what *act* gives: true when the calling intention itself has lost its place.
@@ -115,7 +118,7 @@ def _stack(ctx: Context, intention: Intention) -> Term:
     return make_list([_means(ctx, frame, above) for frame, above in zip(frames, called, strict=True)][::-1])
 
 
-def _means(ctx: Context, frame: Any, called: Any) -> Term:
+def _means(ctx: Context, frame: Frame, called: Trigger | None) -> Term:
     """``im(Label, {Trigger}, {Body}, Bindings)`` of one frame; the body is what is still to be done.
 
     *called* is the trigger of the goal that it waits for, which is part of the body as long as that is so, or None.
@@ -139,7 +142,7 @@ def _means(ctx: Context, frame: Any, called: Any) -> Term:
     return structure("im", label, event, resolve(rest), bindings_of(frame))
 
 
-def _calling(frame: Any, called: Any) -> Iterator[Any]:
+def _calling(frame: Frame, called: Trigger | None) -> Iterator[nodes.Node]:
     """The step of a plan for whose goal it waits."""
     if called is None or called.failing or not called.kind:
         return
@@ -150,7 +153,7 @@ def _calling(frame: Any, called: Any) -> Iterator[Any]:
             return
 
 
-def _posts(node: Any, called: Any) -> bool:
+def _posts(node: nodes.Node, called: Trigger) -> bool:
     """Whether a step may be the one that posted a goal."""
     if called.kind == "!":
         posted: nodes.Node | None = (
@@ -163,7 +166,7 @@ def _posts(node: Any, called: Any) -> bool:
     )
 
 
-def _remaining(step: Any) -> Iterator[Any]:
+def _remaining(step: Callable[..., object] | None) -> Iterator[nodes.Node]:
     """The formulae from a step on, each once."""
     by_name = dict(getattr(step, "steps", {}))
     name = step.__name__ if step is not None else "None"
@@ -184,7 +187,7 @@ def current_intention(ctx: Context, target: Term) -> bool:
 
 
 @internal_action(".drop_intention", arity=(0, 1), suspends=True)
-def drop_intention(ctx: Context, goal: Term = None) -> Any:
+def drop_intention(ctx: Context, goal: Term = None) -> None:
     """``.drop_intention [(G)]``: the own intention, or all that have the goal, vanish without failure."""
     if goal is None:
         assert ctx.intention is not None
@@ -243,7 +246,7 @@ def drop_all_desires(ctx: Context) -> None:
 
 
 @internal_action(".suspend", arity=(0, 1), suspends=True, body_only=True)
-def suspend(ctx: Context, goal: Term = None) -> Any:
+def suspend(ctx: Context, goal: Term = None) -> object:
     """``.suspend [(G)]``: the intentions with the goal (or the own one) stop until `.resume`."""
     current = ctx.intention
     if goal is None:
@@ -287,21 +290,21 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
             return
 
 
-def _event(event: Any) -> Term:
+def _event(event: Event) -> Term:
     goal = event[EVENT_GOAL]
     symbol = goal[0].functor
     return (symbol, *goal[1:]) if len(goal) > 1 else symbol
 
 
 @internal_action(".succeed_goal", arity=1, suspends=True)
-def succeed_goal(ctx: Context, goal: Term) -> Any:
+def succeed_goal(ctx: Context, goal: Term) -> object:
     """``.succeed_goal(G)``: matching goals end as achieved."""
     own = _on_goal(ctx, goal, lambda wanted: goals.succeed_goal(ctx.agent, wanted))
     return _ended(ctx, own)
 
 
 @internal_action(".fail_goal", arity=1, suspends=True)
-def fail_goal(ctx: Context, goal: Term) -> Any:
+def fail_goal(ctx: Context, goal: Term) -> object:
     """``.fail_goal(G)``: matching goals end as failed; the failure event carries no ``error``."""
     reason = nowhere(told=f".fail_goal{_caller(ctx)} ended it")
     own = _on_goal(ctx, goal, lambda wanted: goals.fail_goal(ctx.agent, wanted, reason))
@@ -315,7 +318,7 @@ def _caller(ctx: Context) -> str:
     return f" in the plan of {shown_goal(ctx.intention.frames[-1][GOAL])}"
 
 
-def _ended(ctx: Context, own: bool) -> Any:
+def _ended(ctx: Context, own: bool) -> object:
     """The calling intention was cut: its rest goes on in the next cycle, not with this step."""
     if not own:
         return None
@@ -327,7 +330,7 @@ def _ended(ctx: Context, own: bool) -> Any:
 
 
 @internal_action(".done", arity=0, suspends=True)
-def done(ctx: Context) -> Any:
+def done(ctx: Context) -> object:
     """End the own goal as achieved."""
     current = ctx.intention
     assert current is not None
@@ -351,7 +354,7 @@ def _own_goal(current: Intention) -> int:
     return top
 
 
-def _outer_done(ctx: Context, current: Intention) -> Any:
+def _outer_done(ctx: Context, current: Intention) -> object:
     """In a sub-plan that reacts to something, the goal is that of the plan around it."""
     assert current.outer is not None
     owner, frame = current.outer
@@ -365,7 +368,7 @@ def _outer_done(ctx: Context, current: Intention) -> Any:
 
 
 @internal_action(".fail", suspends=True)
-def fail(ctx: Context, *annotations: Term) -> Any:
+def fail(ctx: Context, *annotations: Term) -> object:
     """``.fail(a, b…)``: fail, with these annotations on the failure event.
 
     An ``error(internal_action)`` and an ``error_msg`` are added where none of that name is given.

@@ -1,8 +1,14 @@
 """Internal actions that send messages."""
 
-from typing import Any
-
-from jacaros.bdi.actions.internal_action import ActionError, Written, WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import (
+    ActionError,
+    Function,
+    Written,
+    WrongArguments,
+    internal_action,
+)
+from jacaros.bdi.architecture import Timer
+from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.speech_acts import from_sender
 from jacaros.bdi.state.speech_act import SpeechAct
@@ -39,7 +45,7 @@ def _name(term: Term, what: str) -> str:
 
 
 def _say(
-    agent: Any,
+    agent: Mind,
     receiver: str,
     performative: str,
     content: Term,
@@ -70,7 +76,7 @@ def _nobody_there(receiver: str) -> tuple[str, Term]:
     return f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
 
 
-def _direct(written: Written) -> Any:
+def _direct(written: Written) -> Function | None:
     """A function for a ``.send`` whose performative is written out, as it nearly always is, and perhaps the receiver."""
     if len(written) != 3 or written[1] is None:
         return None
@@ -82,10 +88,10 @@ def _direct(written: Written) -> Any:
     return _sender_to_one(act, to, written[2] is not None and is_flat(written[2]))
 
 
-def _sender_to_one(act: str, to: str, flat: bool) -> Any:
+def _sender_to_one(act: str, to: str, flat: bool) -> Function:
     """Sends to one agent that is written out; *flat* if the content is known to be."""
 
-    def send_on(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
+    def send_on(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
         # `_say` and `is_flat`, written out for the most frequent messages; the others are left to it.
         if not flat:
             if content.__class__ is not tuple or content[0].kind:
@@ -105,10 +111,10 @@ def _sender_to_one(act: str, to: str, flat: bool) -> Any:
     return send_on
 
 
-def _sender_to_some(act: str) -> Any:
+def _sender_to_some(act: str) -> Function:
     """Sends to one or several agents that become known at run time, or to the agent itself."""
 
-    def send_to(agent: Any, receiver: Term, performative: Term, content: Term) -> None:
+    def send_to(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
         for name in _receivers(resolve(receiver)):
             _say(agent, name, act, content)
 
@@ -144,7 +150,7 @@ class _Question:
         self.missing = list(receivers)
         self.answers: list[Term] = []
         self.ids: list[str] = []
-        self.timer: Any = None
+        self.timer: Timer | None = None
 
     def answered(self, message: SpeechAct) -> None:
         """An answer has come."""
@@ -188,7 +194,7 @@ class _Question:
 
 
 @internal_action(".send", arity=(3, 5), suspends=True, direct=_direct, body_only=True, performative=1)
-def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Any:
+def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Waiting | None:
     """``.send(To, Performative, Content [, Answer [, Timeout]])``: a message; with an answer, a synchronous question.
 
     *To* is a name or a list of names, which may be empty; *Timeout* is in milliseconds, and the answer is ``timeout``
@@ -209,7 +215,7 @@ def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest:
 
 def _ask(
     ctx: Context, receivers: list[str], act: str, content: Term, rest: tuple[Term, ...], many: bool
-) -> Any:
+) -> Waiting | None:
     if not receivers:
         if not ctx.unify(rest[0], NIL):
             raise ActionError("the answer does not fit", (ERROR, atom("ask_failed")))
