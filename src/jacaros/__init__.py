@@ -13,7 +13,7 @@ TYPE_CHECKING = (
 )
 
 if TYPE_CHECKING:
-    from jacaros.asl.errors import AslError
+    from jacaros.asl.diagnostics import AslError
     from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
     from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
@@ -79,7 +79,7 @@ _PLACES = {
     "Agent": "jacaros.extension.agent",
     "AgentArch": "jacaros.extension.architecture",
     "AgentEnded": "jacaros.mas.embedding.errors",
-    "AslError": "jacaros.asl.errors",
+    "AslError": "jacaros.asl.diagnostics",
     "Atom": "jacaros.env.values",
     "BeliefBase": "jacaros.extension.belief_base",
     "Event": "jacaros.extension.views",

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from jacaros.asl.source import Span
+from jacaros.errors import JacarosError
 from jacaros.excerpts import MOST, escaped, marked, printable
 
 Severity = OneOf["error", "warning", "note"]
@@ -94,3 +95,11 @@ def _others(name: str, others: Sequence[Diagnostic]) -> Diagnostic:
 def render_all(diagnostics: Sequence[Diagnostic]) -> str:
     """Return all messages in the order given, a blank line between two; of very many only the first ones."""
     return "\n\n".join(diagnostic.render() for diagnostic in bounded(diagnostics))
+
+
+class AslError(JacarosError):
+    """A program with errors.  ``diagnostics`` holds all of them (and the warnings), ``str()`` shows them."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        self.diagnostics = tuple(diagnostics)
+        super().__init__(render_all(self.diagnostics))

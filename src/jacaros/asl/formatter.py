@@ -1,179 +1,36 @@
 """The tree as AgentSpeak text, in the style in which `.print` shows terms.
 
-Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text reads back as the same tree.
+Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text reads back as the same tree.  It differs
+from the text of the tree's term (`jacaros.terms.text`) as a program differs from what `.print` shows: strings are
+escaped, control statements have their own syntax, annotations keep their order and nothing is evaluated.
 """
 
-from functools import singledispatch
+from collections.abc import Callable, Iterable
+from typing import Any, Final
 
 from jacaros.asl import nodes
+from jacaros.asl.lowering import FORKS
 from jacaros.terms.operators import BINARY
-from jacaros.terms.text import number_text, quoted
+from jacaros.terms.text import number_text, quoted, text
 
 
-@singledispatch
 def format_term(node: nodes.Node) -> str:
-    """A term (or formula, trigger, step, rule) as text."""
-    raise TypeError(f"{type(node).__name__} is no term")
+    """A term (or formula, trigger, step, rule) as text.
 
-
-@format_term.register
-def _(node: nodes.Number) -> str:
-    return number_text(node.value)
-
-
-@format_term.register
-def _(node: nodes.String) -> str:
-    return quoted(node.value)
-
-
-@format_term.register
-def _(node: nodes.Variable) -> str:
-    name = f"{_namespace(node.namespace)}{'~' if node.negated else ''}{node.name}"
-    return name + _annotations(node.annotations)
-
-
-@format_term.register
-def _(node: nodes.Literal) -> str:
-    name = f"{_namespace(node.namespace)}{'~' if node.negated else ''}{node.functor}"
-    return f"{name}{_arguments(node.arguments)}{_annotations(node.annotations)}"
-
-
-@format_term.register
-def _(node: nodes.Annotations) -> str:
-    return _elements(node.items, node.tail)
-
-
-@format_term.register
-def _(node: nodes.ListTerm) -> str:
-    return _elements(node.items, node.tail)
-
-
-@format_term.register
-def _(node: nodes.Arithmetic) -> str:
-    if len(node.operands) == 1:
-        return f"({node.operator}{format_term(node.operands[0])})"
-    left, right = node.operands
-    return f"({format_term(left)}{BINARY[node.operator].between}{format_term(right)})"
-
-
-@format_term.register(nodes.FunctionCall)
-@format_term.register(nodes.InternalAction)
-def _(node: nodes.FunctionCall | nodes.InternalAction) -> str:
-    return node.name + _arguments(node.arguments)
-
-
-@format_term.register
-def _(node: nodes.Relation) -> str:
-    return f"({format_term(node.left)} {node.operator} {format_term(node.right)})"
-
-
-@format_term.register
-def _(node: nodes.Not) -> str:
-    return f"not ({format_term(node.operand)})"
-
-
-@format_term.register
-def _(node: nodes.And) -> str:
-    return f"({format_term(node.left)} & {format_term(node.right)})"
-
-
-@format_term.register
-def _(node: nodes.Or) -> str:
-    return f"({format_term(node.left)} | {format_term(node.right)})"
-
-
-@format_term.register
-def _(node: nodes.PlanTerm) -> str:
-    return f"{{ {format_plan(node.plan).removesuffix('.')} }}"
-
-
-@format_term.register
-def _(node: nodes.RuleTerm) -> str:
-    return f"{{ {format_term(node.rule)} }}"
-
-
-@format_term.register
-def _(node: nodes.TriggerTerm) -> str:
-    return f"{{ {format_term(node.trigger)} }}"
-
-
-@format_term.register
-def _(node: nodes.BodyTerm) -> str:
-    return _block(node.body)
-
-
-@format_term.register
-def _(node: nodes.Rule) -> str:
-    return f"{format_term(node.head)} :- {format_term(node.body)}"
-
-
-@format_term.register
-def _(node: nodes.Trigger) -> str:
-    return f"{node.operator}{node.kind}{format_term(node.literal)}"
-
-
-@format_term.register
-def _(node: nodes.Achieve) -> str:
-    return ("!!" if node.separate else "!") + format_term(node.goal)
-
-
-@format_term.register
-def _(node: nodes.Test) -> str:
-    return f"?{format_term(node.formula)}"
-
-
-@format_term.register
-def _(node: nodes.BeliefChange) -> str:
-    return node.operator + format_term(node.operand)
-
-
-@format_term.register
-def _(node: nodes.ExternalAction) -> str:
-    return format_term(node.action)
-
-
-@format_term.register
-def _(node: nodes.Constraint) -> str:
-    return format_term(node.formula)
-
-
-@format_term.register
-def _(node: nodes.If) -> str:
-    text = f"if ({_bare(node.condition)}) {_block(node.then)}"
-    return text if node.otherwise is None else f"{text} else {_block(node.otherwise)}"
-
-
-@format_term.register
-def _(node: nodes.While) -> str:
-    return f"while ({_bare(node.condition)}) {_block(node.body)}"
-
-
-@format_term.register
-def _(node: nodes.For) -> str:
-    return f"for ({_bare(node.condition)}) {_block(node.body)}"
-
-
-@format_term.register
-def _(node: nodes.Fork) -> str:
-    symbol = " |&| " if node.operator == "and" else " ||| "
-    return f"({symbol.join(f'({format_body(branch)})' for branch in node.branches)})"
-
-
-@format_term.register
-def _(node: nodes.Body) -> str:
-    return format_body(node)
-
-
-@format_term.register
-def _(node: nodes.Plan) -> str:
-    return format_plan(node)
+    Raises:
+        TypeError: the node is of another kind.
+    """
+    write = _WRITERS.get(type(node))
+    if write is None:
+        raise TypeError(f"{type(node).__name__} is not a term")
+    return write(node)
 
 
 def format_body(body: nodes.Body | nodes.Variable) -> str:
     """The steps of a body, ``; `` between them; nothing for an empty body."""
     if isinstance(body, nodes.Variable):
         return format_term(body)
-    return "; ".join(format_term(step) for step in body.steps)
+    return _joined(body.steps, "; ")
 
 
 def format_plan(plan: nodes.Plan) -> str:
@@ -186,38 +43,86 @@ def format_plan(plan: nodes.Plan) -> str:
         parts.append(f"<: {_bare(plan.goal_condition)}")
     if isinstance(plan.body, nodes.Variable) or plan.body.steps:
         parts.append(f"<- {format_body(plan.body)}")
-    text = " ".join(parts) + "."
-    if plan.subplans:
-        text += f" {{ {' '.join(format_plan(inner) for inner in plan.subplans)} }}"
-    return text
+    line = " ".join(parts) + "."
+    return f"{line} {{ {_joined(plan.subplans, ' ')} }}" if plan.subplans else line
+
+
+def _joined(parts: Iterable[nodes.Node], separator: str = ",") -> str:
+    return separator.join(map(format_term, parts))
 
 
 def _bare(formula: nodes.Term) -> str:
     """A formula without the outermost pair of brackets."""
-    text = format_term(formula)
-    if isinstance(formula, nodes.Relation | nodes.And | nodes.Or):
-        return text[1:-1]
-    return text
+    written = format_term(formula)
+    return written[1:-1] if isinstance(formula, nodes.Relation | nodes.And | nodes.Or) else written
+
+
+def _operation(node: nodes.Arithmetic | nodes.Relation | nodes.And | nodes.Or) -> str:
+    if len(node.operands) == 1:
+        return f"({node.operator}{format_term(node.operands[0])})"
+    left, right = node.operands
+    return f"({format_term(left)}{BINARY[node.operator].between}{format_term(right)})"
 
 
 def _block(body: nodes.Body) -> str:
     return f"{{ {format_body(body)} }}" if body.steps else "{ }"
 
 
-def _namespace(namespace: str | nodes.Variable | None) -> str:
-    if namespace is None:
-        return ""
-    return f"{namespace if isinstance(namespace, str) else format_term(namespace)}::"
+def _named(node: nodes.Variable | nodes.Literal, name: str) -> str:
+    """A name with its namespace and negation."""
+    namespace = format_term(node.namespace) if isinstance(node.namespace, nodes.Variable) else node.namespace
+    return f"{'' if namespace is None else f'{namespace}::'}{'~' if node.negated else ''}{name}"
 
 
 def _arguments(arguments: tuple[nodes.Term, ...]) -> str:
-    return f"({','.join(format_term(argument) for argument in arguments)})" if arguments else ""
+    return f"({_joined(arguments)})" if arguments else ""
 
 
-def _annotations(annotations: nodes.Annotations | None) -> str:
-    return "" if annotations is None else _elements(annotations.items, annotations.tail)
+def _elements(node: nodes.ListTerm | nodes.Annotations | None) -> str:
+    if node is None:
+        return ""
+    return f"[{_joined(node.items)}{'' if node.tail is None else f'|{format_term(node.tail)}'}]"
 
 
-def _elements(items: tuple[nodes.Term, ...], tail: nodes.Term | None) -> str:
-    inner = ",".join(format_term(item) for item in items)
-    return f"[{inner}]" if tail is None else f"[{inner}|{format_term(tail)}]"
+def _if(node: nodes.If) -> str:
+    written = f"if ({_bare(node.condition)}) {_block(node.then)}"
+    return written if node.otherwise is None else f"{written} else {_block(node.otherwise)}"
+
+
+def _fork(node: nodes.Fork) -> str:
+    branches = [f"({format_body(branch)})" for branch in node.branches]
+    return f"({f' {FORKS[node.operator]} '.join(branches)})"
+
+
+_WRITERS: Final[dict[type, Callable[[Any], str]]] = {
+    nodes.Number: lambda node: number_text(node.value),
+    nodes.String: lambda node: quoted(node.value),
+    nodes.Constant: lambda node: text(node.value),
+    nodes.Variable: lambda node: _named(node, node.name) + _elements(node.annotations),
+    nodes.Literal: lambda node: (
+        _named(node, node.functor) + _arguments(node.arguments) + _elements(node.annotations)
+    ),
+    **dict.fromkeys((nodes.Annotations, nodes.ListTerm), _elements),
+    **dict.fromkeys((nodes.Arithmetic, nodes.Relation, nodes.And, nodes.Or), _operation),
+    **dict.fromkeys(
+        (nodes.FunctionCall, nodes.InternalAction), lambda node: node.name + _arguments(node.arguments)
+    ),
+    nodes.Not: lambda node: f"not ({format_term(node.operand)})",
+    nodes.PlanTerm: lambda node: f"{{ {format_plan(node.plan).removesuffix('.')} }}",
+    nodes.RuleTerm: lambda node: f"{{ {format_term(node.rule)} }}",
+    nodes.TriggerTerm: lambda node: f"{{ {format_term(node.trigger)} }}",
+    nodes.BodyTerm: lambda node: _block(node.body),
+    nodes.Rule: lambda node: f"{format_term(node.head)} :- {format_term(node.body)}",
+    nodes.Trigger: lambda node: f"{node.operator}{node.kind}{format_term(node.literal)}",
+    nodes.Achieve: lambda node: f"{'!!' if node.separate else '!'}{format_term(node.goal)}",
+    nodes.Test: lambda node: f"?{format_term(node.formula)}",
+    nodes.BeliefChange: lambda node: node.operator + format_term(node.operand),
+    nodes.ExternalAction: lambda node: format_term(node.action),
+    nodes.Constraint: lambda node: format_term(node.formula),
+    nodes.If: _if,
+    nodes.While: lambda node: f"while ({_bare(node.condition)}) {_block(node.body)}",
+    nodes.For: lambda node: f"for ({_bare(node.condition)}) {_block(node.body)}",
+    nodes.Fork: _fork,
+    nodes.Body: format_body,
+    nodes.Plan: format_plan,
+}

@@ -5,8 +5,7 @@ from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.declaration import Declaration
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.layout.clauses import ProgramLayout
 from jacaros.asl.layout.document import render
 from jacaros.asl.layout.pieces import pieces_of

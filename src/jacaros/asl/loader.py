@@ -8,9 +8,8 @@ from typing import TypeVar
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.declaration import Declaration
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
-from jacaros.asl.errors import AslError
 from jacaros.asl.functions import FunctionNames
 from jacaros.asl.labels import check_labels
 from jacaros.asl.namespaces import Namespaces

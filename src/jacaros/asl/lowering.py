@@ -1,9 +1,9 @@
 """Syntax tree to terms: for beliefs, messages, and formulae shown to people."""
 
 from collections.abc import Callable
+from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.constant import Constant
 from jacaros.terms import plans
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.negation import qualify
@@ -51,14 +51,6 @@ def lower_value(node: nodes.Node, lookup: Lookup | None = None) -> Term:
     return resolve(lower(node, lookup or fresh_names()))
 
 
-def _number(node: nodes.Number, _: Lookup) -> Term:
-    return float(node.value)
-
-
-def _string(node: nodes.String, _: Lookup) -> Term:
-    return String(node.value)
-
-
 def _variable(node: nodes.Variable, lookup: Lookup) -> Term:
     value = lookup(node.name)
     if node.namespace is not None or node.negated:
@@ -100,18 +92,12 @@ def _operation(node: nodes.Arithmetic | nodes.Relation | nodes.Connective, looku
     return (named(node.operator, len(operands)).functor, *operands)
 
 
-def _function(node: nodes.FunctionCall, lookup: Lookup) -> Term:
-    symbol = functor(node.name, len(node.arguments), kind=FUNCTION)
+def _call(node: nodes.FunctionCall | nodes.InternalAction, lookup: Lookup) -> Term:
+    kind = FUNCTION if isinstance(node, nodes.FunctionCall) else ACTION
+    symbol = functor(node.name, len(node.arguments), kind=kind)
+    if kind == ACTION and not node.arguments:
+        return symbol
     return (symbol, *(lower(a, lookup) for a in node.arguments))
-
-
-def _internal_action(node: nodes.InternalAction, lookup: Lookup) -> Term:
-    symbol = functor(node.name, len(node.arguments), kind=ACTION)
-    return (symbol, *(lower(a, lookup) for a in node.arguments)) if node.arguments else symbol
-
-
-def _plan_term(node: nodes.PlanTerm, lookup: Lookup) -> Term:
-    return lower_plan(node.plan, lookup)
 
 
 def lower_plan(plan: nodes.Plan, lookup: Lookup) -> Term:
@@ -130,14 +116,6 @@ def _rule_term(node: nodes.RuleTerm, lookup: Lookup) -> Term:
     return (plans.RULE, lower(node.rule.head, lookup), lower(node.rule.body, lookup))
 
 
-def _trigger_term(node: nodes.TriggerTerm, lookup: Lookup) -> Term:
-    return lower_trigger(node.trigger, lookup)
-
-
-def _body_term(node: nodes.BodyTerm, lookup: Lookup) -> Term:
-    return _body(node.body, lookup, plans.BODY_TERM)
-
-
 def _body(node: nodes.Body, lookup: Lookup, symbol: Functor = plans.BODY_SEQUENCE) -> Term:
     *steps, last = node.steps or (None,)
     if steps and isinstance(last, nodes.ExternalAction) and isinstance(last.action, nodes.Variable):
@@ -146,74 +124,62 @@ def _body(node: nodes.Body, lookup: Lookup, symbol: Functor = plans.BODY_SEQUENC
     return plans.make_body([lower(s, lookup) for s in node.steps], symbol=symbol)
 
 
-def _achieve(node: nodes.Achieve, lookup: Lookup) -> Term:
-    return plans.step("!!" if node.separate else "!", lower(node.goal, lookup))
+def _step(node: nodes.Step, lookup: Lookup) -> Term:
+    operator, operands = step_parts(node)
+    return plans.step(operator, *(lower(each, lookup) for each in operands))
 
 
-def _test(node: nodes.Test, lookup: Lookup) -> Term:
-    return plans.step("?", lower(node.formula, lookup))
+def step_parts(node: nodes.Step) -> tuple[str, tuple[nodes.Node, ...]]:
+    """The operator and the operands of a step, as in its term (see `jacaros.terms.plans`)."""
+    match node:
+        case nodes.Achieve(goal, separate):
+            return "!!" if separate else "!", (goal,)
+        case nodes.Test(formula):
+            return "?", (formula,)
+        case nodes.BeliefChange(operator, operand):
+            return operator, (operand,)
+        case nodes.If(condition, then, otherwise):
+            return "if", (condition, then) if otherwise is None else (condition, then, otherwise)
+        case nodes.While(condition, body):
+            return "while", (condition, body)
+        case nodes.For(condition, body):
+            return "for", (condition, body)
+        case nodes.Fork(operator, branches):
+            return FORKS[operator], branches
+        case nodes.ExternalAction(action):
+            return "", (action,)
+        case nodes.Constraint(formula):
+            return "", (formula,)
 
 
-def _belief_change(node: nodes.BeliefChange, lookup: Lookup) -> Term:
-    return plans.step(node.operator, lower(node.operand, lookup))
+FORKS: Final = {"and": "|&|", "or": "|||"}
+"""How forks are written."""
 
 
 def _external(node: nodes.ExternalAction, lookup: Lookup) -> Term:
-    action = lower(node.action, lookup)
-    return action if isinstance(node.action, nodes.Variable) else plans.step("", action)
-
-
-def _constraint(node: nodes.Constraint, lookup: Lookup) -> Term:
-    return lower(node.formula, lookup)
-
-
-def _if(node: nodes.If, lookup: Lookup) -> Term:
-    parts = [lower(node.condition, lookup), lower(node.then, lookup)]
-    if node.otherwise is not None:
-        parts.append(lower(node.otherwise, lookup))
-    return plans.step("if", *parts)
-
-
-def _while(node: nodes.While, lookup: Lookup) -> Term:
-    return plans.step("while", lower(node.condition, lookup), lower(node.body, lookup))
-
-
-def _for(node: nodes.For, lookup: Lookup) -> Term:
-    return plans.step("for", lower(node.condition, lookup), lower(node.body, lookup))
-
-
-def _fork(node: nodes.Fork, lookup: Lookup) -> Term:
-    return plans.step("|&|" if node.operator == "and" else "|||", *(lower(b, lookup) for b in node.branches))
+    return lower(node.action, lookup) if isinstance(node.action, nodes.Variable) else _step(node, lookup)
 
 
 _LOWER: dict[type, Callable[..., Term]] = {
-    Constant: lambda node, _: node.value,
-    nodes.Number: _number,
-    nodes.String: _string,
+    nodes.Constant: lambda node, _: node.value,
+    nodes.Number: lambda node, _: float(node.value),
+    nodes.String: lambda node, _: String(node.value),
     nodes.Variable: _variable,
     nodes.Literal: _literal,
     nodes.ListTerm: _list,
-    nodes.Arithmetic: _operation,
-    nodes.FunctionCall: _function,
-    nodes.Relation: _operation,
-    nodes.Not: _operation,
-    nodes.And: _operation,
-    nodes.Or: _operation,
-    nodes.InternalAction: _internal_action,
-    nodes.PlanTerm: _plan_term,
+    **dict.fromkeys((nodes.Arithmetic, nodes.Relation, nodes.Not, nodes.And, nodes.Or), _operation),
+    nodes.FunctionCall: _call,
+    nodes.InternalAction: _call,
+    nodes.PlanTerm: lambda node, lookup: lower_plan(node.plan, lookup),
     nodes.RuleTerm: _rule_term,
-    nodes.TriggerTerm: _trigger_term,
-    nodes.BodyTerm: _body_term,
+    nodes.TriggerTerm: lambda node, lookup: lower_trigger(node.trigger, lookup),
+    nodes.BodyTerm: lambda node, lookup: _body(node.body, lookup, plans.BODY_TERM),
     nodes.Body: _body,
-    nodes.Achieve: _achieve,
-    nodes.Test: _test,
-    nodes.BeliefChange: _belief_change,
     nodes.ExternalAction: _external,
-    nodes.Constraint: _constraint,
-    nodes.If: _if,
-    nodes.While: _while,
-    nodes.For: _for,
-    nodes.Fork: _fork,
+    nodes.Constraint: lambda node, lookup: lower(node.formula, lookup),
+    **dict.fromkeys(
+        (nodes.Achieve, nodes.Test, nodes.BeliefChange, nodes.If, nodes.While, nodes.For, nodes.Fork), _step
+    ),
 }
 
 

@@ -11,7 +11,6 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
 from jacaros.asl.namespaces import Namespaces
 from jacaros.asl.plan_parser import PlanParser
-from jacaros.asl.section import Section
 from jacaros.asl.source import SourceFile
 
 _DIRECTIVE_WORDS: Final = frozenset({"begin", "end", "include", "namespace", "register_function"})
@@ -22,10 +21,12 @@ _STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^
 class Directives(Protocol):
     """What carries out the directives of a file; it reports what is wrong with them through the parser."""
 
-    def apply(self, parser: "ProgramParser", directive: nodes.Literal, section: Section) -> None:
+    def apply(self, parser: "ProgramParser", directive: nodes.Literal, section: nodes.Section) -> None:
         """Carry out ``{ directive }``, which stands behind the clauses of *section*."""
 
-    def apply_to_block(self, parser: "ProgramParser", directive: nodes.Literal, section: Section) -> None:
+    def apply_to_block(
+        self, parser: "ProgramParser", directive: nodes.Literal, section: nodes.Section
+    ) -> None:
         """Read the block behind ``{ begin directive }`` and put what becomes of it into *section*."""
 
 
@@ -47,9 +48,9 @@ class ProgramParser(PlanParser):
         if namespaces is not None:
             self.namespaces = namespaces
 
-    def file_clauses(self) -> Section:
+    def file_clauses(self) -> nodes.Section:
         """All clauses of the file."""
-        section = Section()
+        section = nodes.Section()
         while self.token.kind != "end":
             if self._at_end_directive():
                 self.report(
@@ -60,9 +61,9 @@ class ProgramParser(PlanParser):
                 self._recovering(self._clause, section)
         return section
 
-    def block(self, begin: nodes.Literal) -> Section:
+    def block(self, begin: nodes.Literal) -> nodes.Section:
         """The clauses up to ``{ end }``, which is taken; *begin* is the directive that opened the block."""
-        section = Section()
+        section = nodes.Section()
         while not self._at_end_directive():
             if self.token.kind == "end":
                 self.report(
@@ -78,7 +79,7 @@ class ProgramParser(PlanParser):
 
     # clauses
 
-    def _recovering(self, read: Callable[[Section], None], section: Section) -> None:
+    def _recovering(self, read: Callable[[nodes.Section], None], section: nodes.Section) -> None:
         """Read one clause; after an error go on with the next one."""
         start = self.index
         self.begin_clause()
@@ -90,7 +91,7 @@ class ProgramParser(PlanParser):
             self.report("nested-too-deeply", "this is nested too deeply", self.span_of(self.tokens[start]))
             self._synchronise(start)
 
-    def _clause(self, section: Section) -> None:
+    def _clause(self, section: nodes.Section) -> None:
         kind = self.token.kind
         if kind == "{":
             self._directive(section)
@@ -115,7 +116,7 @@ class ProgramParser(PlanParser):
             return
         self.unexpected("a belief, a goal or a plan")
 
-    def _initial_goal(self, section: Section) -> None:
+    def _initial_goal(self, section: nodes.Section) -> None:
         self.advance()
         goal = self._goal()
         if not isinstance(goal, nodes.Literal):
@@ -123,7 +124,7 @@ class ProgramParser(PlanParser):
         self._finish("goal")
         section.goals.append(goal)
 
-    def _belief_or_rule(self, section: Section) -> None:
+    def _belief_or_rule(self, section: nodes.Section) -> None:
         start = self.token
         head = self.operand(formula=True)
         if self.token.kind in ("<-", ":") and not isinstance(head, nodes.InternalAction):
@@ -167,14 +168,14 @@ class ProgramParser(PlanParser):
 
     def _subplans(self) -> tuple[nodes.Plan, ...]:
         opener = self.advance()
-        section = Section()
+        section = nodes.Section()
         while self.token.kind not in ("}", "end"):
             self._recovering(self._subplan, section)
         if not self.accept("}"):
             self.report("unclosed-bracket", "the '{' of the sub-plans is not closed", self.span_of(opener))
         return tuple(section.plans)
 
-    def _subplan(self, section: Section) -> None:
+    def _subplan(self, section: nodes.Section) -> None:
         if self.token.kind not in ("@", "+", "-", "^"):
             self.unexpected("a plan")
         section.plans.append(self._plan_clause())
@@ -235,7 +236,7 @@ class ProgramParser(PlanParser):
 
     # directives
 
-    def _directive(self, section: Section) -> None:
+    def _directive(self, section: nodes.Section) -> None:
         opener = self.advance()
         begins = self.token.kind == "atom" and self.token.text == "begin" and self.peek().kind == "atom"
         if begins:

@@ -7,7 +7,6 @@ it: `Shared`), or becomes a variable of the new plan (`Closing`), for plans adde
 from typing import cast
 
 from jacaros.asl import nodes
-from jacaros.asl.constant import Constant
 from jacaros.terms import plans
 from jacaros.terms.plans import body_steps, is_body, step_parts, trigger_parts
 from jacaros.terms.text import text
@@ -62,11 +61,11 @@ class Reflection:
             return self._list(term)
         if kind is tuple:
             return self._structure(term)
-        return cast("nodes.Term", Constant(term))
+        return cast("nodes.Term", nodes.Constant(term))
 
     def _variable(self, variable: Var) -> nodes.Term:
         if self.shared:
-            return cast("nodes.Term", Constant(variable))
+            return cast("nodes.Term", nodes.Constant(variable))
         name = self._names.get(id(variable))
         if name is None:
             self._kept.append(variable)

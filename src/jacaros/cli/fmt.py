@@ -9,7 +9,7 @@ from tempfile import NamedTemporaryFile
 
 import click
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.formatting import format_program
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.files import existing, no_programs

@@ -2,7 +2,7 @@
 
 from typing import Generic, NamedTuple, TypeVar
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import parse_literal
 from jacaros.asl.lowering import lower_value
 from jacaros.body.values import to_value

@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import load_program, parse_literal
 from jacaros.asl.lowering import lower_value
 from jacaros.asl.nodes import Rule

@@ -9,8 +9,7 @@ import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal 
 from jacaros.asl import nodes
 from jacaros.asl.checker import check, place
 from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.loader import parse_literals, read_program
 from jacaros.asl.source import SourceFile
 from jacaros.asl.suppression import Suppressions, wanted

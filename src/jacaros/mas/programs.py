@@ -10,8 +10,7 @@ from jacaros import asl
 from jacaros.asl import nodes
 from jacaros.asl.checker import check_for_run
 from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.suppression import wanted
 from jacaros.mas.deployment import AgentSpec

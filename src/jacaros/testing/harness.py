@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import load_program, parse_term
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.mind import Mind

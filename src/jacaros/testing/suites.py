@@ -22,8 +22,7 @@ from pathlib import Path
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.formatter import format_term
 from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.source import Span

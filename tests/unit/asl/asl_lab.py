@@ -1,8 +1,7 @@
 """What the tests of the front end share."""
 
 from jacaros.asl import nodes
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.formatter import format_plan, format_term
 from jacaros.asl.loader import load_program
 

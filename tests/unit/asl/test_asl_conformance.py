@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.asl.checker import check
 from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.formatter import format_plan
 from jacaros.asl.loader import load_program, parse_plan
 

@@ -7,8 +7,7 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.formatter import format_term
 from jacaros.asl.loader import load_program, parse_plans, parse_term
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.formatting import format_program
 from jacaros.asl.layout.document import WIDTH
 from jacaros.asl.lexer import Comment, tokenize

@@ -4,7 +4,7 @@ import pytest
 from asl_lab import belief_texts, errors, plan_texts, program
 
 from jacaros.asl import nodes
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import load_program, parse_plan, parse_plans
 
 

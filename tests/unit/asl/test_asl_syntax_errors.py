@@ -6,7 +6,7 @@ import pytest
 from asl_lab import errors, places
 
 from jacaros.asl.declaration import Declaration
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import load_program
 
 

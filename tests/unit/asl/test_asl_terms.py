@@ -3,7 +3,7 @@
 import pytest
 
 from jacaros.asl import nodes
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.formatter import format_term
 from jacaros.asl.loader import parse_formula, parse_literal, parse_literals, parse_term, parse_trigger
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.nodes import Literal
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.programs import Programs

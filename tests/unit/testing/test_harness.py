@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.env.values import Atom
 from jacaros.terms.values import atom
 from jacaros.testing import ActionFailed, AgentHarness

@@ -1,9 +1,12 @@
-"""Where conditions stand in a program."""
+"""Where conditions are in a program, and which of them never hold."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from math import inf
 
 from jacaros.asl import nodes
-from jacaros.asl.walk import children
+from jacaros.asl.formatter import format_term
+from jacaros.asl.walk import children, walk
+from jacaros.terms.operators import BINARY
 
 Clause = nodes.Plan | nodes.Rule
 
@@ -71,3 +74,86 @@ def is_true(formula: nodes.Term | None) -> bool:
     return formula is None or (
         isinstance(formula, nodes.Literal) and formula.functor == "true" and not formula.arguments
     )
+
+
+def contradiction(formula: nodes.Term) -> str | None:
+    """Why *formula* never holds, or None if that is not evident."""
+    parts = list(conjuncts(formula))
+    return _constant(parts) or _both_ways(parts) or _two_values(parts) or _empty_range(parts)
+
+
+def _constant(parts: Sequence[nodes.Term]) -> str | None:
+    """``false``, ``not true`` or ``2 > 3``."""
+    for part in parts:
+        if isinstance(part, nodes.Literal) and part.functor == "false" and not part.arguments:
+            return "its condition is false"
+        if isinstance(part, nodes.Not) and is_true(part.operand):
+            return "'not true' never holds"
+        if (
+            isinstance(part, nodes.Relation)
+            and isinstance(part.left, nodes.Number)
+            and isinstance(part.right, nodes.Number)
+            and (holds := BINARY[part.operator].numbers) is not None
+            and not holds(part.left.value, part.right.value)
+        ):
+            return f"{format_term(part)} never holds"
+    return None
+
+
+def _both_ways(parts: Sequence[nodes.Term]) -> str | None:
+    """``p(X) & not p(X)``."""
+    plain = [part for part in parts if isinstance(part, nodes.Literal) and _is_fixed(part)]
+    for part in parts:
+        if isinstance(part, nodes.Not) and part.operand in plain:
+            text = format_term(part.operand)
+            return f"{text} and not {text} cannot hold together"
+    return None
+
+
+def _is_fixed(term: nodes.Term) -> bool:
+    """Whether two occurrences of *term* mean the same."""
+    return not any(isinstance(node, nodes.Variable) and node.unnamed for node in walk(term))
+
+
+def _two_values(parts: Sequence[nodes.Term]) -> str | None:
+    """``X == 1 & X == 2``."""
+    values: dict[str, nodes.Term] = {}
+    for part in parts:
+        found = _variable_and_constant(part)
+        if found is None or found[1] not in ("=", "=="):
+            continue
+        name, _, value = found
+        if values.setdefault(name, value) != value:
+            return f"{name} cannot be both {format_term(values[name])} and {format_term(value)}"
+    return None
+
+
+def _empty_range(parts: Sequence[nodes.Term]) -> str | None:
+    """``X < 3 & X > 5``."""
+    below: dict[str, float] = {}
+    above: dict[str, float] = {}
+    for part in parts:
+        found = _variable_and_constant(part)
+        if found is None or not isinstance(found[2], nodes.Number):
+            continue
+        name, operator, number = found[0], found[1], found[2].value
+        if operator in ("<", "<="):
+            below[name] = min(below.get(name, inf), number)
+        elif operator in (">", ">="):
+            above[name] = max(above.get(name, -inf), number)
+    for name, most in below.items():
+        if above.get(name, -inf) > most:
+            return f"{name} cannot be both above {above[name]:g} and below {most:g}"
+    return None
+
+
+def _variable_and_constant(part: nodes.Term) -> tuple[str, str, nodes.Term] | None:
+    """The variable, the operator and the constant of ``X op constant``."""
+    if not isinstance(part, nodes.Relation) or not isinstance(part.left, nodes.Variable):
+        return None
+    left, right = part.left, part.right
+    plain = left.annotations is None and not left.unnamed
+    atom = isinstance(right, nodes.Literal) and not right.arguments and right.annotations is None
+    if not plain or not (atom or isinstance(right, nodes.Number | nodes.String)):
+        return None
+    return left.name, part.operator, right

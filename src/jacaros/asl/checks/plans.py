@@ -5,8 +5,7 @@ from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.checks.contradiction import contradiction
-from jacaros.asl.checks.formulas import is_true
+from jacaros.asl.checks.formulas import contradiction, is_true
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.spelling import is_slip_of
 from jacaros.asl.walk import walk

@@ -1,13 +1,12 @@
-"""Declarative goals: patterns that tie a goal to the belief that it is achieved."""
+"""Declarative goals, tied to the belief that they are achieved, and how long an agent is committed to them."""
 
 from dataclasses import replace
 
 from jacaros.asl import nodes
 from jacaros.asl.directives.pattern import PatternCall, achieves, is_about, on, with_plans
-from jacaros.asl.section import Section
 
 
-def declarative(call: PatternCall, section: Section) -> Section:
+def declarative(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``dg(g)``: the goal is achieved when, and only when, *g* is believed.
 
     Adds ``+!g : g``, a test ``?g`` at the end of each plan for g (its ``-!g`` plans among them), and
@@ -23,7 +22,9 @@ def declarative(call: PatternCall, section: Section) -> Section:
     return with_plans(section, [believed], plans, [succeed])
 
 
-def backtracking(call: PatternCall, section: Section, possible: nodes.Term | None = None) -> Section:
+def backtracking(
+    call: PatternCall, section: nodes.Section, possible: nodes.Term | None = None
+) -> nodes.Section:
     """``bdg(g)``: a declarative goal that is tried again when a plan fails, as long as *possible* holds."""
     goal = call.literal(0, "the goal")
     inner = declarative(call, section)
@@ -31,7 +32,7 @@ def backtracking(call: PatternCall, section: Section, possible: nodes.Term | Non
     return with_plans(inner, [], inner.plans, [retry])
 
 
-def exclusive(call: PatternCall, section: Section) -> Section:
+def exclusive(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``ebdg(g)``: a backtracking declarative goal for which each plan is tried at most once.
 
     The plans that were tried are remembered in beliefs ``p__tried(Plan, g)``, which go when the goal ends.
@@ -56,7 +57,7 @@ def exclusive(call: PatternCall, section: Section) -> Section:
     return with_plans(inner, others, [succeed], [give_up, retry])
 
 
-def maintenance(call: PatternCall, section: Section) -> Section:
+def maintenance(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``mg(g)`` or ``mg(g, pattern)``: *g*, which holds at first, is pursued again whenever it is lost.
 
     The plans for g are treated by *pattern*, blind commitment (``bc``) if none is named.
@@ -67,6 +68,41 @@ def maintenance(call: PatternCall, section: Section) -> Section:
     inner = call.nested(section, 1) if named else call.apply(replace(call, name="bc"), section)
     pursue = call.plan(on("-", goal), call.achieve(goal))
     return replace(with_plans(inner, [], inner.plans, [pursue]), beliefs=[*_initial(goal), *inner.beliefs])
+
+
+def blind(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """``bc(g)`` or ``bc(g, pattern)``: the goal is pursued until it is believed, whatever fails.
+
+    The plans for g are treated by *pattern* (``bdg`` if none is named), and a last plan posts the goal again
+    when no other plan is applicable.
+    """
+    call.at_most(2)
+    if len(call.arguments) < 2:
+        return _committed(call, section)
+    return _with_last_plan(call, call.nested(section, 1))
+
+
+def single_minded(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """``smc(g, f)``: the goal is pursued until it is believed, or *f*, that it is impossible, is believed.
+
+    When f comes to be believed the goal fails, and the failure goes on to whoever posted it; the retry of the
+    blind commitment inside does not catch it (in the reference it does).
+    """
+    call.at_most(2)
+    return _committed(call, section, call.literal(1, "the belief that the goal is impossible"))
+
+
+def relativised(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """``rc(g, m)``: the goal is pursued until it is believed, or its motivation *m* is no longer believed."""
+    call.at_most(2)
+    return _motivated(call, _committed(call, section), call.literal(1, "the motivation"))
+
+
+def open_minded(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """``omc(g, f, m)``: a belief *f* makes the goal fail, and losing the motivation *m* ends it."""
+    call.at_most(3)
+    committed = _committed(call, section, call.literal(1, "the belief that the goal is impossible"))
+    return _motivated(call, committed, call.literal(2, "the motivation"))
 
 
 def _initial(goal: nodes.Literal) -> list[nodes.Literal]:
@@ -108,3 +144,37 @@ def _own_goal(plan: nodes.Plan) -> nodes.Literal:
 
 def _tried(index: nodes.Term, goal: nodes.Literal) -> nodes.Literal:
     return nodes.Literal("p__tried", (index, goal), span=goal.span)
+
+
+def _committed(
+    call: PatternCall, section: nodes.Section, impossible: nodes.Literal | None = None
+) -> nodes.Section:
+    """Blind commitment, given up when *impossible* is believed."""
+    goal = call.literal(0, "the goal")
+    alone = replace(call, arguments=call.arguments[:1])
+    if impossible is None:
+        return _with_last_plan(call, backtracking(alone, section))
+    possible = nodes.Not(impossible, span=call.span)
+    inner = _with_last_plan(call, backtracking(alone, section, possible), possible)
+    reason = nodes.Literal("error", (nodes.Literal("impossible"),), span=call.span)
+    message = nodes.Literal(
+        "error_msg", (nodes.String("the goal is believed to be impossible"),), span=call.span
+    )
+    give_up = call.plan(on("-!", goal), call.internal(".fail", reason, message))
+    fail = call.plan(on("+", impossible), call.internal(".fail_goal", goal))
+    return with_plans(inner, [], inner.plans, [give_up, fail])
+
+
+def _with_last_plan(
+    call: PatternCall, section: nodes.Section, possible: nodes.Term | None = None
+) -> nodes.Section:
+    """*section* with ``+!g <- !g`` as the last plan for the goal."""
+    goal = call.literal(0, "the goal")
+    again = call.plan(on("+!", goal), call.achieve(goal), context=possible)
+    return with_plans(section, [], section.plans, [again])
+
+
+def _motivated(call: PatternCall, section: nodes.Section, motivation: nodes.Literal) -> nodes.Section:
+    """*section* with a plan that ends the goal, as if achieved, when *motivation* is lost."""
+    unmotivated = call.plan(on("-", motivation), call.internal(".succeed_goal", call.literal(0, "the goal")))
+    return with_plans(section, [], section.plans, [unmotivated])

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from jacaros.asl import nodes
-from jacaros.asl.section import Section
 from jacaros.asl.source import Span
 
 TRUE = nodes.Literal("true")
@@ -37,7 +36,7 @@ class PatternCall:
     arguments: tuple[nodes.Term, ...]
     span: Span | None
     number: int
-    apply: "Callable[[PatternCall, Section], Section]"
+    apply: "Callable[[PatternCall, nodes.Section], nodes.Section]"
     parse_trigger: Callable[[str], nodes.Trigger]
     parse_formula: Callable[[str], nodes.Term]
 
@@ -50,7 +49,7 @@ class PatternCall:
             raise PatternError(f"argument {index + 1} of '{self.name}' is {what}, which is a literal")
         return argument
 
-    def nested(self, section: Section, index: int) -> Section:
+    def nested(self, section: nodes.Section, index: int) -> nodes.Section:
         """Apply the pattern that argument *index* names, which is for the same goal if it names none."""
         written = self.literal(index, "a pattern")
         arguments = written.arguments or self.arguments[:1]
@@ -129,7 +128,7 @@ def _may_unify(left: nodes.Term, right: nodes.Term) -> bool:
 
 
 def with_plans(
-    section: Section, before: list[nodes.Plan], plans: list[nodes.Plan], after: list[nodes.Plan]
-) -> Section:
+    section: nodes.Section, before: list[nodes.Plan], plans: list[nodes.Plan], after: list[nodes.Plan]
+) -> nodes.Section:
     """*section* with other plans."""
     return replace(section, plans=[*before, *plans, *after])

@@ -7,22 +7,29 @@ from typing import Final, TypeVar
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.directives.commitment import blind, open_minded, relativised, single_minded
-from jacaros.asl.directives.goal_patterns import backtracking, declarative, exclusive, maintenance
+from jacaros.asl.directives.goal_patterns import (
+    backtracking,
+    blind,
+    declarative,
+    exclusive,
+    maintenance,
+    open_minded,
+    relativised,
+    single_minded,
+)
 from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
 from jacaros.asl.directives.pattern import PatternCall, PatternError
 from jacaros.asl.directives.sequenced import sequenced
 from jacaros.asl.namespaces import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.program_parser import ProgramParser
-from jacaros.asl.section import Section
 from jacaros.asl.source import SourceFile, Span
 from jacaros.asl.spelling import close_matches
 
 Read = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError."""
 
-PATTERNS: Final[dict[str, Callable[[PatternCall, Section], Section]]] = {
+PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]] = {
     "dg": declarative,
     "bdg": backtracking,
     "ebdg": exclusive,
@@ -55,7 +62,7 @@ class DirectiveProcessor:
 
     def read_file(
         self, file: SourceFile, namespaces: Namespaces | None = None, last_dot_optional: bool = False
-    ) -> Section:
+    ) -> nodes.Section:
         """All clauses of *file* and of what it includes."""
         self._open_files.append(file.name)
         parser = ProgramParser(
@@ -65,7 +72,7 @@ class DirectiveProcessor:
         self._open_files.pop()
         return section
 
-    def apply(self, parser: ProgramParser, directive: nodes.Literal, section: Section) -> None:
+    def apply(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
         """Carry out a directive without a block."""
         name = directive.functor
         if name == "include":
@@ -88,7 +95,7 @@ class DirectiveProcessor:
                 "unknown-directive", f"there is no directive '{name}'", directive.span, _meant(name)
             )
 
-    def apply_to_block(self, parser: ProgramParser, directive: nodes.Literal, section: Section) -> None:
+    def apply_to_block(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
         """Read the block of a directive and put what becomes of it into *section*."""
         name = directive.functor
         if name == "namespace":
@@ -113,7 +120,7 @@ class DirectiveProcessor:
 
     # include
 
-    def _include(self, parser: ProgramParser, directive: nodes.Literal) -> Section:
+    def _include(self, parser: ProgramParser, directive: nodes.Literal) -> nodes.Section:
         arguments = directive.arguments
         if not 1 <= len(arguments) <= 2 or not isinstance(arguments[0], nodes.String):
             parser.report(
@@ -122,14 +129,14 @@ class DirectiveProcessor:
                 directive.span,
                 '{ include("file.asl") }',
             )
-            return Section()
+            return nodes.Section()
         path = arguments[0].value
         namespaces = Namespaces(parser.namespaces.current, dict(parser.namespaces.local))
         if len(arguments) == 2:
             namespaces.current = self._include_namespace(parser, arguments[1])
         found = self._find(parser, path, directive)
         if found is None:
-            return Section()
+            return nodes.Section()
         if found.name in self._open_files:
             wrong, hint = f"'{path}' includes itself", "files cannot include each other in a circle"
         elif len(self._open_files) > _DEEPEST:
@@ -141,7 +148,7 @@ class DirectiveProcessor:
             wrong = hint = ""
         if wrong:
             parser.report("include-circle", wrong, directive.span, hint)
-            return Section()
+            return nodes.Section()
         self._included += 1
         return self.read_file(found, namespaces)
 
@@ -294,7 +301,7 @@ class DirectiveProcessor:
         return argument
 
 
-def _apply_pattern(call: PatternCall, section: Section) -> Section:
+def _apply_pattern(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """What the pattern of that name makes of *section*."""
     pattern = PATTERNS.get(call.name)
     if pattern is None:

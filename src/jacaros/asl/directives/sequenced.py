@@ -2,10 +2,9 @@
 
 from jacaros.asl import nodes
 from jacaros.asl.directives.pattern import TRUE, PatternCall, PatternError, on, with_plans
-from jacaros.asl.section import Section
 
 
-def sequenced(call: PatternCall, section: Section) -> Section:
+def sequenced(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """``sga("trigger", "context", g)``: each such event adopts *g*, one goal after the other.
 
     Goals that wait are kept in order in beliefs ``p__queue(N, g)``; one that is waiting already is not queued

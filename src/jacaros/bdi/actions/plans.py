@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.reflection import NotAPlan
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
 from jacaros.bdi.rules import plan_terms

@@ -13,8 +13,7 @@ from typing import Any, NamedTuple
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
 from jacaros.asl.lowering import Names, fresh_names, lower
-from jacaros.asl.variables import names_in, operands
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import names_in, operands, walk
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.explaining.step_text import unbracketed
 from jacaros.bdi.rules.context import Context

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
 from jacaros.bdi.fast.generated.unit import Select
 from jacaros.bdi.rules import belief_update, rescue

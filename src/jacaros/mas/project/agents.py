@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.asl.loader import parse_literals
 from jacaros.mas.agent_options import check_option
 from jacaros.mas.deployment import AgentSpec, FocusSpec

@@ -8,7 +8,7 @@ from embedding_lab import Counter, run
 
 import jacaros
 from jacaros import Mas
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.bdi.mind import Mind
 from jacaros.env import Artifact, operation
 from jacaros.errors import InternalError

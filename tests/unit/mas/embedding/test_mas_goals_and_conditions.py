@@ -7,7 +7,7 @@ from embedding_lab import Counter, run
 
 import jacaros
 from jacaros import Atom, GoalFailed, Mas, Structure
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.clock import VirtualClock
 from jacaros.mas.embedding.running_agent import RunningAgent
 

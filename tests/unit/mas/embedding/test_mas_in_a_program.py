@@ -8,7 +8,7 @@ from embedding_lab import Counter, run
 
 import jacaros
 from jacaros import Atom, Mas
-from jacaros.asl.errors import AslError
+from jacaros.asl.diagnostics import AslError
 from jacaros.clock import VirtualClock, WallClock, clock_of, new_event_loop
 from jacaros.env import OperationFailed, Out
 from jacaros.errors import UsageError

@@ -7,7 +7,7 @@ is known which one failed.
 """
 
 from jacaros.asl import nodes
-from jacaros.asl.variables import names_in
+from jacaros.asl.walk import names_in
 from jacaros.bdi.fast.generated.annotations import own_annotations
 from jacaros.bdi.fast.generated.body_compiler import BodyCompiler, StepWriter, head
 from jacaros.bdi.fast.generated.building import (

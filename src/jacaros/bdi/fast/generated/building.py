@@ -3,9 +3,8 @@
 from collections.abc import Callable
 
 from jacaros.asl import nodes
-from jacaros.asl.constant import Constant
-from jacaros.asl.lowering import lower
-from jacaros.asl.variables import variables_in
+from jacaros.asl.lowering import lower, step_parts
+from jacaros.asl.walk import variables_in
 from jacaros.bdi.fast.generated.function import FunctionBuilder
 from jacaros.terms.operators import named
 from jacaros.terms.order import annotation_set
@@ -26,7 +25,7 @@ def build(fn: FunctionBuilder, node: nodes.Node) -> str:
             if node.value == node.value and abs(node.value) != float("inf")
             else _const(fn, node)
         )
-    if isinstance(node, Constant):
+    if isinstance(node, nodes.Constant):
         return fn.constant(node.value)
     if isinstance(node, nodes.Variable):
         return _variable(fn, node)
@@ -48,7 +47,7 @@ def is_static(node: object) -> bool:
 
 
 def _has_calls(node: object) -> bool:
-    if isinstance(node, (nodes.FunctionCall, Constant)):
+    if isinstance(node, (nodes.FunctionCall, nodes.Constant)):
         return True
     if isinstance(node, nodes.Arithmetic):
         # A division may have no result, which is for the plan to see when it comes to it.
@@ -229,36 +228,12 @@ def _body(fn: FunctionBuilder, body: nodes.Body, symbol: Functor = BODY_SEQUENCE
     return result
 
 
-def _step_of(fn: FunctionBuilder, operator: str, *operands: nodes.Node) -> str:
+def _step(fn: FunctionBuilder, step: nodes.Step) -> str:
+    operator, operands = step_parts(step)
+    if not operator and isinstance(operands[0], (nodes.Variable, nodes.Relation, nodes.InternalAction)):
+        return build(fn, operands[0])
     symbol = fn.constant(functor(operator, len(operands), kind=PLAN_KIND))
     return tuple_of([symbol, *(build(fn, o) for o in operands)])
-
-
-def _step(fn: FunctionBuilder, step: nodes.Node) -> str:
-    if isinstance(step, nodes.Achieve):
-        return _step_of(fn, "!!" if step.separate else "!", step.goal)
-    if isinstance(step, nodes.Test):
-        return _step_of(fn, "?", step.formula)
-    if isinstance(step, nodes.BeliefChange):
-        return _step_of(fn, step.operator, step.operand)
-    if isinstance(step, nodes.ExternalAction):
-        return (
-            build(fn, step.action)
-            if isinstance(step.action, nodes.Variable)
-            else _step_of(fn, "", step.action)
-        )
-    if isinstance(step, nodes.If):
-        rest = () if step.otherwise is None else (step.otherwise,)
-        return _step_of(fn, "if", step.condition, step.then, *rest)
-    if isinstance(step, nodes.While):
-        return _step_of(fn, "while", step.condition, step.body)
-    if isinstance(step, nodes.For):
-        return _step_of(fn, "for", step.condition, step.body)
-    if isinstance(step, nodes.Fork):
-        return _step_of(fn, "|&|" if step.operator == "and" else "|||", *step.branches)
-    if isinstance(step, nodes.Constraint):
-        return build(fn, step.formula)
-    return build(fn, step)
 
 
 _COMPOUND: dict[type, Callable[..., str]] = {

@@ -16,8 +16,7 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from jacaros.asl import nodes
-from jacaros.asl.constant import Constant
-from jacaros.asl.variables import names_in, operands
+from jacaros.asl.walk import names_in, operands
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.answers import loop_binding, loop_over_answers, undoing
 from jacaros.bdi.fast.generated.building import as_name, build, is_number, is_static, tuple_of
@@ -233,7 +232,7 @@ def _collecting(fn: FunctionBuilder, action: InternalAction, node: nodes.Interna
 
 def _is_question(fn: FunctionBuilder, formula: nodes.Node) -> bool:
     """Whether a formula can be compiled here; a variable without annotations stands for one known later."""
-    return not isinstance(formula, (nodes.Variable, Constant))
+    return not isinstance(formula, (nodes.Variable, nodes.Constant))
 
 
 # --- which code is written for which formula ---------------------------------------------------------------
@@ -253,7 +252,7 @@ _WRITERS: dict[type, Callable[..., None]] = {
     nodes.Literal: literal,
     nodes.InternalAction: _internal_action,
     nodes.Variable: searched,
-    Constant: searched,
+    nodes.Constant: searched,
     nodes.FunctionCall: searched,
     nodes.Number: searched,
     nodes.String: searched,

@@ -5,8 +5,7 @@ finds unbound.
 """
 
 from jacaros.asl import nodes
-from jacaros.asl.constant import Constant
-from jacaros.asl.variables import names_in, nodes_in
+from jacaros.asl.walk import names_in, nodes_in
 from jacaros.bdi.fast.generated.body_compiler import BodyCompiler, StepInfo, StepWriter, head
 from jacaros.bdi.fast.generated.building import tuple_of
 from jacaros.bdi.fast.generated.conditions import question
@@ -133,7 +132,7 @@ def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -
     slot = frame.hidden_slot()
     # `free_variables` takes the first element of a tuple for a functor.
     # Variables that a body made at run time shares with its plan.
-    shared = [fn.constant(c.value) for c in nodes_in(Constant, step) if c.value.__class__ not in ATOMIC]
+    shared = [fn.constant(c.value) for c in nodes_in(nodes.Constant, step) if c.value.__class__ not in ATOMIC]
     values = tuple_of(["None", *(f"frame[{frame.slot(n)}]" for n in names), *shared])
     test = "True" if shared else _any_open(frame, names)
     fn.line(f"frame[{slot}] = free_variables({values}) if {test} else None")

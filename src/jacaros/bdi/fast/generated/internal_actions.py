@@ -1,7 +1,7 @@
 """Code for internal actions in conditions: they are called, and may have answers."""
 
 from jacaros.asl import nodes
-from jacaros.asl.variables import names_in
+from jacaros.asl.walk import names_in
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.answers import undoing
 from jacaros.bdi.fast.generated.building import build, resolved

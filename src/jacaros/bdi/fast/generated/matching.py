@@ -8,7 +8,7 @@ variable, annotations, arithmetic) goes to `unify`.
 from collections.abc import Callable, Sequence
 
 from jacaros.asl import nodes
-from jacaros.asl.variables import names_in
+from jacaros.asl.walk import names_in
 from jacaros.bdi.fast.generated.building import build, functor_of_literal, is_static, tuple_of
 from jacaros.bdi.fast.generated.function import FunctionBuilder
 from jacaros.terms.values import CONS

@@ -1,7 +1,7 @@
 """Code for literals in conditions: they are asked of beliefs and rules, table by table."""
 
 from jacaros.asl import nodes
-from jacaros.asl.variables import names_in
+from jacaros.asl.walk import names_in
 from jacaros.bdi.fast.generated.annotations import each_match, patterns_in_order
 from jacaros.bdi.fast.generated.answers import loop_binding
 from jacaros.bdi.fast.generated.building import annotation_parts, build, functor_of_literal, tuple_of

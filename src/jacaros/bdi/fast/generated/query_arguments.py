@@ -1,7 +1,7 @@
 """The arguments of a literal that a condition asks for: how the rows of its predicate are found and read."""
 
 from jacaros.asl import nodes
-from jacaros.asl.variables import names_in
+from jacaros.asl.walk import names_in
 from jacaros.bdi.fast.generated.building import as_name, build, constant_value, is_number, is_static, tuple_of
 from jacaros.bdi.fast.generated.function import FunctionBuilder
 from jacaros.bdi.fast.generated.matching import Then, match_all

@@ -1,7 +1,7 @@
 """Code for relations in conditions: comparisons, unification and ``=..``."""
 
 from jacaros.asl import nodes
-from jacaros.asl.variables import names_in
+from jacaros.asl.walk import names_in
 from jacaros.bdi.fast.generated.answers import undoing
 from jacaros.bdi.fast.generated.building import as_name, build, is_number, tuple_of
 from jacaros.bdi.fast.generated.function import FunctionBuilder

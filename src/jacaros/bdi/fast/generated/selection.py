@@ -7,7 +7,7 @@ its new frame; None means that no plan is applicable (rules RelPl, ApplPl and Se
 from collections.abc import Sequence
 
 from jacaros.asl import nodes
-from jacaros.asl.variables import names_in, nodes_in, occurrences
+from jacaros.asl.walk import names_in, nodes_in, occurrences
 from jacaros.bdi.fast.generated.annotations import first_match, patterns_in_order
 from jacaros.bdi.fast.generated.bodies import body_compiler
 from jacaros.bdi.fast.generated.body_compiler import BodyCompiler
