@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.option_selection import SELECT_OPTION
 from jacaros.bdi.state import belief_base
-from jacaros.bdi.state.belief_base import Row, Table, parts
+from jacaros.bdi.state.belief_base import SELECT_OPTION, Row, Table, parts
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.faults import FAULTS, crash_text

@@ -17,7 +17,7 @@ from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import literal, parts
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
-from jacaros.bdi.state.plan_library import PlanLibrary, Selects
+from jacaros.bdi.state.plan_library import OwnSelects, PlanLibrary
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
 from jacaros.extension.faults import FAULTS, crash_text
@@ -207,7 +207,7 @@ def _can_run(intention: Intention) -> bool:
     return not intention.dropped and intention.suspended is None
 
 
-class ChoosingSelects(Selects):
+class ChoosingSelects(OwnSelects):
     """Select functions that look for all applicable plans and ask the agent's class for one."""
 
     def __init__(self, library: PlanLibrary, choose: Callable[..., object]) -> None:
@@ -215,9 +215,8 @@ class ChoosingSelects(Selects):
         self._choose = choose
 
     def __missing__(self, trigger: Trigger) -> Select | None:
-        select = self._selected if self.library.relevant(trigger) else None
-        self[trigger] = select
-        return select
+        plans = self.library.relevant(trigger)
+        return self.keep(trigger, self._selected if plans else None, plans)
 
     def _selected(self, agent: CustomMind, goal: tuple[Term, ...], annotations: object) -> Frame | None:
         # The context is asked once: what it drew or did may come out otherwise the next time.

@@ -23,7 +23,7 @@ another `Functor.kind` than `PLAIN`.
 from _weakref import _remove_dead_weakref  # type: ignore[attr-defined]
 from collections.abc import Callable, Iterable, Iterator
 from operator import is_
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 from weakref import ref
 
 Term = Any
@@ -69,18 +69,20 @@ class Functor:
         return functor, (self.name, self.arity, self.negated, self.namespace, self.kind)
 
 
+Named = TypeVar("Named")
 _Key = tuple[str, int, bool, str | None, int]
 
 
-class _Held(ref[Functor]):
-    """A functor that others hold, with its key: a name that nobody uses is released."""
+class Held(ref[Any]):
+    """A weak reference to an object that is in a table of names once: the table forgets one that is no longer used."""
 
-    __slots__ = ("key",)
+    __slots__ = ("key", "table")
 
-    key: _Key
+    key: Any
+    table: "dict[Any, Held]"
 
 
-_functors: dict[_Key, _Held] = {}
+_functors: dict[_Key, Held] = {}
 
 
 def functor(
@@ -90,31 +92,26 @@ def functor(
     key = (name, arity, negated, namespace, kind)
     held = _functors.get(key)
     found = None if held is None else held()
-    return _new_functor(key) if found is None else found
+    return enter(_functors, key, Functor(*key)) if found is None else found
 
 
-def _new_functor(key: _Key) -> Functor:
-    made = Functor(*key)
-    new = _Held(made, _release)
-    new.key = key
+def enter(table: dict[Any, Held], key: Any, made: Named) -> Named:
+    """Put a new object into a table of names, and return the one that has the key: another thread may be faster."""
+    new = Held(made, _release)
+    new.key, new.table = key, table
     while True:
-        # At once: another thread may be making it, and there must be one object only.
-        found = _functors.setdefault(key, new)()
+        found: Named | None = table.setdefault(key, new)()
         if found is not None:
             return found
-        _remove_dead_weakref(_functors, key)
+        _remove_dead_weakref(table, key)
 
 
-def _release(
-    held: _Held,
-    functors: dict[_Key, _Held] = _functors,
-    remove: Callable[[dict[_Key, _Held], _Key], None] = _remove_dead_weakref,
-) -> None:
-    """Forget a functor that is gone, unless there is another one of its name by now; at once, as above.
+def _release(held: Held, remove: Callable[[dict[Any, Held], Any], None] = _remove_dead_weakref) -> None:
+    """Forget an object that is gone, unless there is another one of its name by now.
 
-    The defaults outlive the module when the interpreter ends.
+    The default outlives the module when the interpreter ends.
     """
-    remove(functors, held.key)
+    remove(held.table, held.key)
 
 
 def atom(name: str, namespace: str | None = None) -> Functor:

@@ -4,6 +4,9 @@ import pytest
 from recording_host import mind, printed
 
 from jacaros.bdi.fast.generated import selection
+from jacaros.bdi.fast.generated.unit import compile_select
+from jacaros.bdi.state.triggers import trigger
+from jacaros.terms.values import functor
 
 PLANS = """
 +!do(a, X) : X > 10 <- .print(a_large, X).
@@ -63,13 +66,12 @@ def test_an_argument_without_value_takes_that_of_the_first_plan(
 
 
 def test_a_table_is_made_for_many_plans_only() -> None:
-    few, many = (
-        mind("!go. +!go <- !do(k1). " + " ".join(f"+!do(k{i})." for i in range(count))) for count in (4, 40)
-    )
     sources = []
-    for host in (few, many):
-        host.run()
-        sources.append("\n".join(host.agent.selects.sources.values()))
+    for count in (4, 40):
+        host = mind(" ".join(f"+!do(k{i})." for i in range(count)))
+        do = trigger("+", "!", functor("do", 1))
+        library = host.agent.library
+        sources.append(compile_select(do, library.relevant(do), library.actions)[1])
     assert "plans" not in sources[0]
     assert ".get(key" in sources[1]
 

@@ -12,7 +12,7 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.literals import own_annotations
 from jacaros.bdi.state.rule import OpenFact, Rule
-from jacaros.bdi.state.triggers import ADDED, DELETED, Trigger
+from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.order import merge_annotations
 from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
 from jacaros.terms.unifier import undo, unify_annotations
@@ -32,7 +32,7 @@ def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Anno
     new = table.add(row, annotations)
     if new is not BY_SELF or not agent.usual_events or agent.condition_waits:
         return _own_event(agent, symbol, row, new, False)
-    kind = ADDED[symbol]
+    kind = table.added
     if agent.selects[kind] is None and not (
         agent.events or agent.intentions or agent.event_waits or agent.subplans
     ):
@@ -51,7 +51,7 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
         newest = next(reversed(table.rows))
         if table.rows[newest] is BY_SELF:
             if table.remove(newest) and (
-                agent.selects[DELETED[symbol]] is not None
+                agent.selects[table.deleted] is not None
                 or not agent.usual_events
                 or agent.event_waits
                 or agent.condition_waits
@@ -77,7 +77,7 @@ def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations 
     if new is None:
         return None
     note_change(agent, symbol, row)
-    return _raise(agent, (ADDED[symbol], *row), new, apart)
+    return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
 
 
 def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
@@ -161,7 +161,7 @@ def delete_belief(
     if removed is None:
         return None
     note_change(agent, symbol, removed)
-    return _raise(agent, (DELETED[symbol], *removed), annotations, apart)
+    return _raise(agent, (agent.beliefs[symbol].deleted, *removed), annotations, apart)
 
 
 def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
@@ -324,7 +324,8 @@ def external_change(
     agent: Circumstance, operator: str, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
 ) -> None:
     """Raise the external event of a belief change, if anybody cares."""
-    kind = (ADDED if operator == "+" else DELETED)[symbol]
+    table = agent.beliefs[symbol]
+    kind = table.added if operator == "+" else table.deleted
     if agent.selects[kind] is not None or agent.event_waits or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
     note_change(agent, symbol, row)

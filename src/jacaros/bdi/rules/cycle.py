@@ -5,8 +5,6 @@ of this one, so it stays with an intention as long as nothing else wants a cycle
 nothing a program can see.
 """
 
-import sys
-
 from jacaros.bdi.rules import edge_signals, rescue
 from jacaros.bdi.rules.acting import execute, execute_plainly, is_plain
 from jacaros.bdi.rules.deliberation import event_of, handle_atomic_event, handle_event, is_ready
@@ -28,10 +26,6 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         if fuel > 1:
             return all(run(agent, 1) for _ in range(fuel))
         agent.beliefs.budget.renew()
-    if agent.cycles >= agent.next_count:
-        agent.next_count = agent.cycles + INTERVAL
-        if watch(agent.beliefs, agent, options.belief_limit):
-            agent.next_count = sys.maxsize
     if agent.crowd:
         agent.let_in()
     # Calls inside terms are evaluated for this agent meanwhile.
@@ -89,6 +83,15 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     finally:
         agent.running = False
         RUNNING.reset(before)
+        if agent.cycles >= agent.next_count:
+            _look_at_names(agent)
+
+
+def _look_at_names(agent: Circumstance) -> None:
+    """Drop the names that the agent no longer uses, and bound a belief base that is half full."""
+    agent.beliefs.forget_names()
+    watch(agent.beliefs, agent, agent.options.belief_limit)
+    agent.next_count = agent.cycles + max(INTERVAL, len(agent.beliefs))
 
 
 def _has_work(agent: Circumstance) -> bool:

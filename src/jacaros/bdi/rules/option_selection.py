@@ -11,14 +11,13 @@ from typing import Any
 from jacaros.bdi.rules.formulas import solve_formula
 from jacaros.bdi.rules.plan_terms import bindings_of, plan_term
 from jacaros.bdi.rules.searching import run
+from jacaros.bdi.state.belief_base import SELECT_OPTION
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
 from jacaros.terms.plans import trigger
 from jacaros.terms.unifier import undo
-from jacaros.terms.values import Term, Var, functor
-
-SELECT_OPTION = functor("select__option", 4)
+from jacaros.terms.values import Term, Var
 
 
 def options(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> Iterator[Frame]:

@@ -11,7 +11,7 @@ from jacaros.bdi.state.belief_base import literal as belief_literal
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Event
 from jacaros.bdi.state.rule import OpenFact
-from jacaros.bdi.state.triggers import ADDED, DELETED, Trigger
+from jacaros.bdi.state.triggers import Trigger
 from jacaros.errors import InternalError
 from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import Functor, Term
@@ -32,14 +32,14 @@ def take_percepts(agent: Circumstance) -> None:
         try:
             if waits:
                 for percept in percepts:
-                    symbol, row, _, _ = percept.taken or _taken(percept)
+                    symbol, row, _, _ = percept.taken or _taken(agent, percept)
                     waits.changed(symbol, row)
             if len(percepts) == 2 and not watched:
                 # What is usual, for many agents many times a second: one property has another value.
                 old, new = percepts
                 exchange = old.exchange
                 if exchange is None or exchange[0] is not new:
-                    exchange = _exchange(old, new)
+                    exchange = _exchange(agent, old, new)
                 _, symbol, row, new_row, removed, added = exchange
                 if symbol is not None and new.literal not in holders:
                     annotations = new.annotations
@@ -82,7 +82,7 @@ def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
     post = agent.events.append if _has_plain_queue(agent) else agent.post
     for percept in percepts:
         literal, annotations, kind = percept.literal, percept.annotations, percept.kind
-        symbol, row, is_flat, change = percept.taken or _taken(percept)
+        symbol, row, is_flat, change = percept.taken or _taken(agent, percept)
         if is_flat is None:
             _take_unkeyed(agent, percept, symbol, row)
             continue
@@ -115,7 +115,7 @@ def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
 Taken = tuple[Functor, Row, bool | None, Trigger]
 
 
-def _taken(percept: Percept) -> Taken:
+def _taken(agent: Circumstance, percept: Percept) -> Taken:
     """Functor and arguments of a percept, whether these are flat (None: not even to be looked up), and the kind of its
     event; kept with it for all who share it."""
     literal = percept.literal
@@ -125,7 +125,8 @@ def _taken(percept: Percept) -> Taken:
         symbol, row, _ = parts(literal)
         if symbol is None:
             raise InternalError(f"a percept is no literal: {literal!r}")
-    change = (DELETED if percept.kind == "remove" else ADDED)[symbol]
+    table = agent.beliefs[symbol]
+    change = table.deleted if percept.kind == "remove" else table.added
     is_flat: bool | None = True
     for argument in row:
         if argument.__class__ not in ATOMIC:
@@ -143,11 +144,13 @@ def _event(percept: Percept, change: Trigger, row: Row) -> Event:
     return event
 
 
-def _exchange(old: Percept, new: Percept) -> tuple[Percept, Functor | None, Row, Row, Trigger, Trigger]:
+def _exchange(
+    agent: Circumstance, old: Percept, new: Percept
+) -> tuple[Percept, Functor | None, Row, Row, Trigger, Trigger]:
     """Two percepts as one change of a belief: the second, functor, both rows, and the kinds of the events; kept with the
     first.  Without a functor they are something else."""
-    symbol, row, is_flat, removed = old.taken or _taken(old)
-    new_symbol, new_row, new_is_flat, added = new.taken or _taken(new)
+    symbol, row, is_flat, removed = old.taken or _taken(agent, old)
+    new_symbol, new_row, new_is_flat, added = new.taken or _taken(agent, new)
     alike = new_symbol is symbol and is_flat and new_is_flat and old.annotations is new.annotations
     is_one = alike and old.kind == "remove" and new.kind == "add"
     exchange = (new, symbol if is_one else None, row, new_row, removed, added)

@@ -11,6 +11,7 @@ from jacaros.terms.unifier import undo
 
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts, ends of waits, one message."""
+    agent.next_count -= 1  # what comes in may bring new names as any step does
     if (
         agent.tasks
         or (agent.condition_waits and agent.condition_waits.want_a_look())

@@ -1,5 +1,6 @@
 """What messages do (KQML as Jason defines it): tell, achieve, ask, and the rest."""
 
+from functools import lru_cache
 from typing import Any
 
 from jacaros.asl.diagnostics import AslError
@@ -13,7 +14,7 @@ from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import is_source, parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.bdi.state.triggers import ACHIEVED, trigger
+from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN
@@ -124,19 +125,14 @@ def from_sender(content: Term, sender: str) -> Term:
 def literal_from(content: Term, sender: str) -> tuple[Functor | None, tuple[Term, ...], tuple[Term, ...]]:
     """Functor, arguments and annotations of the content with ``source(sender)``; no functor when it is no literal."""
     if is_flat(content):
-        return functor_of(content), arguments_of(content), _ONLY_FROM[sender]
+        return functor_of(content), arguments_of(content), _only_from(sender)
     return parts(from_sender(content, sender))
 
 
-class _Sources(dict[str, tuple[Term, ...]]):
-    """The annotations of what comes from an agent and from nobody else, by its name: one tuple for each, as atoms are."""
-
-    def __missing__(self, sender: str) -> tuple[Term, ...]:
-        found = self[sender] = ((SOURCE, atom(sender)),)
-        return found
-
-
-_ONLY_FROM = _Sources()
+@lru_cache(4096)
+def _only_from(sender: str) -> tuple[Term, ...]:
+    """Return the annotations of what comes from one agent: one tuple for all its messages."""
+    return ((SOURCE, atom(sender)),)
 
 
 def _contents(content: Term) -> list[Term]:
@@ -151,7 +147,7 @@ def _tell(agent: Circumstance, message: SpeechAct) -> None:
         content = message.content
         symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
         if symbol is not CONS and symbol is not NIL:
-            agent.believe(symbol, row, _ONLY_FROM[message.sender])  # type: ignore[attr-defined]
+            agent.believe(symbol, row, _only_from(message.sender))  # type: ignore[attr-defined]
             return
     for content in _contents(message.content):
         if not agent.tell(from_sender(content, message.sender)):  # type: ignore[attr-defined]
@@ -163,14 +159,20 @@ def _untell(agent: Circumstance, message: SpeechAct) -> None:
         agent.untell(from_sender(content, message.sender))  # type: ignore[attr-defined]
 
 
+@lru_cache(1024)
+def _achieved(symbol: Functor) -> Trigger:
+    """Return the event kind of a goal that others have for an agent."""
+    return trigger("+", "!", symbol)
+
+
 def _achieve(agent: Circumstance, message: SpeechAct) -> None:
     if message.flat and not agent.meta:
         # As above.
         content = message.content
         symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
         if symbol is not CONS and symbol is not NIL:
-            goal = (ACHIEVED[symbol],) + row  # noqa: RUF005 - without a list in between
-            event = (goal, None, _ONLY_FROM[message.sender], None)
+            goal = (_achieved(symbol),) + row  # noqa: RUF005 - without a list in between
+            event = (goal, None, _only_from(message.sender), None)
             agent.post(event)
             return
     for content in _contents(message.content):
@@ -178,7 +180,7 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
         if symbol is None:
             _refuse(agent, message)
         else:
-            post_new_goal(agent, ((ACHIEVED[symbol], *arguments), None, annotations, None))
+            post_new_goal(agent, ((trigger("+", "!", symbol), *arguments), None, annotations, None))
 
 
 def _unachieve(agent: Circumstance, message: SpeechAct) -> None:

@@ -3,6 +3,7 @@
 from typing import Any
 
 from jacaros.bdi.fast.generated.unit import Select, compile_select
+from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.plan import Plan
@@ -47,10 +48,11 @@ def _select(agent: Circumstance, frame: Frame, goal: tuple[Any, ...], annotation
 
 
 def _select_function(agent: Circumstance, plan: Plan, kind: Trigger) -> Select | None:
-    if kind not in plan.subselects:
-        plans = [inner for inner in plan.subplans if concerns(inner, kind)]
-        plan.subselects[kind] = compile_select(kind, plans, agent.actions, plan)[0] if plans else None
-    found: Select | None = plan.subselects[kind]
+    found: Select | None = plan.subselects.get(kind)
+    if found is None and (plans := [inner for inner in plan.subplans if concerns(inner, kind)]):
+        if len(plan.subselects) >= MANY_NAMES:
+            plan.subselects.clear()
+        found = plan.subselects[kind] = compile_select(kind, plans, agent.actions, plan)[0]
     return found
 
 

@@ -7,6 +7,8 @@ from typing import Any
 from jacaros.bdi.state.mixed_beliefs import FEW, Late, Mixed, discard, key_of
 from jacaros.bdi.state.rule import OpenFact, Search, Searches
 from jacaros.bdi.state.search_budget import SearchBudget
+from jacaros.bdi.state.triggers import trigger
+from jacaros.terms import values
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import ATOMIC, equal, free_variables, is_key, resolve
 from jacaros.terms.unifier import Trail
@@ -29,6 +31,10 @@ Item = tuple[Any, tuple[Term, ...]]
 """An entry of a table with its annotations."""
 Index = dict[Any, Any]
 """By key the row, or a dictionary of the rows, newest last."""
+MANY_NAMES = 1_000
+"""Names of which an agent keeps what it found out about them, although it has no such belief or plan."""
+SELECT_OPTION = values.functor("select__option", 4)
+"""The predicate that filters applicable plans; the mind holds its table."""
 _NO_LATE = Late()
 """Of all tables without any: most never have one."""
 _ONE = ((),)
@@ -40,6 +46,8 @@ class Table:
     """All beliefs and rules of one functor, newest first.
 
     Attributes:
+        added: the event kind of beliefs that come.
+        deleted: that of beliefs that go.
         rows: annotations by row; newest last.  Keys that are no tuples are rules and beliefs with variables.
         late: those added behind all others, in order.
         others: how many of `rows` are rules and beliefs with variables.
@@ -54,7 +62,9 @@ class Table:
         "_indexes",
         "_mixed",
         "_parted",
+        "added",
         "deep",
+        "deleted",
         "functor",
         "late",
         "others",
@@ -66,6 +76,7 @@ class Table:
 
     def __init__(self, functor: Functor, base: "BeliefTables | None" = None) -> None:
         self.functor = functor
+        self.added, self.deleted = trigger("+", "", functor), trigger("-", "", functor)
         self.rows: dict[Any, tuple[Term, ...]] = {}
         self.late = _NO_LATE
         self.others = 0
@@ -409,6 +420,20 @@ class BeliefTables(dict[Functor, Table]):
     def __missing__(self, functor: Functor) -> Table:
         table = self[functor] = Table(functor, self)
         return table
+
+    def forget_names(self) -> None:
+        """Drop the empty tables when there are many tables: their names may never be used again.
+
+        Only while the agent is between two steps, since a step may hold a table.
+        """
+        if len(self) > MANY_NAMES:
+            kept = {
+                functor: table
+                for functor, table in self.items()
+                if table.rows or table.late or functor is SELECT_OPTION
+            }
+            self.clear()  # a dictionary shrinks only so
+            self.update(kept)
 
     def literals(self) -> Iterator[Term]:
         """All beliefs with their annotations, predicate by predicate."""

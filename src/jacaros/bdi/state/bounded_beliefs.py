@@ -12,8 +12,8 @@ from jacaros.terms.values import Functor, Term
 
 SMALL = 100_000
 """Limits up to this one are kept from the beginning."""
-INTERVAL = 10_000
-"""Reasoning cycles between two counts of the beliefs in a plain base."""
+INTERVAL = 1_000
+"""Reasoning cycles between two counts of the beliefs; more when there are more names."""
 
 
 class BoundedBeliefs(BeliefTables):

@@ -8,7 +8,7 @@ from typing import Any
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.architecture import Architecture, Timer
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import BeliefTables
+from jacaros.bdi.state.belief_base import SELECT_OPTION, BeliefTables
 from jacaros.bdi.state.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
 from jacaros.bdi.state.budget import budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
@@ -26,7 +26,7 @@ from jacaros.bdi.state.waiting import Waiting
 from jacaros.terms.substitution import rename
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, unify
-from jacaros.terms.values import Term, functor
+from jacaros.terms.values import Term
 
 CROWD = 2000
 """Intentions that take turns.  With more of them, goals that the agent sets itself (``!!g``) begin one by one."""
@@ -49,7 +49,8 @@ class Circumstance:
             end, and one in each turn anyway, so that an agent that sets itself more and more goals keeps its other plans.
         event_limit, intention_limit: how many events and intentions there may be.
         budgets: what refuses more than a limit allows, by the name of the option.
-        next_count: number of the cycle in which beliefs are counted next.
+        next_count: number of the cycle after which beliefs are counted, and unused names dropped, next; a look at what
+            comes in counts as one.
         option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
         refused_options: there were applicable plans for the last event, and the filter let none pass.
         alive: every intention that is not over, by id.
@@ -196,7 +197,7 @@ class Circumstance:
         if options.search_limit:
             self.beliefs.budget = SearchBudget(options.search_limit)
         self.usual_events = options.events == "discard" and not options.new_focus
-        self.option_filter = self.beliefs[functor("select__option", 4)]
+        self.option_filter = self.beliefs[SELECT_OPTION]
         self.refused_options = False
         self.library = PlanLibrary(plans, partial(architecture.log, "error"))
         self.selects = self.library.selects

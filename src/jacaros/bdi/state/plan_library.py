@@ -5,15 +5,15 @@ from typing import cast
 
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.unit import Select, compile_select
+from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.intention import Frame
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.program_plans import (
     ProgramPlans,
-    ProgramSelects,
+    Selects,
     concerns,
     has_goal_condition,
     look_at_large_plans,
-    made,
     relevant,
 )
 from jacaros.bdi.state.triggers import Trigger
@@ -45,9 +45,9 @@ class PlanLibrary:
         self.plans: list[Plan] = program.plans
         self.own: list[Plan] = []
         self.removed: list[Plan] = []
-        self.selects: ProgramSelects | Selects = program.selects
+        self.selects: Selects = program.selects
         self._sources: dict[Plan, tuple[Term, ...]] = {}
-        self._every: dict[Trigger, Callable[..., Iterator[Frame]] | None] = {}
+        self._every: dict[Trigger, Callable[..., Iterator[Frame]]] = {}
 
     def add(self, plan: Plan, first: bool = False) -> None:
         """Add a plan at the end, or before all others."""
@@ -72,12 +72,12 @@ class PlanLibrary:
         if self.plans is self.program.plans:
             self.plans = list(self.plans)
         if self.selects is self.program.selects:
-            self.selects = Selects(self)
+            self.selects = OwnSelects(self)
 
     def _forget_selects(self, plan: Plan) -> None:
         """A plan came or went: the functions it concerns are made anew."""
         self._every.clear()
-        if isinstance(self.selects, Selects):
+        if isinstance(self.selects, OwnSelects):
             self.selects.forget(plan)
 
     def take_over(self, other: "PlanLibrary") -> None:
@@ -116,11 +116,13 @@ class PlanLibrary:
 
     def every_option(self, trigger: Trigger) -> Callable[..., Iterator[Frame]] | None:
         """A generator function of the frames of all applicable plans of an event kind; None without relevant plans."""
-        if trigger not in self._every:
-            plans = self.relevant(trigger)
-            select = compile_select(trigger, plans, self.actions, every=True)[0] if plans else None
-            self._every[trigger] = cast("Callable[..., Iterator[Frame]] | None", select)
-        return self._every[trigger]
+        every = self._every.get(trigger)
+        if every is None and (plans := self.relevant(trigger)):
+            if len(self._every) >= MANY_NAMES:
+                self._every.clear()
+            select = compile_select(trigger, plans, self.actions, every=True)[0]
+            every = self._every[trigger] = cast("Callable[..., Iterator[Frame]]", select)
+        return every
 
     def has_subplans(self) -> bool:
         """Whether any plan has plans of its own."""
@@ -137,29 +139,25 @@ class PlanLibrary:
         return any(plan.node.trigger.operator == "^" for plan in self.plans)
 
 
-class Selects(dict[Trigger, Select | None]):
+class OwnSelects(Selects):
     """The same for an agent whose plans are not all those of its program; or one that chooses among them itself."""
 
-    __slots__ = ("library", "sources")
+    __slots__ = ("library",)
 
     def __init__(self, library: PlanLibrary) -> None:
         super().__init__()
         self.library = library
-        self.sources: dict[Trigger, str] = library.program.selects.sources
 
     def __missing__(self, trigger: Trigger) -> Select | None:
         library = self.library
         if library.is_as_written(trigger):
-            select = library.program.selects[trigger]
-        else:
-            self.sources = dict(self.sources)
-            plans = library.relevant(trigger)
-            select = made(trigger, plans, library.actions, self.sources, library.report)
-        self[trigger] = select
-        return select
+            return self.keep(trigger, library.program.selects[trigger], library.program.relevant(trigger))
+        plans = library.relevant(trigger)
+        return self.keep(trigger, self.made(trigger, plans, library.actions, library.report), plans)
 
     def forget(self, plan: Plan) -> None:
         """A plan came or went: the functions it concerns are made anew."""
+        self._general.clear()
         head = plan.node.trigger
         functor = plan.trigger_functor()
         for trigger in list(self):

@@ -8,6 +8,7 @@ from jacaros.asl import nodes
 from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.unit import Select, compile_select
+from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.plan import Plan, label_of, with_subplans
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.triggers import trigger as trigger_of_kind
@@ -57,26 +58,62 @@ class ProgramPlans:
         return self._by_head.get((trigger.operator, trigger.kind, trigger.functor), ())
 
 
-class ProgramSelects(dict[Trigger, Select | None]):
-    """The select function of each event kind, made at its first event; None when no plan concerns it.
+class Selects(dict[Trigger, Select | None]):
+    """The select function of each event kind, made at its first event; None when no plan concerns it."""
 
-    Attributes:
-        sources: the text of those made, by event kind.
-    """
+    __slots__ = ("_general", "_unnamed")
 
-    __slots__ = ("_program", "sources")
+    def __init__(self) -> None:
+        super().__init__()
+        self._general: dict[tuple[Any, ...], Select | None] = {}
+        self._unnamed: list[Trigger] = []
+
+    def made(
+        self,
+        trigger: Trigger,
+        plans: Sequence[Plan],
+        actions: Mapping[str, InternalAction],
+        report: Callable[[str], None],
+    ) -> Select | None:
+        """Return the function of an event kind; those that no plan names share one for their number of arguments."""
+        if _name(plans, trigger):
+            return made(trigger, plans, actions, report)
+        key = (trigger.functor.arity, *plans)
+        if key not in self._general:
+            self._general[key] = made(trigger, plans, actions, report)
+        return self._general[key]
+
+    def keep(self, trigger: Trigger, select: Select | None, plans: Sequence[Plan]) -> Select | None:
+        """Keep the function of an event kind, for ever if a plan names it; of others, only MANY_NAMES are kept."""
+        if not _name(plans, trigger):
+            if len(self._unnamed) >= MANY_NAMES:
+                for unnamed in self._unnamed:
+                    self.pop(unnamed, None)
+                self._unnamed = []
+            self._unnamed.append(trigger)
+        self[trigger] = select
+        return select
+
+
+class ProgramSelects(Selects):
+    """The select functions of a program."""
+
+    __slots__ = ("_program",)
 
     def __init__(self, program: ProgramPlans) -> None:
         super().__init__()
         self._program = program
-        self.sources: dict[Trigger, str] = {}
 
     def __missing__(self, trigger: Trigger) -> Select | None:
         program = self._program
-        report = program.report or _ignore
-        select = made(trigger, program.relevant(trigger), program.actions, self.sources, report)
-        self[trigger] = select
-        return select
+        plans = program.relevant(trigger)
+        select = self.made(trigger, plans, program.actions, program.report or _ignore)
+        return self.keep(trigger, select, plans)
+
+
+def _name(plans: Sequence[Plan], trigger: Trigger) -> bool:
+    """Whether one of the plans names the functor of an event kind: others have a variable there."""
+    return trigger.functor in [plan.trigger_functor() for plan in plans]
 
 
 def _ignore(text: str) -> None:
@@ -107,21 +144,19 @@ def made(
     trigger: Trigger,
     plans: Sequence[Plan],
     actions: Mapping[str, InternalAction],
-    sources: dict[Trigger, str],
     report: Callable[[str], None],
 ) -> Select | None:
-    """Compile the select function of an event kind; its text goes to *sources*, what is wrong to *report*."""
+    """Compile the select function of an event kind; what is wrong goes to *report*."""
     if not plans:
         return None
     try:
-        select, sources[trigger] = compile_select(trigger, plans, actions)
+        return compile_select(trigger, plans, actions)[0]
     except TOO_LARGE:
         small = [plan for plan in plans if not _told(plan, actions, report)]
         if len(small) == len(plans) and not any(plan.searched for plan in plans):
             report(f"the plans for {trigger!r} are too large together to be compiled")
             return None
-        return made(trigger, small, actions, sources, report)
-    return select
+        return made(trigger, small, actions, report)
 
 
 def _told(plan: Plan, actions: Mapping[str, InternalAction], report: Callable[[str], None]) -> bool:

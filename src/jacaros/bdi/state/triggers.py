@@ -1,10 +1,10 @@
 """Event kinds: what a plan reacts to, as objects that goals and events carry."""
 
-from jacaros.terms.values import Functor
+from jacaros.terms.values import Functor, Held, enter
 
 
 class Trigger:
-    """One kind of event: operator, kind and functor; there is one object for each.
+    """One kind of event: operator, kind and functor; there is one object for each that is in use.
 
     Attributes:
         operator: ``+``, ``-`` or ``^``.
@@ -14,7 +14,7 @@ class Trigger:
         on_fail: the kind of the failure event of a goal, None for other events.
     """
 
-    __slots__ = ("failing", "functor", "kind", "on_fail", "operator")
+    __slots__ = ("__weakref__", "failing", "functor", "kind", "on_fail", "operator")
 
     def __init__(self, operator: str, kind: str, functor: Functor) -> None:
         self.operator, self.kind, self.functor = operator, kind, functor
@@ -25,27 +25,12 @@ class Trigger:
         return f"{self.operator}{self.kind}{self.functor!r}"
 
 
-class Kinds(dict[Functor, Trigger]):
-    """The triggers of one operator and kind, by functor."""
-
-    def __init__(self, operator: str, kind: str) -> None:
-        super().__init__()
-        self._operator, self._kind = operator, kind
-
-    def __missing__(self, functor: Functor) -> Trigger:
-        found = self[functor] = trigger(self._operator, self._kind, functor)
-        return found
-
-
-ADDED, DELETED, ACHIEVED = Kinds("+", ""), Kinds("-", ""), Kinds("+", "!")
-"""Beliefs that come, beliefs that go, goals that are to be achieved."""
-_triggers: dict[tuple[str, str, Functor], Trigger] = {}
+_triggers: dict[tuple[str, str, Functor], Held] = {}
 
 
 def trigger(operator: str, kind: str, functor: Functor) -> Trigger:
-    """The trigger of that operator, kind and functor."""
+    """Return the trigger of that operator, kind and functor; compiled plans, tables and events keep it alive."""
     key = (operator, kind, functor)
-    found = _triggers.get(key)
-    if found is None:
-        found = _triggers.setdefault(key, Trigger(operator, kind, functor))  # as functors
-    return found
+    held = _triggers.get(key)
+    found: Trigger | None = None if held is None else held()
+    return enter(_triggers, key, Trigger(operator, kind, functor)) if found is None else found
