@@ -73,51 +73,40 @@ __all__ = [
     "run",
 ]
 
-_PLACES = {
-    "Action": "jacaros.extension.architecture",
-    "ActionError": "jacaros.bdi.actions.internal_action",
-    "Agent": "jacaros.extension.agent",
-    "AgentArch": "jacaros.extension.architecture",
-    "AgentEnded": "jacaros.mas.embedding.errors",
-    "AslError": "jacaros.asl.diagnostics",
-    "Atom": "jacaros.env.values",
-    "BeliefBase": "jacaros.extension.belief_base",
-    "Event": "jacaros.extension.views",
-    "GoalFailed": "jacaros.mas.embedding.errors",
-    "Intention": "jacaros.extension.views",
-    "InternalError": "jacaros.errors",
-    "JacarosError": "jacaros.errors",
-    "Literal": "jacaros.extension.literal",
-    "Mas": "jacaros.mas.embedding.mas",
-    "Message": "jacaros.extension.views",
-    "OperationFailed": "jacaros.env.errors",
-    "Option": "jacaros.extension.views",
-    "Out": "jacaros.env.values",
-    "Percept": "jacaros.extension.views",
-    "Plan": "jacaros.extension.views",
-    "ProjectError": "jacaros.mas.deployment",
-    "PythonAgent": "jacaros.extension.python_agent",
-    "ReceivedMessage": "jacaros.extension.conversation",
-    "RunEnded": "jacaros.mas.embedding.errors",
-    "Structure": "jacaros.env.values",
-    "UnknownAgent": "jacaros.extension.errors",
-    "UsageError": "jacaros.errors",
-    "WrongArguments": "jacaros.bdi.actions.internal_action",
-    "arithmetic_function": "jacaros.extension.declaring",
-    "internal_action": "jacaros.extension.declaring",
-    "run": "jacaros.mas.embedding.main",
+_MODULES = {
+    "jacaros.asl.diagnostics": "AslError",
+    "jacaros.bdi.actions.internal_action": "ActionError WrongArguments",
+    "jacaros.env.errors": "OperationFailed",
+    "jacaros.env.values": "Atom Out Structure",
+    "jacaros.errors": "InternalError JacarosError UsageError",
+    "jacaros.extension.agent": "Agent",
+    "jacaros.extension.architecture": "Action AgentArch",
+    "jacaros.extension.belief_base": "BeliefBase",
+    "jacaros.extension.conversation": "ReceivedMessage",
+    "jacaros.extension.declaring": "arithmetic_function internal_action",
+    "jacaros.extension.errors": "UnknownAgent",
+    "jacaros.extension.literal": "Literal",
+    "jacaros.extension.python_agent": "PythonAgent",
+    "jacaros.extension.views": "Event=EventView Intention=IntentionView Message Option Percept=PerceptView Plan=PlanView",
+    "jacaros.mas.deployment": "ProjectError",
+    "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded",
+    "jacaros.mas.embedding.main": "run",
+    "jacaros.mas.embedding.mas": "Mas",
 }
-
-
-_NAMES = {"Event": "EventView", "Intention": "IntentionView", "Percept": "PerceptView", "Plan": "PlanView"}
-"""What is called otherwise there, to tell it from a class of the mind."""
+"""Where the names are; a view of a thing of the mind is called otherwise there."""
+_PLACES = {
+    name.partition("=")[0]: (module, name.rpartition("=")[2])
+    for module, names in _MODULES.items()
+    for name in names.split()
+}
 
 
 def __getattr__(name: str) -> object:
     place = _PLACES.get(name)
     if place is None:
         raise AttributeError(f"module 'jacaros' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(place), _NAMES.get(name, name))
+    module, own_name = place
+    value = globals()[name] = getattr(import_module(module), own_name)
     return value
 
 

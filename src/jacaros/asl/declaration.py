@@ -43,7 +43,10 @@ class Declaration:
 
     def takes(self, count: int) -> bool:
         """Return whether it may have that number of arguments."""
-        return self.minimum <= count and (self.maximum is None or count <= self.maximum)
+        if isinstance(self.arity, int):
+            return count == self.arity
+        least, most = self.arity
+        return least <= count and (most is None or count <= most)
 
 
 UNDECLARED = Declaration()

@@ -1,5 +1,8 @@
 """From the class names of a project file to objects: agents, belief bases and architectures."""
 
+from collections.abc import Iterator
+from difflib import get_close_matches
+from types import ModuleType
 from typing import Generic, NamedTuple, TypeVar
 
 from jacaros.asl.diagnostics import AslError
@@ -10,7 +13,6 @@ from jacaros.errors import JacarosError
 from jacaros.extension.agent import Agent
 from jacaros.extension.architecture import AgentArch
 from jacaros.extension.belief_base import BeliefBase
-from jacaros.extension.collecting import UnknownClass, find_class
 from jacaros.extension.standard_bases import STANDARD_BASES, ChainBB
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.values import Term, arguments_of
@@ -18,6 +20,10 @@ from jacaros.terms.values import Term, arguments_of
 T = TypeVar("T")
 
 _JASON_BASES = "jason.bb."
+
+
+class UnknownClass(JacarosError):
+    """A project file names a class that its Python code does not have."""
 
 
 class Made(NamedTuple, Generic[T]):
@@ -76,3 +82,40 @@ def _split(written: str) -> tuple[str, tuple[Term, ...]]:
 
 def _values(terms: tuple[Term, ...]) -> tuple[object, ...]:
     return tuple(to_value(term) for term in terms)
+
+
+def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | None:
+    """The subclass of *kind* that ``my.Careful`` names; None when the project has no such module.
+
+    Raises:
+        ModuleUnreadable: the module cannot be imported.
+        UnknownClass: it has no such class; the text says what it has.
+    """
+    path, _, last = name.rpartition(".")
+    found = list(_modules_of(modules, path or last))
+    if not found:
+        return None
+    for module in found:
+        modules.require_seen(module, last)
+        candidate = vars(module).get(last)
+        if isinstance(candidate, type) and issubclass(candidate, kind):
+            return candidate
+    known = sorted(
+        {key for module in found for key, value in vars(module).items() if _is_own(value, kind, module)}
+    )
+    there = f"it has {', '.join(known)}" if known else f"it has no class derived from jacaros.{kind.__name__}"
+    close = get_close_matches(last, known, 1)
+    meant = f"; did you mean {path}.{close[0]}?" if close else ""
+    raise UnknownClass(f"there is no class {last} in {found[0].__file__ or path}: {there}{meant}")
+
+
+def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
+    return isinstance(value, type) and issubclass(value, kind) and value.__module__ == module.__name__
+
+
+def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
+    """The module of that path, then those of its package: ``my.Careful`` may stand in ``my/careful.py``."""
+    loaded = list(modules.load(path.partition(".")[0]))
+    if "." in path and modules.place(path) is not None:
+        loaded = list(modules.load(path))
+    yield from loaded

@@ -1,20 +1,17 @@
 """From the modules of a project to what they add to the language."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
-from typing import TypeVar
 
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.errors import JacarosError
 from jacaros.extension.calling import Undeclarable, action_of, function_of
 from jacaros.extension.declaring import ACTION, Declared, declarations
 from jacaros.module_outlines import INCOMPLETE, UNSEEN
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.terms.values import Term
 
-Made = TypeVar("Made")
 Limits = tuple[int, int | None]
 
 
@@ -103,44 +100,3 @@ def _place(declared: Declared) -> str:
     if code is None:
         return str(getattr(declared.function, "__module__", "?"))
     return f"{code.co_filename}:{code.co_firstlineno}"
-
-
-class UnknownClass(JacarosError):
-    """A project file names a class that its Python code does not have."""
-
-
-def find_class(modules: ProjectModules, name: str, kind: type[Made]) -> type[Made] | None:
-    """The subclass of *kind* that ``my.Careful`` names; None when the project has no such module.
-
-    Raises:
-        ModuleUnreadable: the module cannot be imported.
-        UnknownClass: it has no such class; the text says what it has.
-    """
-    path, _, last = name.rpartition(".")
-    found = list(_modules_of(modules, path or last))
-    if not found:
-        return None
-    for module in found:
-        modules.require_seen(module, last)
-        candidate = vars(module).get(last)
-        if isinstance(candidate, type) and issubclass(candidate, kind):
-            return candidate
-    known = sorted(
-        {key for module in found for key, value in vars(module).items() if _is_own(value, kind, module)}
-    )
-    there = f"it has {', '.join(known)}" if known else f"it has no class derived from jacaros.{kind.__name__}"
-    close = get_close_matches(last, known, 1)
-    meant = f"; did you mean {path}.{close[0]}?" if close else ""
-    raise UnknownClass(f"there is no class {last} in {found[0].__file__ or path}: {there}{meant}")
-
-
-def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
-    return isinstance(value, type) and issubclass(value, kind) and value.__module__ == module.__name__
-
-
-def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
-    """The module of that path, then those of its package: ``my.Careful`` may stand in ``my/careful.py``."""
-    loaded = list(modules.load(path.partition(".")[0]))
-    if "." in path and modules.place(path) is not None:
-        loaded = list(modules.load(path))
-    yield from loaded
