@@ -30,11 +30,10 @@ PATIENCE = 8.0
 def work(path: str) -> None:
     """Be a worker: read projects as lines, run each on one *path*, write what came of it as lines."""
     from jacaros.bdi.fast.generated import conditions
-    from jacaros.bdi.rules import cycle
     from jacaros.testing import run_project
 
-    if path == "general":
-        cycle.is_plain = lambda agent: False
+    if path == "plain":
+        os.environ["JACAROS_PLAIN"] = "1"
     elif path == "searched":
         conditions._MAX_LOOPS = 0
     answers, sys.stdout = sys.stdout, sys.stderr
@@ -195,7 +194,7 @@ def main() -> int:
             print("\n".join(f"--- {name}\n{text}" for name, text in files.items()))
         return 0
     new = given.new.resolve()
-    others = [Build(given.old.resolve())] if given.old else [Build(new, "general"), Build(new, "searched")]
+    others = [Build(given.old.resolve())] if given.old else [Build(new, "plain"), Build(new, "searched")]
     comparison = Comparison([Build(new), *others], prints_only=given.old is not None, into=given.into)
     try:
         ends = time.monotonic() + given.seconds

@@ -9,25 +9,25 @@ from jacaros.asl.loader import include_program
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.actions.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.architecture import Architecture
+from jacaros.bdi.engines import new_engine
 from jacaros.bdi.rules import (
     belief_update,
     body_terms,
     cloning,
-    cycle,
     deadlines,
     edge_signals,
     forks,
-    formulas,
     functions,
     goals,
     meta_events,
     plan_changes,
+    query,
     uptake,
 )
 from jacaros.bdi.rules.answers import AnswerByPlan
+from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.failure import error_terms, output_misfit, step_failure
-from jacaros.bdi.rules.finishing import pop_finished
 from jacaros.bdi.rules.goal_failure import fail_intention
 from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.act import Act, Completion, Percept
@@ -37,7 +37,7 @@ from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import Frame
 from jacaros.bdi.state.literals import own_annotations
 from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.program_plans import ProgramPlans
+from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.bdi.state.triggers import trigger
@@ -95,7 +95,7 @@ class Mind(Circumstance):
         plans: ProgramPlans | None = None,
     ) -> None:
         known = STANDARD if actions is None else actions
-        made = plans or ProgramPlans(program.plans, known)
+        made = plans or ProgramPlans(program.plans, new_engine(known))
         super().__init__(name, architecture, known, options or Options(), made)
         self.program = program
         self.context = Context(self)
@@ -112,6 +112,7 @@ class Mind(Circumstance):
 
     def start(self) -> None:
         """Take up the initial beliefs and goals."""
+        self.engine.begin(self)
         with functions.evaluating(self):
             self.take_up(self.program)
 
@@ -174,7 +175,7 @@ class Mind(Circumstance):
 
     def _initial_belief(self, node: nodes.Literal | nodes.Rule) -> None:
         if isinstance(node, nodes.Rule):
-            rule = Rule(node, self.actions, self.library.program.rule_functions)
+            rule = Rule(node, of_program=True)
             head = functor_of(rule.head())
             assert head is not None
             belief_update.add_rule(self, rule, head, last=False)
@@ -186,7 +187,7 @@ class Mind(Circumstance):
         assert symbol is not None
         if free_variables(term):
             own = own_annotations(annotations)
-            fact = OpenFact(bare(term), own, node, self.actions, self.library.program.rule_functions)
+            fact = OpenFact(bare(term), own, node)
             self.beliefs[symbol].add(fact, own)
         else:
             belief_update.tell(self, term)
@@ -201,7 +202,9 @@ class Mind(Circumstance):
         meta_events.post_new_goal(self, event)
         self.architecture.ready()
 
-    run = cycle.run
+    def run(self, fuel: int) -> bool:
+        """Make at most *fuel* reasoning cycles; True when there is more to do."""
+        return self.engine.run(self, fuel)
 
     # --- from outside --------------------------------------------------------------------------------------
 
@@ -348,9 +351,9 @@ class Mind(Circumstance):
     tell = belief_update.tell
     believe = belief_update.believe
     untell = belief_update.untell
-    solve_formula = formulas.solve_formula
-    solve_in_namespaces = formulas.solve_in_namespaces
-    collect_formula = formulas.collect_formula
+    solve_formula = query.solve_formula
+    solve_in_namespaces = query.solve_in_namespaces
+    collect_formula = query.collect_formula
     drop_desire = goals.drop_desire
     call_function = functions.call_function
 
@@ -454,7 +457,6 @@ class Mind(Circumstance):
     run_value = body_terms.run_value
 
     fork = forks.fork
-    join_branch = forks.join
 
     # --- plans ---------------------------------------------------------------------------------------------
 

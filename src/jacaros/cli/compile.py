@@ -9,9 +9,10 @@ import click
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import bounded
+from jacaros.bdi.engines import new_engine
 from jacaros.bdi.fast.generated.listing import Piece, listing, pieces
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.program_plans import ProgramPlans
+from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.cli.check import tell
 from jacaros.cli.files import existing
 from jacaros.errors import UsageError
@@ -49,7 +50,7 @@ def command(file: Path, show: bool, wanted: str | None, imports: bool) -> int:
     program, code = _read(existing(file, (".asl",)), imports)
     if program is None:
         return 1
-    plans = ProgramPlans(program.plans, code.actions).plans
+    plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
     rules = [each for each in program.beliefs if isinstance(each, nodes.Rule)]
     all_ = list(pieces(plans, rules, code.actions))
     chosen = [(piece, None) for piece in all_] if wanted is None else _chosen(all_, wanted)

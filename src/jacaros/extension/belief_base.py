@@ -109,7 +109,7 @@ class Tables(belief_base.BeliefTables):
     """The tables of a mind whose changes go through a `BeliefBase`."""
 
     def __init__(self, base: BeliefBase, mind: Mind) -> None:
-        super().__init__()
+        super().__init__(mind.engine)
         self.base, self.mind = base, mind
         self.budget = mind.beliefs.budget
         # The change that is under way, as the mind has it: the same literal need not be turned back into terms.

@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Generic, TypeVar
 
 from jacaros.bdi.actions.internal_action import ActionError
-from jacaros.bdi.fast.generated.unit import Select
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.rules.option_selection import options
 from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import literal, parts
+from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.plan_library import OwnSelects, PlanLibrary

@@ -8,7 +8,7 @@ from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.nodes import Program
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.program_plans import ProgramPlans
+from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.errors import JacarosError
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.deployment import AgentSpec, ProjectError

@@ -374,10 +374,12 @@ def _check_program(
 
 def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     """Plans that are left out because Python does not compile them."""
-    from jacaros.bdi.state.program_plans import ProgramPlans, look_at_large_plans  # here: see `_of_artifacts`
+    from jacaros.bdi.engines import new_engine  # here: see `_of_artifacts`
+    from jacaros.bdi.fast.compiler import too_large
+    from jacaros.bdi.state.plan_library import ProgramPlans
 
-    plans = ProgramPlans(program.plans, code.actions)
-    for plan, fault in look_at_large_plans(plans.plans, plans.actions):
+    plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
+    for plan, fault in too_large(plans, code.actions):
         yield Diagnostic(
             "error", fault, plan.node.span, "write several plans, or rules for parts of it", "plan-too-large"
         )

@@ -1,13 +1,15 @@
 """The agents of a run: made, copied, ended."""
 
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
 from jacaros.asl.nodes import Program
+from jacaros.bdi.engines import new_engine
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.state.program_plans import ProgramPlans
+from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.errors import JacarosError
 from jacaros.mas.activity import AgentTimer
 from jacaros.mas.agent_classes import AgentClasses
@@ -66,6 +68,7 @@ class Population:
         self.when_ended: Callable[[str], None] = lambda name: None
         self._specs: dict[str, AgentSpec] = {}
         self._plans: dict[int, ProgramPlans] = {}
+        self._uncompiled: deque[ProgramPlans] = deque()
 
     def check(self, agents: Iterable[AgentSpec]) -> None:
         """Look for the classes of agents, so that mistakes are told before anything runs.
@@ -97,9 +100,19 @@ class Population:
         """The plans of a program: agents that run the same one share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
-            made = ProgramPlans(program.plans, self._code.actions)
+            made = ProgramPlans(program.plans, new_engine(self._code.actions))
             self._plans[id(program.plans)] = made
+            self._uncompiled.append(made)
         return made
+
+    def compile_ahead(self) -> bool:
+        """Compile a little of what no event has asked for yet, some milliseconds at most; False when nothing is left."""
+        while self._uncompiled:
+            plans = self._uncompiled[0]
+            if plans.engine.compile_ahead(plans):
+                return True
+            self._uncompiled.popleft()
+        return False
 
     def create(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Make and start an agent for another one; its final name, or None with the reason logged."""

@@ -32,6 +32,7 @@ class Scheduler:
         clock: told of the cycles, so that a virtual one moves although nobody gets idle.
         on_idle: called whenever the last ready agent has run out of things to do.
         on_error: told of what escapes from an agent: a defect of JaCaROS itself.
+        idle_work: in real time, does a little of what can wait whenever no agent is ready; False when nothing is left.
         real_time: seconds of a steady clock, which bound a round of turns unless *clock* is virtual.
     """
 
@@ -50,11 +51,14 @@ class Scheduler:
         on_idle: Callable[[], None] = lambda: None,
         on_error: Callable[[BaseException], None] | None = None,
         real_time: Callable[[], float] = real_time,
+        idle_work: Callable[[], bool] = lambda: False,
     ) -> None:
         self._clock = clock
         self._on_idle = on_idle
         self._on_error = on_error
         self._real_time = real_time
+        self._idle_work = idle_work
+        self._works_idly = False
         self._quantum = self.QUANTUM
         self._queue: deque[Runnable] = deque()
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -107,6 +111,23 @@ class Scheduler:
                 self._call_after(self.PASSES - 1)
         elif not self._stopped:
             self._on_idle()
+            if not (self._clock.virtual or self._works_idly):
+                self._work_idly()
+
+    def _work_idly(self) -> None:
+        """Do a little of what can wait, and go on after the next poll, unless an agent has something to do by then."""
+        self._works_idly = False
+        if self._due or self._stopped:
+            return
+        try:
+            more = self._idle_work()
+        except Exception as error:
+            self._report(error)
+            return
+        if more:
+            assert self._loop is not None
+            self._works_idly = True
+            self._loop.call_soon(self._work_idly)
 
     def _call_after(self, passes: int) -> None:
         """Schedule the next round some passes of the loop later.

@@ -86,7 +86,7 @@ class System:
         self.directory: Directory[AgentHost] = Directory()
         self.activity = Activity()
         self.idleness = Idleness(self.activity)
-        self.scheduler = Scheduler(clock, self.idleness.look, self.fail)
+        self.scheduler = Scheduler(clock, self.idleness.look, self.fail, idle_work=self._compile_ahead)
         self.idleness.turns = self.scheduler
         self._surroundings: Surroundings | None = None
         self._diagnostics: Diagnostics | None = None
@@ -106,6 +106,9 @@ class System:
         self.lost_goals = 0
         self._exit_code: int | None = None
         self._error: BaseException | None = None
+
+    def _compile_ahead(self) -> bool:
+        return self.population.compile_ahead()
 
     def _find_graph(self) -> RosGraph:
         deployment, options = self.deployment, self.options

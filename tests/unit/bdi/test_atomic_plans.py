@@ -2,7 +2,7 @@
 
 from recording_host import mind, printed
 
-from jacaros.bdi.rules.deliberation import event_of, is_ready
+from jacaros.bdi.rules.sel_ev import event_of, is_ready
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.values import BY_SELF, atom, functor
 

@@ -6,6 +6,8 @@ import pytest
 from recording_host import RecordingHost, mind
 
 from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
+from jacaros.bdi.fast import loop
+from jacaros.bdi.rules import sel_ev
 from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state import circumstance
 from jacaros.bdi.state.act import Percept
@@ -99,8 +101,8 @@ FORK_BOMB = """
 
 
 def test_goals_without_end_leave_the_other_plans_their_turns(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jacaros.bdi.rules.deliberation.CROWD", 50)
-    monkeypatch.setattr(circumstance, "CROWD", 50)
+    for module in (circumstance, loop, sel_ev):
+        monkeypatch.setattr(module, "CROWD", 50)
     host = limited(FORK_BOMB, intention_limit=5000)
     turns = []
     for _ in range(20):
@@ -127,8 +129,8 @@ def test_goals_without_end_are_logged_now_and_then() -> None:
 def test_an_intention_that_waits_behind_the_crowd_has_its_turn_even_if_the_others_never_end(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("jacaros.bdi.rules.deliberation.CROWD", 10)
-    monkeypatch.setattr(circumstance, "CROWD", 10)
+    for module in (circumstance, loop, sel_ev):
+        monkeypatch.setattr(module, "CROWD", 10)
     host = limited(
         """
         !start.
@@ -145,8 +147,8 @@ def test_an_intention_that_waits_behind_the_crowd_has_its_turn_even_if_the_other
 
 
 def test_a_dropped_goal_behind_the_crowd_does_not_begin(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jacaros.bdi.rules.deliberation.CROWD", 3)
-    monkeypatch.setattr(circumstance, "CROWD", 3)
+    for module in (circumstance, loop, sel_ev):
+        monkeypatch.setattr(module, "CROWD", 3)
     host = limited(
         """
         !start.

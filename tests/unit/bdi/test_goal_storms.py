@@ -9,11 +9,12 @@ from recording_host import RecordingHost, mind
 
 from jacaros.asl.loader import load_program
 from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.bdi.engines import new_engine
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.belief_update import tell
 from jacaros.bdi.state.act import Completion
-from jacaros.bdi.state.program_plans import ProgramPlans
+from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var, atom, structure
 
@@ -38,7 +39,7 @@ PROGRAM = """
 -b(N) <- .wait(1); .print(N).
 """
 TREE = load_program("tester.asl", PROGRAM)[0]
-PLANS = ProgramPlans(TREE.plans, STANDARD)  # compiled once for all examples
+PLANS = ProgramPlans(TREE.plans, new_engine(STANDARD))  # compiled once for all examples
 KINDS = 11
 numbers = st.integers(0, 3).map(float)
 runs = st.tuples(st.just("run"), st.integers(1, 6))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 from recording_host import RecordingHost, mind
 
-from jacaros.bdi.rules import speech_acts
+from jacaros.bdi.rules import proc_msg
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import MANY_NAMES, SELECT_OPTION, Table
 from jacaros.bdi.state.speech_act import SpeechAct
@@ -32,8 +32,8 @@ def count_left(use: Callable[[RecordingHost, int], None]) -> int:
     before = live_names()
     for number in range(100, 100 + NAMES):
         use(host, number)
-    speech_acts._only_from.cache_clear()  # these keep the names of some thousand senders and goals
-    speech_acts._achieved.cache_clear()
+    proc_msg._only_from.cache_clear()  # these keep the names of some thousand senders and goals
+    proc_msg._achieved.cache_clear()
     return live_names() - before
 
 

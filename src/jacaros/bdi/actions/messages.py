@@ -10,7 +10,7 @@ from jacaros.bdi.actions.internal_action import (
 from jacaros.bdi.architecture import Timer
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.context import Context
-from jacaros.bdi.rules.speech_acts import from_sender
+from jacaros.bdi.rules.proc_msg import from_sender
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.waiting import Waiting
 from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve

@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
-from jacaros.asl.lowering import Names, fresh_names, lower
+from jacaros.asl.lowering import Names, lower
 from jacaros.asl.walk import names_in, operands, walk
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.explaining.step_text import unbracketed
 from jacaros.bdi.rules.context import Context
-from jacaros.bdi.rules.formulas import solve_formula
 from jacaros.bdi.rules.functions import OF_AGENT
+from jacaros.bdi.rules.query import interpret_rule, solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import Table
 from jacaros.bdi.state.circumstance import Circumstance
@@ -33,7 +33,7 @@ from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Functor, Term, Var, arguments_of, deref
+from jacaros.terms.values import Functor, Term, Var, deref
 
 MOST_STEPS = 1_000
 """Steps of the search for one plan (some ten microseconds each): answers of conjuncts, rules and internal actions."""
@@ -333,11 +333,6 @@ class _Interpreted:
 
     def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Generator[Any, Any, None]:
         """A generator of the answers, see `jacaros.bdi.rules.searching.run`."""
-        rule, lookup = self._rule, fresh_names()
-        head = arguments_of(lower(rule.head, lookup))
-        if all(unify(given, own, trail) for given, own in zip(arguments, head, strict=True)):
-            self._agent.refuse_effects(rule.body)
-            view: Any = self._agent
-            found = solve_formula(view, lower(rule.body, lookup), trail)
-            while (yield found) is not None:
-                yield ()
+        self._agent.refuse_effects(self._rule.body)
+        view: Any = self._agent
+        return interpret_rule(view, self._rule, arguments, trail)

@@ -8,9 +8,9 @@ from jacaros.asl.formatter import format_term
 from jacaros.asl.lowering import lower
 from jacaros.asl.source import Span
 from jacaros.bdi.explaining.step_text import step_text
-from jacaros.bdi.fast.generated.body_compiler import StepInfo
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
 from jacaros.bdi.state.literals import annotations_of_event, literal_of
+from jacaros.bdi.state.plan import StepInfo
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.excerpt import excerpt
 from jacaros.terms.operators import ArithmeticFault

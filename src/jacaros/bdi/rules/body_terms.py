@@ -1,12 +1,9 @@
-"""Plan bodies held by variables: they are compiled like any other, and run above the plan that holds them."""
+"""Plan bodies held by variables: they have steps like any other, and run above the plan that holds them."""
 
 from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.reflection import Reflection
-from jacaros.bdi.fast.generated.bodies import body_compiler
-from jacaros.bdi.fast.generated.function import Frame as Slots
-from jacaros.bdi.fast.generated.unit import CodeUnit, install_body
 from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Frame
@@ -31,14 +28,6 @@ from jacaros.terms.values import (
 
 ERROR = functor("error", 1)
 _BODY = trigger("+", "", functor("body", 0, namespace="jacaros"))
-
-
-class _Always(dict[str, int]):
-    """Every variable of a body that was made at run time is kept."""
-
-    def get(self, key: str, default: Any = None) -> Any:
-        del key, default
-        return 2
 
 
 def is_body_frame(frame: Frame) -> bool:
@@ -73,20 +62,16 @@ def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: Any) -> 
 
 
 def _body_plan(agent: Circumstance, term: Term) -> Plan:
-    """The compiled form of a body; one that is run often is compiled once."""
+    """A body as a plan; one that is run often is made once."""
     known = agent.bodies.get(id(term))
     if known is not None and known[0] is term:
-        compiled: Plan = known[1]
-        return compiled
+        plan: Plan = known[1]
+        return plan
     body = Reflection(shared=True).body(term)
     node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("body")), None, body)
     plan = Plan(node, atom("body"))
-    unit = CodeUnit("<body>", agent.actions)
-    compiler = body_compiler(unit, Slots(_Always()), "step")
-    first = compiler.body(body.steps, "None")
-    unit.execute()
-    install_body(unit, plan, compiler, first)
-    plan.slots, plan.size = compiler.frame.slots, compiler.frame.size
+    plan.keep_all_variables()
+    agent.engine.give_steps(plan)
     if len(agent.bodies) > 256:
         agent.bodies.clear()
     agent.bodies[id(term)] = (term, plan)

@@ -2,12 +2,11 @@
 
 from typing import Any
 
-from jacaros.bdi.fast.generated.function import FIRST_SLOT
 from jacaros.bdi.rules.forks import copied
 from jacaros.bdi.rules.plan_changes import look_at_plans
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.intention import GOAL, Intention
+from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, Intention
 from jacaros.terms.detaching import detached
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term

@@ -8,8 +8,8 @@ from jacaros.asl.loader import parse_term
 from jacaros.asl.lowering import Names, lower_value
 from jacaros.asl.walk import walk
 from jacaros.bdi.architecture import Architecture
-from jacaros.bdi.rules.formulas import solve_formula
 from jacaros.bdi.rules.functions import known_names
+from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Intention

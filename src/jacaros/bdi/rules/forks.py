@@ -6,11 +6,10 @@ last (``|&|``) or first (``|||``) goes on with the rest of the plan.
 
 from typing import Any
 
-from jacaros.bdi.fast.generated.function import FIRST_SLOT
 from jacaros.bdi.rules.outcomes import SUSPENDED
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.intention import GOAL, STEP, Frame, Intention
+from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, STEP, Frame, Intention
 from jacaros.terms.substitution import HOLDERS, rename
 from jacaros.terms.values import Var
 
@@ -76,8 +75,8 @@ def copied(frames: list[Frame]) -> list[Frame]:
     return copies
 
 
-def join(agent: Circumstance, frame: Frame) -> Any:
-    """A branch has come to its end."""
+def join_branch(agent: Circumstance, frame: Frame) -> Any:
+    """The step behind the last one of a branch: it has come to its end."""
     intention = agent.current
     assert intention is not None
     point, number = intention.forks[-1]

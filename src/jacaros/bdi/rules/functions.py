@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from typing import Final, NamedTuple
 
 from jacaros.asl.functions import FunctionNames
-from jacaros.bdi.rules.formulas import solve_formula
+from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.terms.arithmetic import RUNNING, settle

@@ -5,8 +5,8 @@ from typing import Any
 
 from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
 from jacaros.bdi.rules import goal_failure, meta_events
+from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.failure import release_bindings
-from jacaros.bdi.rules.finishing import pop_finished
 from jacaros.bdi.rules.stack import achieve, cut, pending_event, remove_event
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import (

@@ -8,8 +8,8 @@ one only.
 from collections.abc import Iterator
 from typing import Any
 
-from jacaros.bdi.rules.formulas import solve_formula
 from jacaros.bdi.rules.plan_terms import bindings_of, plan_term
+from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import SELECT_OPTION
 from jacaros.bdi.state.circumstance import Circumstance

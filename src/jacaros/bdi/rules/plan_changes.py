@@ -106,7 +106,7 @@ def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) 
                 agent.library.set_sources(held, (*sources, source))
             return
     agent.plans_made += 1
-    plan = Plan(node, label_of(node, agent.plans_made))
+    plan = Plan(node, label_of(node, agent.plans_made), agent.library.by_name)
     if agent.library.by_label(plan.label) is not None:
         raise _label_taken(plan.label)
     agent.library.add(with_subplans(plan, agent.plans_made), first)
@@ -167,7 +167,7 @@ def change_rule(agent: Circumstance, operator: str, term: Term) -> None:
     head = functor_of(lower(node.head, fresh_names()))
     assert head is not None
     table = agent.beliefs[head]
-    rule = Rule(node, agent.actions)
+    rule = Rule(node)
     if operator in ("-", "--"):
         for entry, _ in table.entries():
             if isinstance(entry, Rule) and shape(entry.node) == shape(rule.node):

@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 
 from jacaros.terms.substitution import resolve
 from jacaros.terms.unifier import Trail, each_annotation_match, undo, unify
-from jacaros.terms.values import Term
+from jacaros.terms.values import Term, Var
 
 Answers = Generator[Any, Any, None]
 
@@ -152,6 +152,12 @@ def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) ->
         if a is not b and not unify(a, b, trail):
             return False
     return True
+
+
+def release(variables: list[Var]) -> None:
+    """Take back the values of variables that were free when a loop began."""
+    for variable in variables:
+        variable.ref = None
 
 
 def still_held(table: Any, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term, ...]]:

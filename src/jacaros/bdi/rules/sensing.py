@@ -2,7 +2,7 @@
 
 from jacaros.bdi.rules import rescue
 from jacaros.bdi.rules.perceiving import take_percepts
-from jacaros.bdi.rules.speech_acts import read_message
+from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.urgency import read_urgent_messages
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.errors import InternalError
@@ -12,38 +12,21 @@ from jacaros.terms.unifier import undo
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts, ends of waits, one message."""
     agent.next_count -= 1  # what comes in may bring new names as any step does
-    if (
-        agent.tasks
-        or (agent.condition_waits and agent.condition_waits.want_a_look())
-        or (agent.urgency is not None and agent.inbox)
-        or agent.options.percept_interval != 1
-    ):
-        looks = agent.options.percept_interval == 1 or _looks_now(agent, cycle)
-        housekeeping(agent, looks)
-        if agent.inbox and looks:
-            (read_message if agent.urgency is None else read_urgent_messages)(agent)
-        agent.called = bool(
-            agent.inbox
-            or agent.percepts
-            or agent.tasks
-            or agent.condition_waits.want_a_look()
-            or agent.special
-            or agent.urgent
-        )
-        return
-    # What is usual: there is a message, or percepts, and nothing else.
-    if agent.percepts:
-        take_percepts(agent)
-        if agent.tasks:
-            _do_tasks(agent)
-            _check_conditions(agent)
-    waiting = len(agent.inbox)
-    agent.called = waiting > 1 or agent.special or agent.urgent
-    if waiting:
-        read_message(agent)
+    looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
+    housekeeping(agent, looks)
+    if agent.inbox and looks:
+        (read_message if agent.urgency is None else read_urgent_messages)(agent)
+    agent.called = bool(
+        agent.inbox
+        or agent.percepts
+        or agent.tasks
+        or agent.condition_waits.want_a_look()
+        or agent.special
+        or agent.urgent
+    )
 
 
-def _looks_now(agent: Circumstance, cycle: int) -> bool:
+def looks_now(agent: Circumstance, cycle: int) -> bool:
     """Whether an agent that does not look at percepts and messages in every cycle (``nrcbp``) does in this one."""
     if cycle < agent.next_look and (agent.events or agent.intentions or agent.tasks):
         return False
@@ -55,11 +38,11 @@ def housekeeping(agent: Circumstance, looks: bool = True) -> None:
     """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
     if agent.percepts and looks:
         take_percepts(agent)
-    _do_tasks(agent)
-    _check_conditions(agent)
+    do_tasks(agent)
+    check_conditions(agent)
 
 
-def _do_tasks(agent: Circumstance) -> None:
+def do_tasks(agent: Circumstance) -> None:
     """The housekeeping that is due."""
     while agent.tasks:
         task = agent.tasks.popleft()
@@ -71,7 +54,7 @@ def _do_tasks(agent: Circumstance) -> None:
             rescue.passed_over(agent, "a delayed change of an intention", fault)
 
 
-def _check_conditions(agent: Circumstance) -> None:
+def check_conditions(agent: Circumstance) -> None:
     """Resume the intentions whose awaited condition holds now."""
     waits = agent.condition_waits
     for wait in waits.take_due():
@@ -91,4 +74,4 @@ def _check_conditions(agent: Circumstance) -> None:
             if held:
                 waits.remove(wait)
                 waiting.resume()
-    _do_tasks(agent)
+    do_tasks(agent)

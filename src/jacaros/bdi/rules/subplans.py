@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from jacaros.bdi.fast.generated.unit import Select, compile_select
 from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.program_plans import concerns
+from jacaros.bdi.state.plan_library import concerns
 from jacaros.bdi.state.triggers import Trigger
 
 
@@ -52,7 +52,7 @@ def _select_function(agent: Circumstance, plan: Plan, kind: Trigger) -> Select |
     if found is None and (plans := [inner for inner in plan.subplans if concerns(inner, kind)]):
         if len(plan.subselects) >= MANY_NAMES:
             plan.subselects.clear()
-        found = plan.subselects[kind] = compile_select(kind, plans, agent.actions, plan)[0]
+        found = plan.subselects[kind] = agent.engine.select(kind, plans, plan)
     return found
 
 

@@ -22,13 +22,12 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Generic, TypeVar
 
-from jacaros.bdi.rules.deliberation import handle_event
-from jacaros.bdi.rules.speech_acts import RECEIVED, read_message
+from jacaros.bdi.rules.proc_msg import RECEIVED, read_message
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Intention
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.program_plans import concerns
+from jacaros.bdi.state.plan_library import concerns
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.terms.values import functor_of, is_list, list_items
@@ -264,11 +263,3 @@ def read_urgent_messages(agent: Any) -> None:
     """Read the message whose turn it is; all up to the last about something urgent, when there is one."""
     for _ in range(agent.urgency.messages_to_read()):
         read_message(agent)
-
-
-def handle_urgent_event(agent: Any) -> None:
-    """Take an event up, unless a more urgent intention is ready."""
-    if agent.urgency.may_take_event():
-        begun = handle_event(agent)
-        if begun is not None:
-            agent.intentions.append(begun)

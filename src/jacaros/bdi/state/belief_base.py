@@ -4,8 +4,9 @@ import itertools
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from jacaros.bdi.state.engine import Engine
 from jacaros.bdi.state.mixed_beliefs import FEW, Late, Mixed, discard, key_of
-from jacaros.bdi.state.rule import OpenFact, Search, Searches
+from jacaros.bdi.state.rule import OpenFact
 from jacaros.bdi.state.search_budget import SearchBudget
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms import values
@@ -82,8 +83,8 @@ class Table:
         self.others = 0
         self.unwritten = 0
         self.plain = True
-        self.searches: Searches | None = None
-        self.deep: Searches | None = None
+        self.searches: Any = None
+        self.deep: Any = None
         self._indexes: dict[tuple[int, ...], Index] = {}
         self._mixed: Mixed | None = None
         self._base = base
@@ -94,7 +95,7 @@ class Table:
         """How much may be searched; None for any amount."""
         return None if self._base is None else self._base.budget
 
-    def search(self, pattern: int, agent: Any, trail: Trail) -> Search:
+    def search(self, pattern: int, agent: Any, trail: Trail) -> Any:
         """The generator function for a search that begins here; *pattern* tells which arguments are given."""
         trail.room = agent.rule_depth
         assert self.searches is not None
@@ -274,8 +275,9 @@ class Table:
     def _changed(self) -> None:
         """Rules, or facts among them, came or went: another function searches for them from now on."""
         self.plain = not self.others and not self.late
-        self.searches = None if self.plain else Searches(self)
-        self.deep = None if self.plain else Searches(self, deep=True)
+        engine = None if self.plain or self._base is None else self._base.engine
+        made = None if engine is None else engine.searches(self)
+        self.searches, self.deep = (None, None) if made is None else made
         if not self.others:
             self._mixed = None
 
@@ -407,13 +409,15 @@ class BeliefTables(dict[Functor, Table]):
         next_call: gives the number of the next one.
         refusals: how many beliefs from outside were refused (`jacaros.bdi.state.bounded_beliefs`).
         budget: how much may be searched; None for any amount.
+        engine: carries out the rules.
     """
 
     refusals = 0
     budget: SearchBudget | None = None
 
-    def __init__(self) -> None:
+    def __init__(self, engine: Engine | None = None) -> None:
         super().__init__()
+        self.engine = engine
         self.searching = 0
         self.next_call = itertools.count(1).__next__
 

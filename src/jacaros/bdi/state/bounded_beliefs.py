@@ -8,6 +8,7 @@ from typing import Any
 
 from jacaros.bdi.state.belief_base import BeliefTables, Table
 from jacaros.bdi.state.budget import Holder
+from jacaros.bdi.state.engine import Engine
 from jacaros.terms.values import Functor, Term
 
 SMALL = 100_000
@@ -24,8 +25,8 @@ class BoundedBeliefs(BeliefTables):
         limit: how many there may be, rules included.
     """
 
-    def __init__(self, holder: Holder, limit: int) -> None:
-        super().__init__()
+    def __init__(self, holder: Holder, limit: int, engine: Engine | None = None) -> None:
+        super().__init__(engine)
         self.bind(holder, limit)
 
     def bind(self, holder: Holder, limit: int) -> None:

@@ -2,7 +2,6 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any
 
 from jacaros.bdi.actions.internal_action import InternalAction
@@ -16,9 +15,8 @@ from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event, event_li
 from jacaros.bdi.state.event_waits import EventWaits
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.plan_library import PlanLibrary
+from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.probe import Probe
-from jacaros.bdi.state.program_plans import ProgramPlans
 from jacaros.bdi.state.search_budget import SearchBudget
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger
@@ -98,6 +96,7 @@ class Circumstance:
         stopped: the agent is over.
         accepts: asked whether a message is acceptable; None accepts all.
         face: what the project's Python code sees of the agent; made when it is first asked for.
+        engine: carries out plans and rules.
         edges: there may be plans for falling asleep and awaking.
         drowsy: it has had nothing to do since it last awoke, and has been told so.
         asleep: it is drowsy, and has done what its plans do before sleep.
@@ -126,6 +125,7 @@ class Circumstance:
         "delayed_events",
         "drowsy",
         "edges",
+        "engine",
         "evaluators",
         "event_limit",
         "event_waits",
@@ -191,7 +191,9 @@ class Circumstance:
         self.current: Intention | None = None
         self.budgets = budgets(self)
         limit = options.belief_limit
-        self.beliefs: BeliefTables = BoundedBeliefs(self, limit) if limit <= SMALL else BeliefTables()
+        self.beliefs: BeliefTables = (
+            BoundedBeliefs(self, limit, plans.engine) if limit <= SMALL else BeliefTables(plans.engine)
+        )
         self.next_count = INTERVAL
         self.event_limit, self.intention_limit = options.event_limit, options.intention_limit
         if options.search_limit:
@@ -199,7 +201,8 @@ class Circumstance:
         self.usual_events = options.events == "discard" and not options.new_focus
         self.option_filter = self.beliefs[SELECT_OPTION]
         self.refused_options = False
-        self.library = PlanLibrary(plans, partial(architecture.log, "error"))
+        self.engine = plans.engine
+        self.library = PlanLibrary(plans)
         self.selects = self.library.selects
         self.urgency: Any = None
         self.urgent = False

@@ -16,7 +16,7 @@ serial: number of goals posted before it (`Trail.serial`): bindings stamped with
 plan: the `Plan`.
 """
 
-STEP, GOAL, ANNOTATIONS, SERIAL, PLAN = range(5)
+STEP, GOAL, ANNOTATIONS, SERIAL, PLAN, FIRST_SLOT = range(6)
 
 
 class Intention:

@@ -1,11 +1,13 @@
 """A plan as the mind keeps it: its syntax, and what the compiler made of it."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import lower_value
-from jacaros.bdi.fast.generated.body_compiler import StepInfo
+from jacaros.asl.walk import names_in, nodes_in, occurrences
+from jacaros.bdi.state.intention import FIRST_SLOT
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import (
@@ -20,9 +22,24 @@ from jacaros.terms.values import (
     functor_of,
 )
 
-ATOMIC_LABEL = atom("atomic")
+ALL_UNIFIERS, ATOMIC_LABEL = atom("all_unifs"), atom("atomic")
 URL = functor("url", 1)
 URGENCY = functor("urgency", 1)
+
+
+@dataclass
+class StepInfo:
+    """What is known of a step: for failure events, inspection and copies of running plans.
+
+    Attributes:
+        node: the formula.
+        next: name of the step that follows, ``"None"`` at the end.
+        failure: the terms of its plain failure, once it has failed so.
+    """
+
+    node: nodes.Node
+    next: str
+    failure: tuple[Term, ...] | None = None
 
 
 class Plan:
@@ -33,14 +50,13 @@ class Plan:
         label: term of the label, without annotations.
         annotations: those of the label, without its sources.
         atomic: whether the label says ``atomic``.
+        by_name: internal actions that reach variables by their names: all variables of the plan are kept for them.
         urgency: the number of ``urgency(N)`` in the label, 0 without.
-        slots: index in the frame by variable name.
-        size: number of slots of a body that is run on its own.
-        first: the first step function, None for an empty body; set when the plan is compiled.
-        steps: what is known of each step function, by its name.
+        first: the first step, None for an empty body; set when the plan is first needed.
+        size: number of places of a frame behind the fixed ones.
+        steps: what is known of each step, by its name.
+        interpreted: its steps as the rules of the language carry them out, once they have been needed.
         scope: the plan that this one is a sub-plan of, or None.
-        fault: why it cannot be compiled, once that has been seen.
-        searched: its context is too large to be compiled, and searched as a term.
         replaceable: nothing is left to do once its last formula has called a goal: it has neither goal condition nor
             sub-plans.
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
@@ -49,44 +65,63 @@ class Plan:
     """
 
     __slots__ = (
+        "_slots",
         "annotations",
         "atomic",
-        "fault",
+        "by_name",
         "first",
         "goal_condition",
+        "interpreted",
         "label",
         "node",
         "replaceable",
         "scope",
-        "searched",
         "size",
-        "slots",
         "steps",
         "subplans",
         "subselects",
         "urgency",
     )
 
-    def __init__(self, node: nodes.Plan, label: Term) -> None:
+    def __init__(self, node: nodes.Plan, label: Term, by_name: frozenset[str] = frozenset()) -> None:
         self.node = node
+        self.by_name = by_name
         self.label = bare(label)
         self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
         self.atomic = ATOMIC_LABEL in self.annotations
         self.urgency = _urgency(self.annotations) if self.annotations else 0
         self.replaceable = node.goal_condition is None and not node.subplans
-        self.slots: dict[str, int] = {}
+        self._slots: dict[str, int] | None = None
+        self.interpreted: Any = None
         self.size = 0
         self.first: Callable[[Any, list[Any]], Any] | None = None
         self.steps: dict[str, StepInfo] = {}
         self.scope: Plan | None = None
-        self.searched = False
-        self.fault: str | None = None
         self.goal_condition: Callable[[Any, list[Any]], bool] | None = None
         self.subplans: list[Plan] = []
         self.subselects: dict[Trigger, Any] = {}
 
     def __repr__(self) -> str:
         return f"Plan({self.label!r})"
+
+    @property
+    def slots(self) -> dict[str, int]:
+        """Index in the frame by variable name.  A variable that is mentioned once has none: nobody reads its value."""
+        if self._slots is None:
+            node = self.node
+            own = occurrences(node.trigger, node.context, node.body, node.goal_condition)
+            inner = occurrences(node.subplans)
+            outer = {} if self.scope is None else self.scope.slots
+            calls = nodes_in(nodes.InternalAction, node.body) if self.by_name else ()
+            by_name = any(call.name in self.by_name for call in calls)
+            kept = [n for n, count in own.items() if by_name or count + inner.get(n, 0) + (n in outer) > 1]
+            kept += [n for n in inner if n in outer and n not in own]  # taken over, to be handed on
+            self._slots = {name: FIRST_SLOT + index for index, name in enumerate(kept)}
+        return self._slots
+
+    def keep_all_variables(self) -> None:
+        """Have a place in the frame for every variable, also for those that are mentioned once."""
+        self._slots = {name: FIRST_SLOT + index for index, name in enumerate(names_in(self.node))}
 
     @property
     def file(self) -> str:
@@ -128,7 +163,7 @@ def _is_source(annotation: Term) -> bool:
 def with_subplans(plan: Plan, number: int) -> Plan:
     """Give a plan its sub-plans, and those theirs."""
     for node in plan.node.subplans:
-        inner = Plan(node, label_of(node, number))
+        inner = Plan(node, label_of(node, number), plan.by_name)
         inner.scope = plan
         plan.subplans.append(with_subplans(inner, number))
     return plan

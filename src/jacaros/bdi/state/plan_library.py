@@ -1,25 +1,137 @@
-"""The plans of one agent by trigger, and their select functions."""
+"""The plans of a program, made once for all agents that run it, and those of one agent."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import cast
+from collections.abc import Iterator, Sequence
+from typing import Any
 
-from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.fast.generated.unit import Select, compile_select
+from jacaros.asl import nodes
 from jacaros.bdi.state.belief_base import MANY_NAMES
-from jacaros.bdi.state.intention import Frame
-from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.program_plans import (
-    ProgramPlans,
-    Selects,
-    concerns,
-    has_goal_condition,
-    look_at_large_plans,
-    relevant,
-)
+from jacaros.bdi.state.engine import Engine, Every, Select
+from jacaros.bdi.state.plan import Plan, label_of, with_subplans
 from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import trigger as trigger_of_kind
 from jacaros.terms.values import SELF, Term, bare
 
 _BY_SELF = (SELF,)
+
+
+class ProgramPlans:
+    """Plans in the order of the program, and the select functions made from them so far.
+
+    A plan changes no more once it is made; what an agent adds or removes at run time is its own library's business.
+
+    Args:
+        plan_nodes: the syntax.
+        engine: carries them out.
+
+    Attributes:
+        by_name: internal actions that reach variables by their names.
+        has_subplans: whether any plan has plans of its own.
+        has_goal_conditions: whether any plan, or plan of a plan, has a goal condition.
+        has_meta_plans: whether any plan reacts to changes of goal states (``^!g``).
+        selects: the select functions.
+    """
+
+    def __init__(self, plan_nodes: Sequence[nodes.Plan], engine: Engine) -> None:
+        self.engine = engine
+        self.nodes = plan_nodes  # held, so that nothing else can be at its place in memory
+        self.by_name = frozenset(action.name for action in engine.actions.values() if action.by_name)
+        self.plans = [
+            with_subplans(Plan(node, label_of(node, number), self.by_name), number)
+            for number, node in enumerate(plan_nodes, start=1)
+        ]
+        self._by_head: dict[tuple[str, str, Any], list[Plan]] = {}
+        for plan in self.plans:
+            head = plan.node.trigger
+            self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
+        self.has_subplans = any(plan.subplans for plan in self.plans)
+        self.has_goal_conditions = any(has_goal_condition(plan) for plan in self.plans)
+        self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
+        self.selects = ProgramSelects(self)
+
+    def kinds(self) -> Iterator[Trigger]:
+        """The kinds of events that plans are for, in the order of the program."""
+        for operator, kind, symbol in self._by_head:
+            if symbol is not None:
+                yield trigger_of_kind(operator, kind, symbol)
+
+    def relevant(self, trigger: Trigger) -> Sequence[Plan]:
+        """The candidate plans of an event kind, found without a look at each of a thousand plans."""
+        if (trigger.operator, trigger.kind, None) in self._by_head:
+            return relevant(self.plans, trigger)
+        return self._by_head.get((trigger.operator, trigger.kind, trigger.functor), ())
+
+
+class Selects(dict[Trigger, Select | None]):
+    """What chooses a plan for each kind of event, made at its first event; None when no plan concerns it."""
+
+    __slots__ = ("_general", "_unnamed")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._general: dict[tuple[Any, ...], Select | None] = {}
+        self._unnamed: list[Trigger] = []
+
+    def made(self, trigger: Trigger, plans: Sequence[Plan], engine: Engine) -> Select | None:
+        """What chooses for a kind of event; kinds that no plan names share it for their number of arguments."""
+        if not plans:
+            return None
+        if _name(plans, trigger):
+            return engine.select(trigger, plans)
+        key = (trigger.functor.arity, *plans)
+        if key not in self._general:
+            self._general[key] = engine.select(trigger, plans)
+        return self._general[key]
+
+    def keep(self, trigger: Trigger, select: Select | None, plans: Sequence[Plan]) -> Select | None:
+        """Keep the function of an event kind, for ever if a plan names it; of others, only MANY_NAMES are kept."""
+        if not _name(plans, trigger):
+            if len(self._unnamed) >= MANY_NAMES:
+                for unnamed in self._unnamed:
+                    self.pop(unnamed, None)
+                self._unnamed = []
+            self._unnamed.append(trigger)
+        self[trigger] = select
+        return select
+
+
+class ProgramSelects(Selects):
+    """What chooses among the plans of a program."""
+
+    __slots__ = ("_program",)
+
+    def __init__(self, program: ProgramPlans) -> None:
+        super().__init__()
+        self._program = program
+
+    def __missing__(self, trigger: Trigger) -> Select | None:
+        program = self._program
+        plans = program.relevant(trigger)
+        return self.keep(trigger, self.made(trigger, plans, program.engine), plans)
+
+
+def _name(plans: Sequence[Plan], trigger: Trigger) -> bool:
+    """Whether one of the plans names the functor of an event kind: others have a variable there."""
+    return trigger.functor in [plan.trigger_functor() for plan in plans]
+
+
+def has_goal_condition(plan: Plan) -> bool:
+    """Whether a plan, or a plan of it, has a goal condition."""
+    return plan.node.goal_condition is not None or any(has_goal_condition(inner) for inner in plan.subplans)
+
+
+def relevant(plans: Sequence[Plan], trigger: Trigger) -> list[Plan]:
+    """The candidate plans of an event kind, those with a variable as trigger among them."""
+    return [plan for plan in plans if concerns(plan, trigger)]
+
+
+def concerns(plan: Plan, trigger: Trigger) -> bool:
+    """Whether a plan is a candidate for an event kind."""
+    head = plan.node.trigger
+    return (
+        head.operator == trigger.operator
+        and head.kind == trigger.kind
+        and (plan.has_variable_trigger() or plan.trigger_functor() is trigger.functor)
+    )
 
 
 class PlanLibrary:
@@ -29,25 +141,23 @@ class PlanLibrary:
         program: the plans that it began with; as long as no other plan concerns an event, their select function is shared
             with all agents of the program.
         selects: the select functions; as long as no plan has come or gone they are those of the program.
-        report: told what cannot be compiled.
     """
 
-    __slots__ = ("_every", "_sources", "actions", "own", "plans", "program", "removed", "report", "selects")
+    __slots__ = ("_every", "_sources", "own", "plans", "program", "removed", "selects")
 
-    def __init__(self, program: ProgramPlans, report: Callable[[str], None]) -> None:
+    def __init__(self, program: ProgramPlans) -> None:
         self.program = program
-        if program.report is None:
-            program.report = report
-            for _, fault in look_at_large_plans(program.plans, program.actions):
-                report(f"{fault}; it is left out")
-        self.actions: Mapping[str, InternalAction] = program.actions
-        self.report = report
         self.plans: list[Plan] = program.plans
         self.own: list[Plan] = []
         self.removed: list[Plan] = []
         self.selects: Selects = program.selects
         self._sources: dict[Plan, tuple[Term, ...]] = {}
-        self._every: dict[Trigger, Callable[..., Iterator[Frame]]] = {}
+        self._every: dict[Trigger, Every] = {}
+
+    @property
+    def by_name(self) -> frozenset[str]:
+        """Internal actions that reach variables by their names."""
+        return self.program.by_name
 
     def add(self, plan: Plan, first: bool = False) -> None:
         """Add a plan at the end, or before all others."""
@@ -114,14 +224,13 @@ class PlanLibrary:
         changed = (*self.own, *self.removed)
         return not any(concerns(plan, trigger) for plan in changed)
 
-    def every_option(self, trigger: Trigger) -> Callable[..., Iterator[Frame]] | None:
+    def every_option(self, trigger: Trigger) -> Every | None:
         """A generator function of the frames of all applicable plans of an event kind; None without relevant plans."""
         every = self._every.get(trigger)
         if every is None and (plans := self.relevant(trigger)):
             if len(self._every) >= MANY_NAMES:
                 self._every.clear()
-            select = compile_select(trigger, plans, self.actions, every=True)[0]
-            every = self._every[trigger] = cast("Callable[..., Iterator[Frame]]", select)
+            every = self._every[trigger] = self.program.engine.every(trigger, plans)
         return every
 
     def has_subplans(self) -> bool:
@@ -153,7 +262,7 @@ class OwnSelects(Selects):
         if library.is_as_written(trigger):
             return self.keep(trigger, library.program.selects[trigger], library.program.relevant(trigger))
         plans = library.relevant(trigger)
-        return self.keep(trigger, self.made(trigger, plans, library.actions, library.report), plans)
+        return self.keep(trigger, self.made(trigger, plans, library.program.engine), plans)
 
     def forget(self, plan: Plan) -> None:
         """A plan came or went: the functions it concerns are made anew."""

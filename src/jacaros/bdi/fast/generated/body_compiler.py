@@ -7,23 +7,7 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.bdi.fast.generated.conditions import condition
 from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder, Unit
-from jacaros.terms.values import Term
-
-
-@dataclass
-class StepInfo:
-    """What is known of a step function: for failure events, inspection and copies of running plans.
-
-    Attributes:
-        node: the formula.
-        next: name of the step that follows, ``"None"`` at the end.
-        failure: the terms of its plain failure, once it has failed so.
-    """
-
-    node: nodes.Node
-    next: str
-    failure: tuple[Term, ...] | None = None
-
+from jacaros.bdi.state.plan import StepInfo
 
 StepWriter = Callable[["BodyCompiler", Any, str, str], None]
 """Writes one step: it is given the step, the name of its function and the name of the next one."""
@@ -94,10 +78,8 @@ class BodyCompiler:
     def learn(self, names: Sequence[str], state: str = "set") -> None:
         """Take note that variables have a value from now on, or ``maybe`` have one."""
         for variable in names:
-            if self.frame.counts.get(variable, 0) > 1:
-                self.frame.slot(variable)
-                if self.frame.states.get(variable) != "set":
-                    self.frame.states[variable] = state
+            if variable in self.frame.slots and self.frame.states.get(variable) != "set":
+                self.frame.states[variable] = state
 
 
 def head(name: str) -> str:

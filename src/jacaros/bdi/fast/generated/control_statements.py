@@ -6,10 +6,11 @@ finds unbound.
 
 from jacaros.asl import nodes
 from jacaros.asl.walk import names_in, nodes_in
-from jacaros.bdi.fast.generated.body_compiler import BodyCompiler, StepInfo, StepWriter, head
+from jacaros.bdi.fast.generated.body_compiler import BodyCompiler, StepWriter, head
 from jacaros.bdi.fast.generated.building import tuple_of
 from jacaros.bdi.fast.generated.conditions import question
 from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder
+from jacaros.bdi.state.plan import StepInfo
 from jacaros.terms.substitution import ATOMIC
 
 
@@ -81,7 +82,7 @@ def _for(compiler: BodyCompiler, step: nodes.For, name: str, next_name: str) -> 
         enter.line("t = Trail()")
         enter.line("t.serial = agent.trail.serial")
         new = [n for n in names_in(step.condition) if n not in enter.values]
-        used = [n for n in new if frame.counts.get(n, 0) > 1]
+        used = [n for n in new if n in frame.slots]
         call = question(enter, step.condition, used)
         enter.line(f"frame[{answers}] = Remaining({call})")
         enter.line(f"return {round_name}(agent, frame)")
@@ -95,10 +96,10 @@ def _for(compiler: BodyCompiler, step: nodes.For, name: str, next_name: str) -> 
         own = frame.hidden_slot() if used else None
         if own is not None:
             fn.line(f"if frame[{own}]: release(frame[{own}])")
-        targets = tuple_of([f"frame[{frame.slot(n)}]" for n in used]) if used else "_"
+        targets = tuple_of([f"frame[{frame.slots[n]}]" for n in used]) if used else "_"
         with fn.writer.block(f"for {targets} in frame[{answers}]:"):
             if own is not None:
-                values = tuple_of(["None", *(f"frame[{frame.slot(n)}]" for n in used)])
+                values = tuple_of(["None", *(f"frame[{frame.slots[n]}]" for n in used)])
                 fn.line(f"frame[{own}] = free_variables({values}) if {_any_open(frame, used)} else None")
             fn.line(f"frame[0] = {first if step.body.steps else round_name}")
             fn.line("return None")
@@ -115,8 +116,8 @@ def _clear_inner(
 ) -> None:
     """Variables that get their first value inside a loop have none at the beginning of a round nor after the loop."""
     for variable in names_in(step):
-        if variable not in entry and compiler.frame.counts.get(variable, 0) > 1:
-            fn.line(f"frame[{compiler.frame.slot(variable)}] = None")
+        if variable not in entry and variable in compiler.frame.slots:
+            fn.line(f"frame[{compiler.frame.slots[variable]}] = None")
 
 
 def _free_at_entry(compiler: BodyCompiler) -> list[str]:
@@ -133,7 +134,7 @@ def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -
     # `free_variables` takes the first element of a tuple for a functor.
     # Variables that a body made at run time shares with its plan.
     shared = [fn.constant(c.value) for c in nodes_in(nodes.Constant, step) if c.value.__class__ not in ATOMIC]
-    values = tuple_of(["None", *(f"frame[{frame.slot(n)}]" for n in names), *shared])
+    values = tuple_of(["None", *(f"frame[{frame.slots[n]}]" for n in names), *shared])
     test = "True" if shared else _any_open(frame, names)
     fn.line(f"frame[{slot}] = free_variables({values}) if {test} else None")
     return slot
@@ -141,7 +142,7 @@ def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -
 
 def _any_open(frame: Frame, names: list[str]) -> str:
     """A test whether any of the variables may hold something unbound."""
-    tests = [f"frame[{frame.slot(n)}].__class__ not in ATOMIC" for n in names]
+    tests = [f"frame[{frame.slots[n]}].__class__ not in ATOMIC" for n in names]
     return " or ".join(tests) if tests else "False"
 
 

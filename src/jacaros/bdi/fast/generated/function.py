@@ -7,11 +7,9 @@ from typing import Protocol
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.writer import Writer
+from jacaros.bdi.state.intention import FIRST_SLOT
+from jacaros.bdi.state.plan import Plan
 from jacaros.terms.values import Term
-
-FIRST_SLOT = 5
-"""A frame is ``[next step, goal, annotations, serial, plan, variable, ...]``."""
-
 
 TOP = "NESTED"
 """The `FunctionBuilder.depth` of a function that no other search has called."""
@@ -42,28 +40,18 @@ class Frame:
         states: ``set`` (has a value, perhaps a `Var`) or ``maybe`` (None when it was bound on another branch);
             names that are missing have no value yet.
         asked: variables that went into a call without a value, to have one afterwards: their slots hold a `Var`.
-        counts: how often each variable is mentioned in the plan: a value that nobody reads is not kept.
     """
 
-    def __init__(self, counts: dict[str, int]) -> None:
-        self.slots: dict[str, int] = {}
+    def __init__(self, plan: Plan) -> None:
+        self.slots = plan.slots
         self.extra = 0
         self.states: dict[str, str] = {}
         self.asked: set[str] = set()
-        self.counts = counts
-
-    def slot(self, name: str) -> int:
-        """The slot of a variable."""
-        index = self.slots.get(name)
-        if index is None:
-            index = self.slots[name] = FIRST_SLOT + len(self.slots) + self.extra
-        return index
 
     def hidden_slot(self) -> int:
         """A slot for the compiler's own use."""
-        index = FIRST_SLOT + len(self.slots) + self.extra
         self.extra += 1
-        return index
+        return FIRST_SLOT + len(self.slots) + self.extra - 1
 
     @property
     def size(self) -> int:
@@ -148,7 +136,7 @@ class FunctionBuilder:
             state = frame.states.get(name)
             if state is None:
                 continue
-            slot = frame.slot(name)
+            slot = frame.slots[name]
             self.line(f"v_{name} = frame[{slot}]")
             if state == "maybe":
                 self.line(f'if v_{name} is None: v_{name} = frame[{slot}] = Var("{name}")')
@@ -161,13 +149,12 @@ class FunctionBuilder:
     def store(self, frame: Frame) -> None:
         """Write the variables that got a value here to the frame."""
         for name in self.fresh:
-            if frame.counts.get(name, 0) > 1:
-                self.line(f"frame[{frame.slot(name)}] = {self.values[name]}")
+            if name in frame.slots:
+                self.line(f"frame[{frame.slots[name]}] = {self.values[name]}")
         frame.asked |= self.asked
 
     def mark_stored(self, frame: Frame) -> None:
         """Take note that the fresh variables have a value from now on."""
         for name in self.fresh:
-            if frame.counts.get(name, 0) > 1:
-                frame.slot(name)
+            if name in frame.slots:
                 frame.states[name] = "set"

@@ -5,7 +5,7 @@ Nothing here knows of agents beyond what is passed in: tables of beliefs, the tr
 
 from typing import Any
 
-from jacaros.bdi.fast.generated.calls import (
+from jacaros.bdi.rules.calls import (
     answers_of,
     cannot_wait,
     first_answer_of,
@@ -16,12 +16,14 @@ from jacaros.bdi.fast.generated.calls import (
     values_of,
 )
 from jacaros.bdi.rules.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
+from jacaros.bdi.rules.forks import join_branch
 from jacaros.bdi.rules.outcomes import FAILED, NextPlan
 from jacaros.bdi.rules.searching import (
     Remaining,
     deeper,
     exists,
     facts,
+    release,
     run,
     solve,
     solve_annotated,
@@ -53,19 +55,8 @@ NESTED = 100
 """So many generators may be nested: each is a level of Python's stack, of which a thousand are allowed."""
 
 
-def release(variables: list[Var]) -> None:
-    """Take back the values of variables that were free when a loop began."""
-    for variable in variables:
-        variable.ref = None
-
-
 CLOSED = frozenset({float, String, Functor, List})
 """Values that never unify with a structure."""
-
-
-def join_branch(agent: Any, frame: list[Any]) -> Any:
-    """The step behind the last one of a branch of ``|&|`` or ``|||``."""
-    return agent.join_branch(frame)
 
 
 _FUNCTIONS = (

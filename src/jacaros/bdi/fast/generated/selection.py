@@ -7,20 +7,15 @@ its new frame; None means that no plan is applicable (rules RelPl, ApplPl and Se
 from collections.abc import Sequence
 
 from jacaros.asl import nodes
-from jacaros.asl.walk import names_in, nodes_in, occurrences
+from jacaros.asl.walk import names_in
 from jacaros.bdi.fast.generated.annotations import first_match, patterns_in_order
 from jacaros.bdi.fast.generated.bodies import body_compiler
 from jacaros.bdi.fast.generated.body_compiler import BodyCompiler
-from jacaros.bdi.fast.generated.building import annotation_parts, functor_of_literal, tuple_of
-from jacaros.bdi.fast.generated.conditions import condition, searched
+from jacaros.bdi.fast.generated.building import annotation_parts, tuple_of
+from jacaros.bdi.fast.generated.conditions import condition
 from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder, Unit
 from jacaros.bdi.fast.generated.matching import match_all, settle_fresh
-from jacaros.bdi.state.plan import Plan
-from jacaros.terms.values import CONS, NIL, String, Term, atom
-
-ALL_UNIFIERS = atom("all_unifs")
-_WORTH_A_TABLE = 6
-"""So many different first arguments make a look-up cheaper than trying one plan after the other."""
+from jacaros.bdi.state.plan import ALL_UNIFIERS, Plan
 
 
 class SelectCompiler:
@@ -41,45 +36,6 @@ class SelectCompiler:
 
     def select(self, plans: Sequence[Plan], outer: Plan | None = None) -> str:
         """Write the function; returns its name.  Sub-plans see the variables of their *outer* plan's frame."""
-        if outer is None and not self.every and self.arity:
-            groups = grouped(plans)
-            if groups is not None:
-                return self._dispatch(groups, plans[0])
-        return self._in_turn(plans, outer)
-
-    def _dispatch(self, groups: list[tuple[Term, list[Plan]]], first: Plan) -> str:
-        """Write a function that tries only the plans whose first argument may be that of the event."""
-        functions = [(key, self._in_turn(plans, None)) for key, plans in groups]
-        keys = list(dict.fromkeys(key for key, _ in functions if key is not None))
-        name, table = self.unit.fresh_function("select"), self.unit.fresh_function("plans")
-        fn = FunctionBuilder(self.unit)
-        fn.at(first.node)
-
-        def parts(key: Term) -> str:
-            return tuple_of([part for own, part in functions if own is None or own is key or own == key])
-
-        entries = ", ".join(f"{fn.constant(key)}: {parts(key)}" for key in keys)
-        fn.line(f"{table} = {{{entries}}}")
-        others = [part for key, part in functions if key is None]
-        fn.line(f"{table}_others = {tuple_of(others) if others else '()'}")
-        fn.line(f"{table}_all = {tuple_of([part for _, part in functions])}")
-        with fn.writer.block(f"def {name}(agent, goal, annotations):"):
-            fn.line("key = goal[1]")
-            with fn.writer.block("if key.__class__ is tuple:"):
-                fn.line("key = None if key[0].kind else key[0]")
-            with fn.writer.block("elif key.__class__ is List:"):
-                fn.line("key = CONS")
-            with fn.writer.block(
-                f"for part in ({table}.get(key, {table}_others) if key.__class__ in ATOMIC else {table}_all):"
-            ):
-                fn.line("frame = part(agent, goal, annotations)")
-                fn.line("if frame is not None: return frame")
-            fn.line("return None")
-        self.unit.add(fn.writer)
-        return name
-
-    def _in_turn(self, plans: Sequence[Plan], outer: Plan | None) -> str:
-        """Write a function that tries plans one after the other."""
         name = self.unit.fresh_function("select")
         fn = FunctionBuilder(self.unit)
         fn.at(plans[0].node)
@@ -180,74 +136,29 @@ class SelectCompiler:
             self._frame(fn, plan)
         else:
             fn.at(plan.node.context)
-            write = searched if plan.searched else condition
-            write(fn, plan.node.context, lambda: self._frame(fn, plan))
+            condition(fn, plan.node.context, lambda: self._frame(fn, plan))
 
     def _frame(self, fn: FunctionBuilder, plan: Plan) -> None:
         """The innermost point: the plan is applicable, its frame is made and given back."""
         node = plan.node
-        counts = occurrences(node.trigger, node.context, node.body, node.goal_condition, node.subplans)
-        if plan.scope is not None:
-            # Sub-plans of this one may ask for what it took over from its outer plan.
-            counts = {name: count + (name in plan.scope.slots) for name, count in counts.items()}
-        called = (self.unit.actions.get(a.name) for a in nodes_in(nodes.InternalAction, node.body))
-        if any(action is not None and action.by_name for action in called):
-            counts = {name: count + 1 for name, count in counts.items()}
-        frame = Frame(counts)
+        frame = Frame(plan)
         for variable in fn.values:
-            if counts.get(variable, 0) > 1:
-                frame.slot(variable)
+            if variable in frame.slots:
                 frame.states[variable] = "set"
-        bound = list(frame.slots)
         prefix = self.unit.fresh_function("step")
         body = body_compiler(self.unit, frame, prefix)
         assert isinstance(node.body, nodes.Body)
         first = body.body(node.body.steps, "None")
         self.bodies.append((plan, body, first))
-        plan.slots = frame.slots
-        values = [fn.values[v] for v in bound]
-        rest = frame.size - len(values)
+        values = [fn.values.get(v, "None") for v in frame.slots]
         fixed = [first, "goal", "annotations", "t.serial", fn.constant(plan)]
-        made = f"[{', '.join([*fixed, *values, *(['None'] * rest)])}]"
+        made = f"[{', '.join([*fixed, *values, *(['None'] * frame.extra)])}]"
         if not self.every:
             fn.line(f"return {made}")
             return
         fn.line(f"yield {made}")
         if ALL_UNIFIERS not in plan.annotations:
             fn.line("raise NextPlan")
-
-
-def grouped(plans: Sequence[Plan]) -> list[tuple[Term, list[Plan]]] | None:
-    """The plans in their order, neighbours with the same first argument together; None when that is not worth while.
-
-    The first argument is told by a key: the atom, number or string itself, of a structure or list its functor.  None
-    stands for plans that may be relevant whatever it is.
-    """
-    groups: list[tuple[Term, list[Plan]]] = []
-    for plan in plans:
-        key = _first_argument(plan)
-        if groups and groups[-1][0] == key and groups[-1][0].__class__ is key.__class__:
-            groups[-1][1].append(plan)
-        else:
-            groups.append((key, [plan]))
-    keys = [key for key, _ in groups if key is not None]
-    return groups if len(set(keys)) >= _WORTH_A_TABLE and len(groups) <= 2 * len(keys) else None
-
-
-def _first_argument(plan: Plan) -> Term:
-    literal = plan.node.trigger.literal
-    if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
-        return None
-    argument = literal.arguments[0]
-    if isinstance(argument, nodes.Number):
-        return argument.value
-    if isinstance(argument, nodes.String):
-        return String(argument.value)
-    if isinstance(argument, nodes.ListTerm):
-        return CONS if argument.items else NIL if argument.tail is None else None
-    if not isinstance(argument, nodes.Literal) or isinstance(argument.namespace, nodes.Variable):
-        return None
-    return None if argument.annotations is not None else functor_of_literal(argument)
 
 
 def _looks_at_arguments(plan: Plan) -> bool:

@@ -1,6 +1,6 @@
 """A unit of generated code: the functions of one event kind or rule, made real."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from types import FunctionType
 from typing import Any, NamedTuple
@@ -12,11 +12,10 @@ from jacaros.bdi.fast.generated.body_compiler import BodyCompiler
 from jacaros.bdi.fast.generated.predicates import compile_search
 from jacaros.bdi.fast.generated.selection import SelectCompiler, compile_goal_condition, compile_rule
 from jacaros.bdi.fast.generated.writer import Writer, compile_all
+from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.values import Functor, String, Term
-
-Select = Callable[[Any, tuple[Term, ...], Any], list[Any] | None]
 
 
 class CodeUnit:
@@ -138,6 +137,7 @@ def install_body(unit: CodeUnit, plan: Plan, body: BodyCompiler, first: str) -> 
     """
     plan.first = unit.globals[first] if first != "None" else None
     plan.steps = body.infos
+    plan.size = body.frame.size
     for name, info in body.infos.items():
         function = unit.globals[name]
         function.info, function.steps = info, body.infos

@@ -1,4 +1,4 @@
-"""The loop for plain agents (`execute_plainly`) and the one for all others (`execute`) do the same."""
+"""The rules of the language as they are written (``JACAROS_PLAIN=1``) and what is there for speed do the same."""
 
 import sys
 from pathlib import Path
@@ -6,8 +6,7 @@ from random import Random
 
 import pytest
 
-from jacaros.bdi.fast.generated import conditions
-from jacaros.bdi.rules import cycle
+from jacaros.bdi.fast.generated import conditions, unit
 from jacaros.testing import run_project
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools"))
@@ -36,17 +35,24 @@ def test_there_are_programs():
 
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_a_program_prints_the_same_in_both_loops(program, monkeypatch):
-    plainly = run_project(program, seconds=120)
-    monkeypatch.setattr(cycle, "is_plain", lambda agent: False)
-    in_general = run_project(program, seconds=120)
+def test_a_program_prints_the_same_plain_and_fast(program, monkeypatch):
+    fast = run_project(program, seconds=120)
+    monkeypatch.setenv("JACAROS_PLAIN", "1")
+    plain = run_project(program, seconds=120)
 
-    assert in_general.lines == plainly.lines
-    assert in_general.errors == plainly.errors
-    assert in_general.exit_code == plainly.exit_code
+    assert plain.lines == fast.lines
+    assert plain.errors == fast.errors
+    assert plain.exit_code == fast.exit_code
 
 
-def test_both_loops_make_the_same_cycles(monkeypatch, tmp_path):
+def test_nothing_generated_runs_when_what_is_there_for_speed_is_left_out(monkeypatch):
+    monkeypatch.setenv("JACAROS_PLAIN", "1")
+    monkeypatch.setattr(unit.CodeUnit, "execute", lambda self: pytest.fail("code was generated"))
+    for program in PROGRAMS[::10]:
+        run_project(program, seconds=120)
+
+
+def test_plain_and_fast_make_the_same_cycles(monkeypatch, tmp_path):
     program = tmp_path / "count.asl"
     program.write_text(
         "!s. +!s <- !g(20); !h; .print(done); .stopMAS. +!g(0). +!g(N) : N > 0 <- +b(N); !g(N-1). "
@@ -58,21 +64,21 @@ def test_both_loops_make_the_same_cycles(monkeypatch, tmp_path):
         run_project(program, when_started=lambda mas: minds.extend(host.mind for host in mas.directory))
         return minds[0].cycles
 
-    plainly = cycles()
-    monkeypatch.setattr(cycle, "is_plain", lambda agent: False)
-    assert cycles() == plainly
+    fast = cycles()
+    monkeypatch.setenv("JACAROS_PLAIN", "1")
+    assert cycles() == fast
 
 
-def test_random_programs_do_the_same_in_both_loops_and_with_searched_contexts(monkeypatch, tmp_path):
+def test_random_programs_do_the_same_plain_and_fast_and_with_searched_contexts(monkeypatch, tmp_path):
     differing = []
     for seed in range(12):
         for name, text in Writer(Random(seed)).files().items():
             (tmp_path / name).write_text(text, encoding="utf-8")
         results = []
-        for path in ("plain", "general", "searched"):
+        for path in ("fast", "plain", "searched"):
             with monkeypatch.context() as patch:
-                if path == "general":
-                    patch.setattr(cycle, "is_plain", lambda agent: False)
+                if path == "plain":
+                    patch.setenv("JACAROS_PLAIN", "1")
                 elif path == "searched":
                     patch.setattr(conditions, "_MAX_LOOPS", 0)
                 result = run_project(tmp_path / "random.jcm", seconds=30, until_idle=True)

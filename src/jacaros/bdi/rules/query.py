@@ -1,21 +1,26 @@
-"""Formulae that are known only at run time: bound to variables, sent in messages, passed to internal actions.
+"""What a condition means: its answers, found by searching beliefs and rules.
 
-Formulae of the program itself are compiled (`jacaros.bdi.fast.generated.conditions`); these are searched directly.
+`answers` takes the syntax of a condition and the variables of its clause, `solve_formula` a term: a formula that was
+bound to a variable, sent in a message or passed to an internal action.  Both give generators for
+`jacaros.bdi.rules.searching.run`.
 """
 
 from collections.abc import Generator
 from typing import Any
 
+from jacaros.asl import nodes
+from jacaros.asl.lowering import Lookup, fresh_names, lower
+from jacaros.asl.walk import operands
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.fast.generated.calls import (
+from jacaros.bdi.rules.calls import (
     answers_of,
     cannot_wait,
     holds,
     refuse_quietly,
     unknown,
 )
-from jacaros.bdi.rules.deconstruction import deconstruct
-from jacaros.bdi.rules.searching import exists, run, solve, solve_annotated
+from jacaros.bdi.rules.deconstruction import deconstruct, deconstruct_in
+from jacaros.bdi.rules.searching import exists, run, solve, solve_annotated, unify_rows
 from jacaros.bdi.state.belief_base import literal
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.rule import OpenFact
@@ -34,10 +39,105 @@ from jacaros.terms.values import (
     Functor,
     Term,
     Var,
+    annotations_of,
+    arguments_of,
     atom,
 )
 
 Search = Generator[Any, Any, None]
+
+
+def answers(agent: Circumstance, node: nodes.Node, lookup: Lookup, trail: Trail) -> Search:
+    """Answers of a condition of the program; its variables are given by *lookup*."""
+    if isinstance(node, nodes.And):
+        return _all(agent, operands(node), 0, lookup, trail)
+    if isinstance(node, nodes.Or):
+        return _any(agent, operands(node), lookup, trail)
+    if isinstance(node, nodes.Not):
+        return _none(agent, node.operand, lookup, trail)
+    if isinstance(node, nodes.Literal) and isinstance(node.namespace, nodes.Variable):
+        return _in_any_namespace(agent, node, node.namespace, lookup, trail)
+    if isinstance(node, nodes.InternalAction) and (action := collecting(agent, node)) is not None:
+        return _collecting(agent, action, node, lookup, trail)
+    if isinstance(node, nodes.Relation) and node.operator == "=..":
+        return _deconstruction(node, lookup, trail)
+    return solve_formula(agent, lower(node, lookup), trail)
+
+
+def _deconstruction(node: nodes.Relation, lookup: Lookup, trail: Trail) -> Search:
+    """``X =.. L``, where X may be written in a namespace."""
+    left, right = node.left, lower(node.right, lookup)
+    mark = len(trail)
+    if isinstance(left, nodes.Variable) and left.namespace is not None:
+        place = left.namespace if isinstance(left.namespace, str) else lookup(left.namespace.name)
+        fits = deconstruct_in(place, lower(nodes.replace(left, namespace=None), lookup), right, trail)
+    else:
+        fits = deconstruct(lower(left, lookup), right, trail)
+    if fits:
+        yield ()
+    undo(trail, mark)
+
+
+def _all(agent: Circumstance, formulae: list[nodes.Node], first: int, lookup: Lookup, trail: Trail) -> Search:
+    if first == len(formulae):
+        yield ()
+        return
+    found = answers(agent, formulae[first], lookup, trail)
+    while (yield found) is not None:
+        others = _all(agent, formulae, first + 1, lookup, trail)
+        while (yield others) is not None:
+            yield ()
+
+
+def _any(agent: Circumstance, formulae: list[nodes.Node], lookup: Lookup, trail: Trail) -> Search:
+    for formula in formulae:
+        found = answers(agent, formula, lookup, trail)
+        while (yield found) is not None:
+            yield ()
+
+
+def _none(agent: Circumstance, formula: nodes.Node, lookup: Lookup, trail: Trail) -> Search:
+    if not exists(run(answers(agent, formula, lookup, trail), agent.rule_depth), trail):
+        yield ()
+
+
+def _in_any_namespace(
+    agent: Circumstance, node: nodes.Literal, namespace: nodes.Variable, lookup: Lookup, trail: Trail
+) -> Search:
+    pattern = lower(nodes.replace(node, namespace=None), lookup)
+    items = tail = None
+    if pattern.__class__ is Annotated:
+        items, tail = pattern.annotations, pattern.tail
+    arguments = arguments_of(pattern)
+    return solve_in_namespaces(
+        agent, lookup(namespace.name), node.functor, node.negated, arguments, items, tail, trail
+    )
+
+
+def _collecting(
+    agent: Circumstance, action: InternalAction, node: nodes.InternalAction, lookup: Lookup, trail: Trail
+) -> Search:
+    """Collect the answers of a formula of the program, as ``.findall`` does."""
+    *template, formula, target = node.arguments
+    search = answers(agent, formula, lookup, trail)
+    wanted = lower(template[0], lookup) if template else 0.0
+    mark = len(trail)
+    if _collect(agent, action, wanted, search, lower(target, lookup), trail):
+        yield ()
+    undo(trail, mark)
+
+
+def interpret_rule(
+    agent: Circumstance, rule: nodes.Rule, arguments: tuple[Term, ...], trail: Trail
+) -> Search:
+    """Answers of a rule for the given arguments; each is empty, or holds the annotations of the rule's head."""
+    lookup = fresh_names()
+    head = lower(rule.head, lookup)
+    if not unify_rows(arguments, arguments_of(head), trail):
+        return
+    search = answers(agent, rule.body, lookup, trail)
+    while (yield search) is not None:
+        yield () if rule.head.annotations is None else (tuple(map(resolve, annotations_of(head))),)
 
 
 def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Search:
@@ -137,6 +237,12 @@ def _holds(name: str, left: Term, right: Term, trail: Trail) -> bool:
     return related(name, left, right)
 
 
+def collecting(agent: Circumstance, node: nodes.InternalAction) -> InternalAction | None:
+    """The internal action that a formula calls, if it collects the answers of one of its arguments."""
+    action = agent.actions.get(node.name)
+    return action if action is not None and action.is_collecting(len(node.arguments)) else None
+
+
 def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], trail: Trail) -> Search:
     mark = len(trail)
     context = agent.context
@@ -169,9 +275,15 @@ def collect_formula(
 ) -> bool:
     """Collect the answers of a formula that is known only now, as ``.findall`` does."""
     template, formula, target = (0.0, *arguments)[-3:]
+    return _collect(agent, action, template, solve_formula(agent, formula, trail), target, trail)
+
+
+def _collect(
+    agent: Circumstance, action: InternalAction, template: Term, search: Search, target: Term, trail: Trail
+) -> bool:
     mark = len(trail)
     found = []
-    for _ in run(solve_formula(agent, formula, trail), agent.rule_depth):
+    for _ in run(search, agent.rule_depth):
         found.append(rename(template))
     undo(trail, mark)
     return unify(target, action.function(found), trail)

@@ -5,14 +5,14 @@ from typing import Any
 
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
-from jacaros.bdi.fast.generated.unit import Select
 from jacaros.bdi.rules import belief_update, rescue
-from jacaros.bdi.rules.formulas import solve_formula
 from jacaros.bdi.rules.meta_events import post_new_goal
 from jacaros.bdi.rules.plan_terms import relevant_plans
+from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import is_source, parts
 from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.errors import InternalError

@@ -1,0 +1,24 @@
+"""Which code carries out programs: the rules of the language as they are written, or generated code in their place."""
+
+import os
+from collections.abc import Mapping
+
+from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.fast.compiler import Compiler
+from jacaros.bdi.rules.interpreter import Interpreter
+from jacaros.bdi.state.engine import Engine
+
+
+def is_plain() -> bool:
+    """Whether everything that is there for speed alone is to be left out (``JACAROS_PLAIN=1`` in the environment)."""
+    return os.environ.get("JACAROS_PLAIN", "0") not in ("", "0")
+
+
+def new_engine(actions: Mapping[str, InternalAction], plain: bool | None = None) -> Engine:
+    """What carries out plans and rules.
+
+    Args:
+        actions: the internal actions that they may call.
+        plain: without generated code; as `is_plain` says unless given.
+    """
+    return Interpreter(actions) if (is_plain() if plain is None else plain) else Compiler(actions)

@@ -1,0 +1,159 @@
+"""Plans and rules as code that is generated for them.
+
+Stands for `jacaros.bdi.rules.interpreter`, which carries out what is not compiled.
+"""
+
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import suppress
+from itertools import islice
+from typing import Any, cast
+
+from jacaros.asl import nodes
+from jacaros.asl.walk import walk
+from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.fast import loop
+from jacaros.bdi.fast.generated.bodies import body_compiler
+from jacaros.bdi.fast.generated.function import Frame as Slots
+from jacaros.bdi.fast.generated.unit import (
+    CodeUnit,
+    compile_rule_function,
+    compile_select,
+    install_body,
+    write_select,
+)
+from jacaros.bdi.fast.plan_by_plan import PlanByPlan
+from jacaros.bdi.fast.searches import Searches
+from jacaros.bdi.rules.interpreter import Interpreter
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.engine import Every, Select
+from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan_library import ProgramPlans
+from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import trigger as trigger_of_kind
+from jacaros.terms.unifier import Trail
+from jacaros.terms.values import Term, functor
+
+FEW = 4
+"""So many plans for one kind of event become one function, at their first event if there was no time before."""
+TOO_LARGE = (SyntaxError, RecursionError, MemoryError)
+"""What Python says of code that is beyond its limits for one function."""
+
+
+class Compiler(Interpreter):
+    """Carries out plans and rules by generated code, see `jacaros.bdi.state.engine.Engine`."""
+
+    def __init__(self, actions: Mapping[str, InternalAction]) -> None:
+        super().__init__(actions)
+        self._functions: dict[Any, Any] = {}
+        self._begun = False
+
+    def run(self, agent: Circumstance, fuel: int) -> bool:
+        """Let an agent make at most *fuel* reasoning cycles; True when there is more to do."""
+        return loop.run(agent, fuel)
+
+    def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
+        """What chooses among plans for one kind of event."""
+
+        def compiled(some: Sequence[Plan], outer: Plan | None) -> Select:
+            try:
+                return compile_select(trigger, some, self.actions, outer)[0]
+            except TOO_LARGE:
+                if len(some) > 1:
+                    raise
+                return Interpreter.select(self, trigger, some, outer)
+
+        if len(plans) <= FEW:
+            with suppress(*TOO_LARGE):
+                return compiled(plans, outer)
+        return PlanByPlan(plans, outer, compiled)
+
+    def every(self, trigger: Trigger, plans: Sequence[Plan]) -> Every:
+        """The same for all applicable plans."""
+        try:
+            return cast("Every", compile_select(trigger, plans, self.actions, every=True)[0])
+        except TOO_LARGE:
+            return super().every(trigger, plans)
+
+    def give_steps(self, plan: Plan) -> None:
+        """Give a plan that stands for a body made at run time its steps."""
+        unit = CodeUnit("<body>", self.actions)
+        compiler = body_compiler(unit, Slots(plan), "step")
+        body = plan.node.body
+        assert isinstance(body, nodes.Body)
+        try:
+            first = compiler.body(body.steps, "None")
+            unit.execute()
+        except TOO_LARGE:
+            super().give_steps(plan)
+        else:
+            install_body(unit, plan, compiler, first)
+
+    def begin(self, agent: Circumstance) -> None:
+        """An agent is about to begin: compile what is urgent, and tell what is too large.  Done for the first one."""
+        if self._begun:
+            return
+        self._begun = True
+        program = agent.library.program
+        for _, told in too_large(program.plans, self.actions):
+            agent.architecture.log("warning", f"{told}; it is carried out step by step, which takes longer")
+        if agent.urgency is not None:
+            for kind in program.kinds():
+                if agent.urgency.by_trigger[kind]:
+                    while self._compile_ahead(program, kind):
+                        pass
+
+    def compile_ahead(self, program: ProgramPlans) -> bool:
+        """Compile something that no event has asked for yet; False when there is nothing left."""
+        return any(self._compile_ahead(program, kind) for kind in program.kinds())
+
+    @staticmethod
+    def _compile_ahead(program: ProgramPlans, kind: Trigger) -> bool:
+        is_new = kind not in program.selects
+        select = program.selects[kind]
+        return (isinstance(select, PlanByPlan) and select.compile_next()) or is_new
+
+    def answers(
+        self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail
+    ) -> Generator[Any, Any, None]:
+        """The answers of a rule."""
+        if rule.made is None:
+            rule.made = self._rule_function(rule)
+        found: Generator[Any, Any, None] = rule.made(agent, arguments, trail)
+        return found
+
+    def _rule_function(self, rule: Rule) -> Any:
+        functions = self._functions if rule.of_program else {}
+        key = (id(rule.written),)
+        if key not in functions:
+            # What was written is held, so that nothing else can be at its place in memory.
+            functions[key] = (compile_rule_function(rule.node, self.actions), rule.written)
+        return functions[key][0]
+
+    def searches(self, predicate: Any) -> tuple[Any, Any] | None:
+        """Functions that answer questions for a predicate with rules, and those for deep searches."""
+        return (
+            Searches(predicate, self.actions, self._functions),
+            Searches(predicate, self.actions, self._functions, deep=True),
+        )
+
+
+_LARGE = 100
+"""Parts of a plan from which on it is looked at whether it can be compiled."""
+
+
+def too_large(plans: Sequence[Plan], actions: Mapping[str, InternalAction]) -> Iterator[tuple[Plan, str]]:
+    """The plans that are too large to be compiled, each with what is to be said of it."""
+    for plan in plans:
+        if sum(1 for _ in islice(walk(plan.node), _LARGE)) < _LARGE:
+            continue
+        head = plan.node.trigger
+        symbol = plan.trigger_functor()
+        kind = trigger_of_kind(head.operator, head.kind, symbol or functor("plan", 0))
+        try:
+            write_select(kind, [plan], actions).unit.execute()
+        except TOO_LARGE as fault:
+            name = f"{head.operator}{head.kind}{'_' if symbol is None else repr(symbol)}"
+            span = plan.node.span
+            place = "" if span is None else f" ({span.file.name}:{span.line})"
+            yield plan, f"the plan {name}{place} is too large to be compiled ({fault})"

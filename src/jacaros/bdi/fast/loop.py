@@ -1,0 +1,326 @@
+"""The reasoning cycle of an agent with nothing out of the ordinary about it.
+
+Stands for `jacaros.bdi.rules.cycle` with all that it calls: `sensing`, `sel_ev`, `applicable_plans`, `add_im`, `sel_int`,
+`exec_int` and `clr_int`.  With empty queues the next cycle would pick the very event and intention of this one, so an
+intention goes on as long as nothing else wants a cycle.  What an agent has that is rarer is left to the rules.
+"""
+
+from typing import Any
+
+from jacaros.bdi.rules import add_im, edge_signals, failure, rescue, sensing
+from jacaros.bdi.rules.add_im import add_frame, go_without, log_inapplicable
+from jacaros.bdi.rules.clr_int import end_achieved_goals, pop_finished
+from jacaros.bdi.rules.cycle import begin_turn, has_work, look_at_names
+from jacaros.bdi.rules.exec_int import announce, execute, step_failed, tell_waiting
+from jacaros.bdi.rules.goal_failure import fail_intention, has_room
+from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED
+from jacaros.bdi.rules.perceiving import take_percepts
+from jacaros.bdi.rules.proc_msg import read_message
+from jacaros.bdi.rules.sel_ev import begin_intention, begin_with, handle_atomic_event, pass_over
+from jacaros.bdi.rules.sel_int import select_intention
+from jacaros.bdi.state.circumstance import CROWD, Circumstance
+from jacaros.bdi.state.intention import Frame, Intention
+from jacaros.errors import InternalError
+from jacaros.terms.arithmetic import RUNNING
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import BY_SELF
+
+
+def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for speed
+    """Make at most *fuel* cycles; True when there is more to do."""
+    options = agent.options
+    if options.search_limit and fuel > 1:
+        # Each cycle has the whole budget of searches.
+        return all(run(agent, 1) for _ in range(fuel))
+    begin_turn(agent)
+    # Calls inside terms are evaluated for this agent meanwhile.
+    before = RUNNING.set(agent)
+    agent.running = True
+    try:
+        begun = fuel
+        if agent.asleep:
+            edge_signals.awake(agent)
+        events, intentions = agent.events, agent.intentions
+        always = options.percept_interval == 1
+        while fuel > 0 and not agent.stopped:
+            if agent.called or not always:
+                look_around(agent, agent.cycles + begun - fuel)
+                if agent.urgent:
+                    agent.urgency.settle()
+                    events, intentions = agent.events, agent.intentions
+            intention: Intention | None = None
+            if events:
+                if agent.atomic is not None:
+                    handle_atomic_event(agent, agent.atomic)
+                elif not agent.urgent:
+                    intention = handle_event(agent)
+                elif agent.urgency.may_take_event() and (new := handle_event(agent)) is not None:
+                    intentions.append(new)
+            if agent.goal_conditions:
+                end_achieved_goals(agent)
+            if intention is None and (intentions or agent.crowd):
+                intention = select_intention(agent)
+            if intention is not None:
+                try:
+                    if (
+                        agent.special
+                        or agent.event_waits
+                        or agent.option_filter.rows
+                        or agent.atomic is not None
+                    ):
+                        execute(agent, intention)
+                        fuel -= 1
+                    else:
+                        fuel = execute_usual(agent, intention, fuel)
+                except InternalError:
+                    raise
+                except Exception as fault:
+                    fuel -= 1
+                    rescue.give_up(agent, agent.current or intention, fault)
+                if agent.requeued:
+                    events.extendleft(reversed(agent.requeued))
+                    agent.requeued.clear()
+                elif not (events or intentions or agent.crowd or agent.called or agent.edges):
+                    # That was all: the next cycle would find nothing to do.
+                    agent.cycles += begun - fuel
+                    return False
+            elif (events and agent.atomic is None) or agent.inbox:
+                fuel -= 1
+            elif not (agent.percepts or agent.tasks or (agent.edges and edge_signals.fall_asleep(agent))):
+                if not events and agent.atomic is None:
+                    agent.cycles += begun - fuel
+                    return False
+                break
+        agent.cycles += begun - fuel
+        # Without fuel it was not seen yet that nothing is left to do: that takes another look.
+        return not agent.stopped and (fuel <= 0 or has_work(agent))
+    finally:
+        agent.running = False
+        RUNNING.reset(before)
+        if agent.cycles >= agent.next_count:
+            look_at_names(agent)
+
+
+def look_around(agent: Circumstance, cycle: int) -> None:
+    """Take in what has come since the last look: percepts and one message, if there is nothing else."""
+    if (
+        agent.tasks
+        or (agent.condition_waits and agent.condition_waits.want_a_look())
+        or (agent.urgency is not None and agent.inbox)
+        or agent.options.percept_interval != 1
+    ):
+        sensing.look_around(agent, cycle)
+        return
+    agent.next_count -= 1  # what comes in may bring new names as any step does
+    # What is usual: there is a message, or percepts, and nothing else.
+    if agent.percepts:
+        take_percepts(agent)
+        if agent.tasks:
+            sensing.do_tasks(agent)
+            sensing.check_conditions(agent)
+    waiting = len(agent.inbox)
+    agent.called = waiting > 1 or agent.special or agent.urgent
+    if waiting:
+        read_message(agent)
+
+
+def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - written out for speed
+    """Rule SelEv and what follows: one event is handled; external events without plan are passed over.
+
+    When this begins an intention and there is no other, it need not queue: it is given back, and has its turn now.
+    """
+    events = agent.events
+    while events:
+        event = events.popleft()
+        goal, intention, annotations, cause = event
+        try:
+            if intention is not None:
+                if intention.dropped:
+                    continue
+                agent.current = intention  # contexts may ask for it
+                if push(agent, intention, goal, annotations):
+                    if intention.suspended is None:
+                        agent.intentions.append(intention)
+                    else:
+                        intention.parked = True
+                agent.current = None
+                return None
+            if agent.special or agent.option_filter.rows:
+                if begin_intention(agent, event):
+                    return None
+                continue
+            # `begin_intention`, written out for what is usual.
+            trail, kind = agent.trail, goal[0]
+            trail.serial += 1
+            select = agent.selects[kind]
+            frame: Frame | None = None if select is None else select(agent, goal, annotations)
+            if trail:
+                trail.clear()
+            if frame is None and not kind.kind and agent.usual_events:
+                if select is not None and agent.options.verbose > 1:
+                    log_inapplicable(agent, goal, annotations)
+                continue
+            if frame is None or frame[4].atomic or kind.failing:
+                if begin_with(agent, event, frame, False):
+                    return None
+                continue
+            agent.intentions_made = number = agent.intentions_made + 1
+            agent.alive[number] = intention = Intention(number, cause)
+            intention.frames.append(frame)
+            intentions = agent.intentions
+            if not intentions:
+                return intention
+            if len(intentions) >= CROWD and annotations is BY_SELF and kind.kind:
+                agent.line_up(intention)
+            else:
+                intentions.append(intention)
+            return None
+        except InternalError:
+            raise
+        except Exception as fault:
+            pass_over(agent, event, fault)
+    return None
+
+
+def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> bool:
+    """Put a plan for the goal on the intention; False when the intention goes no further now."""
+    if agent.special or agent.option_filter.rows:
+        return add_im.push(agent, intention, goal, annotations)
+    # What is usual: `select_plan` and `add_frame`, written out.
+    trail = agent.trail
+    trail.serial += 1
+    kind = goal[0]
+    select = agent.selects[kind]
+    made: Frame | None = None if select is None else select(agent, goal, annotations)
+    if trail:
+        trail.clear()
+    if made is None:
+        return go_without(agent, intention, goal, annotations, None)
+    frames = intention.frames
+    if agent.atomic is None and not made[4].atomic and len(frames) < agent.goal_depth:
+        if (
+            frames
+            and (caller := frames[-1])[0] is None
+            and caller[1][0] is kind
+            and kind.on_fail is not None
+            and caller[4].replaceable
+            and agent.options.tail_calls
+        ):
+            frames[-1] = made
+        else:
+            frames.append(made)
+        return True
+    return add_frame(agent, intention, made) or go_without(agent, intention, goal, annotations, made)
+
+
+def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - see below
+    """Steps of one intention while nothing else wants a cycle; gives the fuel left.
+
+    This is where an agent spends its time, so what happens in nearly every cycle is written out here: `pop_finished`,
+    `is_alone`, `select_plan` and `add_frame`.  A step may make the agent another than a usual one; then it is left to the
+    next cycle to go on, which with empty queues comes to the same.
+    """
+    agent.current = intention
+    frames, handlers, trail, selects = intention.frames, intention.handlers, agent.trail, agent.selects
+    events, intentions = agent.events, agent.intentions
+    option_filter, depth, tail_calls = agent.option_filter, agent.goal_depth, agent.options.tail_calls
+    urgency = agent.urgency
+    frame: Frame = frames[-1]
+    while True:
+        fuel -= 1
+        goal: Any = None
+        step = frame[0]
+        if step is not None:
+            try:
+                goal = step(agent, frame)
+            except InternalError:
+                raise
+            except Exception as fault:
+                goal = step_failed(agent, intention, fault)
+                if goal is None:
+                    break
+            if trail:
+                if goal is FAILED:
+                    undo(trail, 0)
+                else:
+                    trail.clear()
+        if agent.stopped or intention.dropped:
+            break
+
+        if goal is None:
+            if frame[0] is None:
+                if agent.special:
+                    if not pop_finished(agent, intention):
+                        break
+                else:
+                    while frames and (top := frames[-1])[0] is None:
+                        if handlers and top[1][0].failing:
+                            del frames[handlers.pop() :]
+                        else:
+                            frames.pop()
+                    if not frames:
+                        if intention.waiting is None:
+                            # `finish`, written out.
+                            intention.dropped = True
+                            agent.alive.pop(intention.id, None)
+                        else:
+                            agent.finish(intention)
+                        break
+            if intentions or events or agent.called or fuel <= 0:
+                if intention.suspended is None:
+                    intentions.append(intention)
+                else:
+                    intention.parked = True
+                break
+            frame = frames[-1]
+            continue
+
+        annotations: Any = BY_SELF
+        if goal.__class__ is not tuple:
+            if goal is SUSPENDED:
+                if agent.meta:
+                    tell_waiting(agent, intention)
+                break
+            if goal is FAILED:
+                goal = fail_intention(agent, intention, failure.step_failure(frames[-1]))
+                if goal is None:
+                    break
+            goal, annotations = goal.goal, goal.annotations
+        if urgency is not None and urgency.by_trigger[goal[0]]:
+            urgency.rank()
+        if intentions or events or agent.called or option_filter.rows or fuel <= 0:
+            announce(agent, intention, goal, annotations)
+            events.append((goal, intention, annotations, None))
+            break
+        trail.serial += 1
+        kind = goal[0]
+        select = selects[kind]
+        made: Frame | None = None if select is None else select(agent, goal, annotations)
+        if trail:
+            trail.clear()
+        if made is None:
+            if not go_without(agent, intention, goal, annotations, None):
+                break
+            made = frames[-1]
+        elif (
+            frame[0] is None
+            and frames[-1] is frame
+            and frame[1][0] is kind
+            and kind.on_fail is not None
+            and tail_calls
+            and frame[4].replaceable
+        ):
+            frames[-1] = made
+        else:
+            frames.append(made)
+            if len(frames) > depth and not has_room(agent, intention):
+                if not go_without(agent, intention, goal, annotations, made):
+                    break
+                made = frames[-1]
+        frame = made
+        if frame[4].atomic:
+            agent.atomic, agent.atomic_over = intention, False
+            agent.make_ready(intention)
+            break
+    agent.current = None
+    return fuel

@@ -1,0 +1,114 @@
+"""A plan for a goal or event of an intention becomes part of it: rule AddIM."""
+
+from typing import Any
+
+from jacaros.bdi.explaining import lost_goals
+from jacaros.bdi.rules import meta_events, option_selection, subplans
+from jacaros.bdi.rules.goal_failure import has_room, too_deep, unplanned
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Event
+from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
+
+
+def select_plan(
+    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, intention: Intention | None = None
+) -> Frame | None:
+    """Rules RelPl, ApplPl and SelAppl: the frame of the first applicable plan, sub-plans of *intention* first."""
+    trail = agent.trail
+    trail.serial += 1
+    select = agent.selects[goal[0]]
+    if agent.subplans and intention is not None:
+        inner = subplans.select_in_scope(agent, intention, goal, annotations)
+        if inner is not None:
+            trail.clear()
+            return inner
+    if select is None:
+        return None
+    if agent.option_filter.rows:
+        return option_selection.first_option(agent, goal, annotations, intention)
+    frame = select(agent, goal, annotations)
+    if trail:
+        trail.clear()
+    return frame
+
+
+def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> bool:
+    """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
+    frame = select_plan(agent, goal, annotations, intention)
+    return (frame is not None and add_frame(agent, intention, frame)) or go_without(
+        agent, intention, goal, annotations, frame
+    )
+
+
+def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
+    """Put the frame of a plan on the stack, in the place of its caller if that has nothing left to do (tail call).
+
+    False when it is one too many; it is on the stack then nevertheless.
+    """
+    frames = intention.frames
+    plan, trigger = frame[PLAN], frame[GOAL][0]
+    if (
+        frames
+        and (caller := frames[-1])[STEP] is None
+        and caller[GOAL][0] is trigger
+        and trigger.on_fail is not None
+        and agent.options.tail_calls
+        and caller[PLAN].replaceable
+    ):
+        frames[-1] = frame
+        if agent.meta:
+            meta_events.observe(agent, intention, caller, "replaced")
+        if agent.atomic is intention and not intention.is_atomic():
+            agent.atomic_over = True
+    else:
+        frames.append(frame)
+    if plan.atomic:
+        agent.atomic, agent.atomic_over = intention, False
+    if agent.meta and trigger.kind and not trigger.failing:
+        meta_events.frame_state(agent, intention, frame, "executing")
+    return len(frames) <= agent.goal_depth or has_room(agent, intention)
+
+
+def go_without(
+    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any, frame: Frame | None
+) -> bool:
+    """A goal or event has no plan, or (then *frame* is given, and on the stack) no room for it.
+
+    False when the intention goes no further now.
+    """
+    if frame is None and goal[0].kind == "":
+        if agent.options.verbose > 1 and agent.selects[goal[0]] is not None:
+            log_inapplicable(agent, goal, annotations)
+        return True
+    posted = unplanned(agent, intention, goal, annotations) if frame is None else too_deep(agent, intention)
+    if posted is None:
+        return False
+    event: Event = (posted.goal, intention, posted.annotations, None)
+    if not is_alone(agent):
+        agent.post(event)
+        return False
+    if agent.urgency is not None:
+        agent.urgency.note_goal(posted.goal[0])
+    if agent.event_waits:
+        agent.notify_event_waits(event)
+    return push(agent, intention, posted.goal, posted.annotations)
+
+
+def is_alone(agent: Circumstance) -> bool:
+    """Whether nothing else wants the next cycle."""
+    if agent.atomic is not None:
+        return not agent.goal_conditions
+    return not (
+        agent.events
+        or agent.intentions
+        or agent.inbox
+        or agent.tasks
+        or agent.percepts
+        or (agent.condition_waits and agent.condition_waits.restless)
+        or agent.goal_conditions
+    )
+
+
+def log_inapplicable(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> None:
+    """Log why no plan was taken for an event, for an agent whose details are wanted."""
+    agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())

@@ -1,0 +1,99 @@
+"""An intention makes a step: rule ExecInt."""
+
+from typing import Any
+
+from jacaros.bdi.actions.internal_action import Crashed
+from jacaros.bdi.rules import failure, meta_events
+from jacaros.bdi.rules.add_im import push
+from jacaros.bdi.rules.clr_int import pop_finished
+from jacaros.bdi.rules.goal_failure import fail_intention
+from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED, Fail
+from jacaros.bdi.rules.rescue import note_lack_of_memory
+from jacaros.bdi.rules.sel_ev import go_on_later
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Posted
+from jacaros.bdi.state.intention import STEP, Frame, Intention
+from jacaros.bdi.state.waiting import OWN_SUSPENSION
+from jacaros.errors import InternalError
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import BY_SELF
+
+
+def execute(agent: Circumstance, intention: Intention) -> None:
+    """Rules ExecInt and ClrInt: one step of an intention."""
+    agent.current = intention
+    if agent.atomic_over:
+        agent.atomic, agent.atomic_over = None, False
+    frame: Frame = intention.frames[-1]
+    posted = None if frame[STEP] is None else _step(agent, intention, frame)
+    if agent.stopped or intention.dropped:
+        pass
+    elif posted is SUSPENDED:
+        if agent.meta:
+            tell_waiting(agent, intention)
+    elif posted is not None:
+        _pursue(agent, intention, posted)
+    elif frame[STEP] is not None or pop_finished(agent, intention):
+        go_on_later(agent, intention)
+    agent.current = None
+
+
+def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
+    """Make the next step of a plan; what it gives, or the event for its failure.  An intention that nobody saves ends."""
+    goal: Any = None
+    try:
+        goal = frame[0](agent, frame)
+    except InternalError:
+        raise
+    except Exception as fault:
+        goal = step_failed(agent, intention, fault)
+    if goal is FAILED:
+        goal = step_failed(agent, intention)
+    agent.trail.clear()
+    return goal
+
+
+def _pursue(agent: Circumstance, intention: Intention, posted: Any) -> None:
+    """A step has posted a goal or event: it is handled in one of the next cycles, that of an atomic intention now."""
+    goal, annotations = (posted.goal, posted.annotations) if posted.__class__ is Posted else (posted, BY_SELF)
+    announce(agent, intention, goal, annotations)
+    if agent.urgency is not None:
+        agent.urgency.note_goal(goal[0])
+    if agent.atomic is not intention:
+        agent.events.append((goal, intention, annotations, None))
+    elif push(agent, intention, goal, annotations):
+        agent.make_ready(intention)
+
+
+def step_failed(agent: Circumstance, intention: Intention, fault: Exception | None = None) -> Posted | None:
+    """A step failed, or raised an exception: the event for the nearest handler, None when there is none."""
+    if agent.trail:
+        undo(agent.trail, 0)
+    if fault is not None and fault.__class__ is not Fail:
+        note_lack_of_memory(agent, fault)
+        _report(agent, fault)
+    frame: Frame = intention.frames[-1]
+    return fail_intention(agent, intention, failure.step_failure(frame, fault))
+
+
+def _report(agent: Circumstance, fault: Exception) -> None:
+    """Python errors inside internal actions are shown to people as well as to the plan."""
+    if isinstance(fault, Crashed):
+        agent.architecture.log("error", str(fault))
+    elif not isinstance(fault, Fail) and agent.options.verbose > 1:
+        agent.architecture.log("debug", f"{type(fault).__name__}: {fault}")
+
+
+def announce(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> None:
+    """Tell those who wait for a goal or event that it has been posted."""
+    if agent.event_waits:
+        agent.notify_event_waits((goal, intention, annotations, None))
+    if agent.meta and goal[0].operator == "+" and goal[0].kind:
+        meta_events.goal_state(agent, goal, annotations, "pending")
+
+
+def tell_waiting(agent: Circumstance, intention: Intention) -> None:
+    """Tell those who want to know it that an intention waits."""
+    waiting = intention.waiting
+    if waiting is not None and waiting.reason is not OWN_SUSPENSION:
+        meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)

@@ -1,0 +1,65 @@
+"""Plans and rules as the language defines them, without any code made for speed."""
+
+from collections.abc import Generator, Mapping, Sequence
+from typing import Any
+
+from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.rules import cycle
+from jacaros.bdi.rules.applicable_plans import Selection
+from jacaros.bdi.rules.body_steps import interpreted
+from jacaros.bdi.rules.query import interpret_rule
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.engine import Every, Select
+from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.triggers import Trigger
+from jacaros.terms.unifier import Trail
+from jacaros.terms.values import Term
+
+
+class Interpreter:
+    """Carries out plans and rules, see `jacaros.bdi.state.engine.Engine`.
+
+    Args:
+        actions: the internal actions that plans may call.
+    """
+
+    def __init__(self, actions: Mapping[str, InternalAction]) -> None:
+        self.actions = actions
+
+    def run(self, agent: Circumstance, fuel: int) -> bool:
+        """Let an agent make at most *fuel* reasoning cycles; True when there is more to do."""
+        return cycle.run(agent, fuel)
+
+    def begin(self, agent: Circumstance) -> None:
+        """An agent is about to begin: nothing is to be prepared."""
+
+    def compile_ahead(self, program: Any) -> bool:
+        """False: nothing is compiled."""
+        del program
+        return False
+
+    def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
+        """What chooses among plans for one kind of event."""
+        del trigger
+        return Selection(plans, outer)
+
+    def every(self, trigger: Trigger, plans: Sequence[Plan]) -> Every:
+        """The same for all applicable plans."""
+        del trigger
+        return Selection(plans).every
+
+    def give_steps(self, plan: Plan) -> None:
+        """Give a plan that stands for a body made at run time its steps."""
+        interpreted(plan)
+
+    def answers(
+        self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail
+    ) -> Generator[Any, Any, None]:
+        """The answers of a rule."""
+        return interpret_rule(agent, rule.node, arguments, trail)
+
+    def searches(self, predicate: Any) -> tuple[Any, Any] | None:
+        """None: rules are asked one by one."""
+        del predicate
+        return None

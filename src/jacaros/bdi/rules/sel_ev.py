@@ -1,0 +1,132 @@
+"""An event is taken up: rule SelEv, and the intention that it begins or goes on with."""
+
+from jacaros.bdi.rules import meta_events, rescue, subplans
+from jacaros.bdi.rules.add_im import log_inapplicable, push, select_plan
+from jacaros.bdi.rules.goal_failure import unplanned
+from jacaros.bdi.rules.stack import remove_event
+from jacaros.bdi.state.circumstance import CROWD, Circumstance
+from jacaros.bdi.state.event import EVENT_INTENTION, Event
+from jacaros.bdi.state.intention import PLAN, Frame, Intention
+from jacaros.errors import InternalError
+from jacaros.terms.values import BY_SELF
+
+
+def handle_event(agent: Circumstance) -> None:
+    """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
+    while agent.events:
+        event = agent.events.popleft()
+        try:
+            if _is_taken_up(agent, event):
+                return
+        except InternalError:
+            raise
+        except Exception as fault:
+            pass_over(agent, event, fault)
+
+
+def _is_taken_up(agent: Circumstance, event: Event) -> bool:
+    goal, intention, annotations, _ = event
+    if intention is None:
+        return begin_intention(agent, event)
+    if intention.dropped:
+        return False
+    agent.current = intention  # contexts may ask for it
+    if push(agent, intention, goal, annotations):
+        go_on_later(agent, intention)
+    agent.current = None
+    return True
+
+
+def go_on_later(agent: Circumstance, intention: Intention) -> None:
+    """An intention that has had its turn waits for the next one; a suspended one is parked."""
+    if intention.suspended is None:
+        agent.intentions.append(intention)
+    else:
+        intention.parked = True
+
+
+def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
+    """An atomic intention's own event comes before all others, which wait."""
+    event = event_of(agent, intention)
+    if event is not None:
+        remove_event(agent, event)
+        goal, _, annotations, _ = event
+        try:
+            if push(agent, intention, goal, annotations):
+                agent.make_ready(intention)
+        except InternalError:
+            raise
+        except Exception as fault:
+            pass_over(agent, event, fault)
+
+
+def is_ready(agent: Circumstance, intention: Intention) -> bool:
+    """Whether an intention is among those that can run; one that has just made a step is the last of them."""
+    intentions = agent.intentions
+    return bool(intentions) and (intentions[-1] is intention or intention in intentions)
+
+
+def event_of(agent: Circumstance, intention: Intention) -> Event | None:
+    """The event that an intention has in the queue, if it is that what it waits for."""
+    if intention.waiting is not None or is_ready(agent, intention):
+        return None
+    return next((event for event in agent.events if event[EVENT_INTENTION] is intention), None)
+
+
+def pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
+    """What escapes while an event is handled; the agent goes on with the next one."""
+    agent.current = None
+    rescue.passed_over(agent, "an event", fault)
+    intention = event[EVENT_INTENTION]
+    if intention is not None:
+        rescue.give_up(agent, intention, fault)
+
+
+def begin_intention(agent: Circumstance, event: Event) -> bool:
+    """Begin an intention for an external event; False when it has no plan and is dropped silently."""
+    goal, _, annotations, _ = event
+    reacted = agent.subplans and goal[0].kind == "" and _react(agent, event)
+    return begin_with(agent, event, select_plan(agent, goal, annotations), reacted)
+
+
+def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool) -> bool:
+    """Begin an intention with the frame of the plan for an external event, if there is one."""
+    goal, _, annotations, cause = event
+    trigger = goal[0]
+    if frame is None:
+        if trigger.kind == "" or trigger.operator == "^":
+            if agent.options.verbose > 1 and not reacted and agent.selects[trigger] is not None:
+                log_inapplicable(agent, goal, annotations)
+            if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
+                agent.requeued.append(event)
+            return reacted
+        intention = agent.new_intention(cause)
+        posted = unplanned(agent, intention, goal, annotations)
+        if posted is not None:
+            agent.post((posted.goal, intention, posted.annotations, None))
+        return True
+    intention = agent.new_intention(cause)
+    intention.frames.append(frame)
+    if trigger.failing:
+        intention.handlers.append(0)
+    if frame[PLAN].atomic:
+        agent.atomic, agent.atomic_over = intention, False
+    if agent.meta:
+        meta_events.frame_state(agent, intention, frame, "executing")
+    if len(agent.intentions) >= CROWD and annotations is BY_SELF and trigger.kind:
+        agent.line_up(intention)
+    else:
+        agent.make_ready(intention)
+    return True
+
+
+def _react(agent: Circumstance, event: Event) -> bool:
+    """Every intention whose plans have a sub-plan for an external event reacts to it."""
+    goal, _, annotations, cause = event
+    reactions = subplans.react(agent, goal, annotations)
+    for owner, outer, frame in reactions:
+        intention = agent.new_intention(cause)
+        intention.frames.append(frame)
+        intention.outer = (owner, outer)
+        agent.make_ready(intention)
+    return bool(reactions)
