@@ -5,7 +5,7 @@ It never looks at addresses, so that a run repeated with the same seed sorts ali
 
 import itertools
 from bisect import bisect_left
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cmp_to_key
 from operator import itemgetter, ne
 from typing import Any
@@ -66,11 +66,12 @@ def compare(left: Term, right: Term) -> int:
                 return _compare_numbers(left, right)
             if rank == _STRING:
                 return -1 if left < right else int(left > right)
-            if rank == _LIST:
-                if left is NIL or right is NIL:
-                    return (left is not NIL) - (right is not NIL)
-                if left.__class__ is List and right.__class__ is List:
-                    return _compare_lists(left, right)
+            if rank == _VARIABLE:
+                return _compare_variables(left, right)
+            if rank == _LIST and not (
+                (left.__class__ is List and right.__class__ is List) or left is NIL or right is NIL
+            ):
+                # A list that is open, or may be: element by element, as a closed one would be copied for each.
                 first, left = parts_of_list(left)
                 second, right = parts_of_list(right)
                 order = compare(first, second)
@@ -78,21 +79,33 @@ def compare(left: Term, right: Term) -> int:
                     return order
                 turns += 1
                 continue
-            if rank == _LITERAL:
-                return _compare_literals(left, right)
-            return _compare_variables(left, right) if rank == _VARIABLE else _compare_others(left, right)
+            if rank == _LITERAL and left.__class__ is not Annotated and right.__class__ is not Annotated:
+                return _compare_plain(left, right)
+            for decision in _decisions(left, right, rank):
+                order = decision if decision.__class__ is int else compare(*decision)
+                if order:
+                    return order
+            return 0
     except RecursionError:
         pass
     return _compare_deep(left, right)
 
 
-def _compare_lists(left: List, right: List) -> int:
-    for x, y in zip(left.elements(), right.elements(), strict=False):
-        if x is not y:
-            order = compare(x, y)
-            if order:
-                return order
-    return left.size - right.size
+def _compare_plain(left: Term, right: Term) -> int:
+    """Atoms and structures, without annotations: what `_decisions` says of them, written out for speed."""
+    first = left[0] if left.__class__ is tuple else left
+    second = right[0] if right.__class__ is tuple else right
+    if first is not second:
+        order = _compare_functors(first, second)
+        if order or first is left or second is right:
+            return order or int(first.arity - second.arity)
+    elif first is left:
+        return 0
+    for x, y in zip(left[1:], right[1:], strict=False):
+        order = compare(x, y)
+        if order:
+            return order
+    return int(first.arity - second.arity)
 
 
 def _compare_deep(left: Term, right: Term) -> int:
@@ -117,36 +130,48 @@ def _compare_deep(left: Term, right: Term) -> int:
             if (id(left), id(right)) in met:
                 continue
             met.add((id(left), id(right)))
-        todo.extend(reversed(_inner_comparisons(left, right, rank)))
+        todo.extend(reversed([*_decisions(left, right, rank)]))
     return 0
 
 
-def _inner_comparisons(left: Term, right: Term, rank: int) -> list[Any]:
-    """What decides between two terms of the same rank, in turn: pairs of terms to compare, and decisions."""
+def _decisions(left: Term, right: Term, rank: int) -> Iterator[Any]:
+    """What decides between two terms of the same rank, in turn: pairs of terms to compare, and decisions.
+
+    Literals: by namespace, functor, positive before negated, arguments pairwise, arity, annotations.  Sets, maps and
+    queues: by kind and contents.  Opaque objects: by their numbers.
+    """
     if rank == _OTHER:
-        if left.__class__ is not right.__class__ or left.__class__ is Reference:
-            return [_compare_others(left, right)]
-        return [(left.as_list(), right.as_list())]
+        if left.__class__ is not right.__class__:
+            yield -1 if left.__class__.__name__ < right.__class__.__name__ else 1
+        elif left.__class__ is Reference:
+            yield 0 if left == right else left.number - right.number
+        else:
+            yield left.as_list(), right.as_list()
+        return
     if rank == _LIST:
         if left is NIL or right is NIL:
-            return [(left is not NIL) - (right is not NIL)]
-        if left.__class__ is List and right.__class__ is List:
-            return [*zip(left.elements(), right.elements(), strict=False), left.size - right.size]
-        return list(zip(parts_of_list(left), parts_of_list(right), strict=True))
+            yield (left is not NIL) - (right is not NIL)
+        elif left.__class__ is List and right.__class__ is List:
+            yield from zip(left.elements(), right.elements(), strict=False)
+            yield left.size - right.size
+        else:
+            yield from zip(parts_of_list(left), parts_of_list(right), strict=True)
+        return
     left_bare = settle(left.term) if left.__class__ is Annotated else left
     right_bare = settle(right.term) if right.__class__ is Annotated else right
     if _rank(left_bare) != _LITERAL or _rank(right_bare) != _LITERAL:
-        return [(left_bare, right_bare)]
+        yield left_bare, right_bare
+        return
     first = left_bare[0] if left_bare.__class__ is tuple else left_bare
     second = right_bare[0] if right_bare.__class__ is tuple else right_bare
-    more, others = annotations_of(left), annotations_of(right)
-    return [
-        _compare_functors(first, second),
-        *zip(_arguments(left_bare), _arguments(right_bare), strict=False),
-        int(first.arity - second.arity),
-        *zip(more, others, strict=False),
-        len(more) - len(others),
-    ]
+    if first is not second:
+        yield _compare_functors(first, second)
+    yield from zip(_arguments(left_bare), _arguments(right_bare), strict=False)
+    yield first.arity - second.arity
+    if left.__class__ is Annotated or right.__class__ is Annotated:
+        more, others = annotations_of(left), annotations_of(right)
+        yield from zip(more, others, strict=False)
+        yield len(more) - len(others)
 
 
 def _compare_numbers(left: float, right: float) -> int:
@@ -173,39 +198,8 @@ def _number_of(variable: Var) -> int:
         return variable.number
 
 
-def _compare_others(left: Term, right: Term) -> int:
-    """Sets, maps and queues by kind and contents, opaque objects by their numbers."""
-    if left.__class__ is not right.__class__:
-        return -1 if left.__class__.__name__ < right.__class__.__name__ else 1
-    if left.__class__ is Reference:
-        return 0 if left == right else left.number - right.number
-    return compare(left.as_list(), right.as_list())
-
-
-def _compare_literals(left: Term, right: Term) -> int:
-    """Namespace, functor, positive before negated, arguments pairwise, arity, annotations."""
-    left_bare = settle(left.term) if left.__class__ is Annotated else left
-    right_bare = settle(right.term) if right.__class__ is Annotated else right
-    if _rank(left_bare) != _LITERAL or _rank(right_bare) != _LITERAL:
-        return compare(left_bare, right_bare)
-    first = left_bare[0] if left_bare.__class__ is tuple else left_bare
-    second = right_bare[0] if right_bare.__class__ is tuple else right_bare
-    order = _compare_functors(first, second)
-    if order:
-        return order
-    for x, y in zip(_arguments(left_bare), _arguments(right_bare), strict=False):
-        order = compare(x, y)
-        if order:
-            return order
-    if first.arity != second.arity:
-        return int(first.arity - second.arity)
-    return _compare_annotations(annotations_of(left), annotations_of(right))
-
-
 def _compare_functors(first: Functor, second: Functor) -> int:
     """By namespace, name and negation; the number of arguments counts only after the arguments."""
-    if first is second:
-        return 0
     a = (first.namespace or "", first.name, first.negated)
     b = (second.namespace or "", second.name, second.negated)
     return 0 if a == b else -1 if a < b else 1
@@ -213,14 +207,6 @@ def _compare_functors(first: Functor, second: Functor) -> int:
 
 def _arguments(term: Term) -> tuple[Term, ...]:
     return term[1:] if term.__class__ is tuple else ()
-
-
-def _compare_annotations(left: tuple[Term, ...], right: tuple[Term, ...]) -> int:
-    for x, y in zip(left, right, strict=False):
-        order = compare(x, y)
-        if order:
-            return order
-    return len(left) - len(right)
 
 
 SortKey = cmp_to_key(compare)
