@@ -10,6 +10,7 @@ from jacaros.asl.literal_parser import LiteralParser
 from jacaros.asl.source import Span
 from jacaros.asl.spelling import close_matches
 from jacaros.terms.operators import AND, BINARY, NOT, OR, PREFIX, SUM, Operator
+from jacaros.terms.text import unquoted
 from jacaros.terms.values import ARITHMETIC, RELATION
 
 MAX_CHAIN: Final = 250
@@ -88,7 +89,7 @@ class TermParser(LiteralParser):
             return nodes.Number(float(token.text), span=self.span_of(token))
         if kind == "string":
             self.advance()
-            return nodes.String(_unescape(token.text), span=self.span_of(token))
+            return nodes.String(unquoted(token.text), span=self.span_of(token))
         if kind == "[":
             return self.list_term()
         if kind == "(":
@@ -199,14 +200,6 @@ def _across(left: nodes.Term, right: nodes.Term) -> Span | None:
     if left.span is None or right.span is None:
         return None
     return left.span.to(right.span)
-
-
-def _unescape(text: str) -> str:
-    r"""The value of a string token: ``\n`` and ``\"`` are converted, every other backslash stays."""
-    inner = text[1:-1]
-    if "\\" not in inner:
-        return inner
-    return inner.replace("\\n", "\n").replace('\\"', '"')
 
 
 def _arity_text(name: str) -> str:

@@ -95,6 +95,12 @@ def quoted(text: str) -> str:
     return '"' + text.replace("\n", "\\n").replace('"', '\\"') + '"'
 
 
+def unquoted(written: str) -> str:
+    r"""The value of a string in quotes: ``\n`` and ``\"`` are converted, every other backslash stays."""
+    inner = written[1:-1]
+    return inner.replace("\\n", "\n").replace('\\"', '"') if "\\" in inner else inner
+
+
 def text(term: Term) -> str:
     """The term with all bindings applied, strings in quotes."""
     if term.__class__ is float:

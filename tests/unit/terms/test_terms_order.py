@@ -16,7 +16,7 @@ from jacaros.terms.order import (
     sorted_set,
     sorted_terms,
 )
-from jacaros.terms.substitution import equal
+from jacaros.terms.substitution import equal, related
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, Reference, String, Term, Var, atom, functor, make_list, structure
 
@@ -197,3 +197,26 @@ def test_one_more_annotation_is_compared_with_few_of_the_others(
         return calls_of(lambda: merge_annotations(before, (structure("time", held / 2 + 0.5),)))
 
     assert work(4096) < 3 * work(16)
+
+
+@pytest.mark.parametrize("symbol", ["<", "<=", ">", ">=", "=="])
+def test_no_relation_but_unequal_holds_of_what_is_not_a_number(symbol: str) -> None:
+    assert not related(symbol, float("nan"), 3.0)
+    assert not related(symbol, 3.0, float("nan"))
+
+
+@pytest.mark.parametrize(
+    ("symbol", "left", "right"),
+    [
+        ("<", 3.0, atom("a")),
+        (">", String("b"), String("a")),
+        (">=", make_list([]), 7.0),
+        ("<=", structure("p", 1.0), structure("p", 1.0)),
+        ("==", structure("p", 1.0), structure("p", 1.0)),
+        ("\\==", structure("p", 1.0), structure("p", 2.0)),
+        ("\\==", 1.0, atom("a")),
+        ("<", (BINARY["+"].functor, 1.0, 1.0), 3.0),
+    ],
+)
+def test_relations_of_terms_follow_their_order_and_equality(symbol: str, left: Term, right: Term) -> None:
+    assert related(symbol, left, right)

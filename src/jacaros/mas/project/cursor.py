@@ -8,6 +8,7 @@ from typing import Final, NoReturn
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import SourceFile, Span
+from jacaros.terms.text import unquoted
 
 _TOKEN: Final = re.compile(
     r"""
@@ -198,7 +199,7 @@ def text_of(token: Token) -> str:
     """The content of a string, the text of any other token."""
     if token.kind != "string":
         return token.text
-    return token.text[1:-1].replace('\\"', '"').replace("\\n", "\n")
+    return unquoted(token.text)
 
 
 def _tokenize(file: SourceFile, report: Callable[[str, Span], None]) -> list[Token]:
