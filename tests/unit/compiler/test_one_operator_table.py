@@ -1,5 +1,6 @@
-"""A line more in the operator table is all that lexer, parser, printers, layout and generated code need."""
+"""A line more in the operator table is all that lexer, parser, printers, layout, generated code and rules need."""
 
+import os
 import subprocess
 import sys
 
@@ -35,22 +36,23 @@ print(*run_project(sys.argv[1], seconds=10).of("more"), sep="\\n")
 """
 
 
-def answer(script: str, argument: str) -> list[str]:
+def answer(script: str, argument: str, **variables: str) -> list[str]:
     done = subprocess.run(
         [sys.executable, "-c", WITH_MORE_OPERATORS + script, argument],
         capture_output=True,
         text=True,
+        env={**os.environ, **variables},
         check=True,
     )
     return done.stdout.splitlines()
 
 
-@pytest.fixture
-def run(tmp_path):
+@pytest.fixture(params=["", "1"], ids=["fast", "plain"])
+def run(tmp_path, request):
     def answers(plans: str) -> list[str]:
         program = tmp_path / "more.asl"
         program.write_text(f"!start. {plans}")
-        return answer(RUN, str(program))
+        return answer(RUN, str(program), JACAROS_PLAIN=request.param)
 
     return answers
 
