@@ -9,8 +9,8 @@ import pytest
 from pages import ROOT
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.asl.functions import ARITIES
 from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.terms.functions import ARITIES
 
 FOLDER = ROOT / "docs" / "reference" / "internal_actions"
 FUNCTIONS = FOLDER / "functions.md"

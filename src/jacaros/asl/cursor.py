@@ -6,10 +6,10 @@ from typing import Final, NoReturn
 
 from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.functions import is_function
 from jacaros.asl.lexer import Token
 from jacaros.asl.slips import Slip, known_slip
 from jacaros.asl.source import SourceFile, Span
+from jacaros.terms.functions import is_function
 
 MAX_NESTING: Final = 150
 """How deep brackets and statements may be nested: far more than people write, and safe for the call stack."""

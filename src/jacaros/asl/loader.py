@@ -10,11 +10,11 @@ from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
-from jacaros.asl.functions import FunctionNames
 from jacaros.asl.labels import check_labels
 from jacaros.asl.namespaces import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import SourceFile
+from jacaros.terms.functions import FunctionNames
 
 Result = TypeVar("Result")
 

@@ -1,7 +1,11 @@
-"""The arithmetic functions of the language (``math.abs``, ``math.sum`` …)."""
+"""The arithmetic functions of the language (``math.abs``, ``math.sum`` …).
+
+The parser tells them from internal actions by name and number of arguments.
+"""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Final
 
 from jacaros.terms import arithmetic
 from jacaros.terms.arithmetic import functions, settle
@@ -115,30 +119,61 @@ def _length(argument: Term) -> Term:
     return None if free_variables(value) else math.nan
 
 
-functions.update(
-    {
-        "math.abs": _on_number(abs),
-        "math.acos": _on_number(math.acos),
-        "math.asin": _on_number(math.asin),
-        "math.atan": _on_number(math.atan),
-        "math.ceil": _on_number(_toward(math.ceil)),
-        "math.cos": _on_number(math.cos),
-        "math.exp": _on_number(math.exp),
-        "math.floor": _on_number(_toward(math.floor)),
-        "math.log": _on_number(_log),
-        "math.round": _on_number(_round),
-        "math.sin": _on_number(math.sin),
-        "math.sqrt": _on_number(math.sqrt),
-        "math.tan": _on_number(math.tan),
-        "math.e": lambda: math.e,
-        "math.pi": lambda: math.pi,
-        "math.max": _on_list(_of_some(max)),
-        "math.min": _on_list(_of_some(min)),
-        "math.sum": _on_list(_sum),
-        "math.average": _on_list(_of_some(_average)),
-        "math.mean": _on_list(_of_some(_average)),
-        "math.median": _on_list(_of_some(_median)),
-        "math.std_dev": _on_list(_standard_deviation),
-        ".length": _length,
-    }
-)
+_OF_A_NUMBER: dict[str, Callable[[float], float]] = {
+    "math.abs": abs,
+    "math.acos": math.acos,
+    "math.asin": math.asin,
+    "math.atan": math.atan,
+    "math.ceil": _toward(math.ceil),
+    "math.cos": math.cos,
+    "math.floor": _toward(math.floor),
+    "math.log": _log,
+    "math.round": _round,
+    "math.sin": math.sin,
+    "math.sqrt": math.sqrt,
+    "math.tan": math.tan,
+}
+_OF_NUMBERS: dict[str, Callable[[list[float]], float]] = {
+    "math.average": _of_some(_average),
+    "math.max": _of_some(max),
+    "math.mean": _of_some(_average),
+    "math.median": _of_some(_median),
+    "math.min": _of_some(min),
+    "math.std_dev": _standard_deviation,
+    "math.sum": _sum,
+}
+functions.update({name: _on_number(compute) for name, compute in _OF_A_NUMBER.items()})
+functions.update({name: _on_list(compute) for name, compute in _OF_NUMBERS.items()})
+functions.update({"math.e": lambda: math.e, "math.pi": lambda: math.pi, ".length": _length})
+
+ARITIES: Final[dict[str, tuple[int, float]]] = {
+    **dict.fromkeys(_OF_A_NUMBER, (1, 1)),
+    **dict.fromkeys(_OF_NUMBERS, (1, math.inf)),
+    **dict.fromkeys(("math.e", "math.pi", "system.time"), (0, 0)),
+    "math.random": (0, 1),
+    ".length": (1, 1),
+    ".count": (1, 1),
+}
+"""Fewest and most arguments of each function of the language, those that need an agent included."""
+
+
+def is_function(name: str, arity: int, registered: Mapping[str, int]) -> bool:
+    """Whether *name* with *arity* arguments is a function of the language or one of the *registered* ones."""
+    limits = ARITIES.get(name)
+    if limits is not None and limits[0] <= arity <= limits[1]:
+        return True
+    return registered.get(name) == arity
+
+
+class FunctionNames(dict[str, int]):
+    """The functions that a running program has registered, with their numbers of arguments.
+
+    Attributes:
+        known: those of the project, with their least and greatest numbers of arguments.
+    """
+
+    def __init__(
+        self, registered: Mapping[str, int], known: Mapping[str, tuple[int, int | None]] | None = None
+    ) -> None:
+        super().__init__(registered)
+        self.known = {} if known is None else known

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
-from jacaros.asl.functions import FunctionNames
 from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.terms.arithmetic import RUNNING, settle
+from jacaros.terms.functions import FunctionNames
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
