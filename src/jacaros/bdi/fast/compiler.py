@@ -13,7 +13,7 @@ from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast import loop
 from jacaros.bdi.fast.generated.bodies import body_compiler
-from jacaros.bdi.fast.generated.function import Frame as Slots
+from jacaros.bdi.fast.generated.function import FrameLayout
 from jacaros.bdi.fast.generated.unit import (
     CodeUnit,
     compile_rule_function,
@@ -78,7 +78,7 @@ class Compiler(Interpreter):
     def give_steps(self, plan: Plan) -> None:
         """Give a plan that stands for a body made at run time its steps."""
         unit = CodeUnit("<body>", self.actions)
-        compiler = body_compiler(unit, Slots(plan), "step")
+        compiler = body_compiler(unit, FrameLayout(plan), "step")
         body = plan.node.body
         assert isinstance(body, nodes.Body)
         try:

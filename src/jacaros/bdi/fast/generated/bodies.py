@@ -19,12 +19,12 @@ from jacaros.bdi.fast.generated.building import (
     written,
 )
 from jacaros.bdi.fast.generated.control_statements import STATEMENTS
-from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder, Unit
+from jacaros.bdi.fast.generated.function import FrameLayout, FunctionBuilder, Unit
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.values import functor
 
 
-def body_compiler(unit: Unit, frame: Frame, prefix: str) -> BodyCompiler:
+def body_compiler(unit: Unit, frame: FrameLayout, prefix: str) -> BodyCompiler:
     """What writes a plan body; *prefix* is how the names of its step functions begin."""
     return BodyCompiler(unit, frame, prefix, _STEPS)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.bdi.fast.generated.conditions import condition
-from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder, Unit
+from jacaros.bdi.fast.generated.function import FrameLayout, FunctionBuilder, Unit
 from jacaros.bdi.state.plan import StepInfo
 
 StepWriter = Callable[["BodyCompiler", Any, str, str], None]
@@ -23,7 +23,7 @@ class BodyCompiler:
     """
 
     unit: Unit
-    frame: Frame
+    frame: FrameLayout
     prefix: str
     writers: Mapping[type, StepWriter]
     infos: dict[str, StepInfo] = field(default_factory=dict)

@@ -9,7 +9,7 @@ from jacaros.asl.walk import names_in, nodes_in
 from jacaros.bdi.fast.generated.body_compiler import BodyCompiler, StepWriter, head
 from jacaros.bdi.fast.generated.building import tuple_of
 from jacaros.bdi.fast.generated.conditions import question
-from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder
+from jacaros.bdi.fast.generated.function import FrameLayout, FunctionBuilder
 from jacaros.bdi.state.plan import StepInfo
 from jacaros.terms.substitution import ATOMIC
 
@@ -140,7 +140,7 @@ def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -
     return slot
 
 
-def _any_open(frame: Frame, names: list[str]) -> str:
+def _any_open(frame: FrameLayout, names: list[str]) -> str:
     """A test whether any of the variables may hold something unbound."""
     tests = [f"frame[{frame.slots[n]}].__class__ not in ATOMIC" for n in names]
     return " or ".join(tests) if tests else "False"

@@ -32,7 +32,7 @@ class Unit(Protocol):
         """A name for another function."""
 
 
-class Frame:
+class FrameLayout:
     """The slots of a plan's variables, and what is known of them between two steps.
 
     Attributes:
@@ -130,7 +130,7 @@ class FunctionBuilder:
         yield
         self.values, self.fresh = values, fresh
 
-    def load(self, frame: Frame, names: list[str]) -> None:
+    def load(self, frame: FrameLayout, names: list[str]) -> None:
         """Read the variables that have a value from the frame."""
         for name in names:
             state = frame.states.get(name)
@@ -146,14 +146,14 @@ class FunctionBuilder:
                 self.line(f"if v_{name}.__class__ is Var and v_{name}.ref is not None: v_{name} = {value}")
             self.values[name] = f"v_{name}"
 
-    def store(self, frame: Frame) -> None:
+    def store(self, frame: FrameLayout) -> None:
         """Write the variables that got a value here to the frame."""
         for name in self.fresh:
             if name in frame.slots:
                 self.line(f"frame[{frame.slots[name]}] = {self.values[name]}")
         frame.asked |= self.asked
 
-    def mark_stored(self, frame: Frame) -> None:
+    def mark_stored(self, frame: FrameLayout) -> None:
         """Take note that the fresh variables have a value from now on."""
         for name in self.fresh:
             if name in frame.slots:

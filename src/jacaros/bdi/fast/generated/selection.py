@@ -13,7 +13,7 @@ from jacaros.bdi.fast.generated.bodies import body_compiler
 from jacaros.bdi.fast.generated.body_compiler import BodyCompiler
 from jacaros.bdi.fast.generated.building import annotation_parts, tuple_of
 from jacaros.bdi.fast.generated.conditions import condition
-from jacaros.bdi.fast.generated.function import Frame, FunctionBuilder, Unit
+from jacaros.bdi.fast.generated.function import FrameLayout, FunctionBuilder, Unit
 from jacaros.bdi.fast.generated.matching import match_all, settle_fresh
 from jacaros.bdi.state.plan import ALL_UNIFIERS, Plan
 
@@ -141,7 +141,7 @@ class SelectCompiler:
     def _frame(self, fn: FunctionBuilder, plan: Plan) -> None:
         """The innermost point: the plan is applicable, its frame is made and given back."""
         node = plan.node
-        frame = Frame(plan)
+        frame = FrameLayout(plan)
         for variable in fn.values:
             if variable in frame.slots:
                 frame.states[variable] = "set"
