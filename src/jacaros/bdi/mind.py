@@ -33,14 +33,14 @@ from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import Posted
-from jacaros.bdi.state.intention import Frame
-from jacaros.bdi.state.literals import own_annotations
+from jacaros.bdi.state.event import Posted, Raised
+from jacaros.bdi.state.intention import Frame, NextStep
+from jacaros.bdi.state.literals import EventAnnotations, own_annotations
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
-from jacaros.bdi.state.triggers import trigger
+from jacaros.bdi.state.triggers import Goal, trigger
 from jacaros.bdi.state.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.operators import ArithmeticFault
@@ -59,7 +59,7 @@ from jacaros.terms.values import (
     functor,
     functor_of,
 )
-from jacaros.trace import cause
+from jacaros.trace import Cause, cause
 
 ERROR = functor("error", 1)
 
@@ -192,7 +192,7 @@ class Mind(Circumstance):
         else:
             belief_update.tell(self, term)
 
-    def post_goal(self, goal: Term, goal_cause: Any = None) -> None:
+    def post_goal(self, goal: Term, goal_cause: Cause | None = None) -> None:
         """Adopt a new goal, as an intention of its own."""
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
@@ -347,7 +347,6 @@ class Mind(Circumstance):
     add_belief_apart = belief_update.add_belief_apart
     delete_belief = belief_update.delete_belief
     delete_any = belief_update.delete_any
-    change_mind = belief_update.change_mind
     tell = belief_update.tell
     believe = belief_update.believe
     untell = belief_update.untell
@@ -357,15 +356,37 @@ class Mind(Circumstance):
     drop_desire = goals.drop_desire
     call_function = functions.call_function
 
+    def change_mind(self, operator: str, term: Term) -> Raised:
+        """A belief operator whose operand is known only at run time: a literal, a plan or a rule.
+
+        Raises:
+            Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
+        """
+        if self.change_plans(operator, term):
+            return None
+        symbol, row, annotations = parts(term)
+        if symbol is None:
+            raise Failure((ERROR, atom(belief_update.operand_error(term))))
+        own = own_annotations(annotations)
+        if operator in ("-", "--"):
+            return self.delete_belief(symbol, row, own, operator == "--")
+        if operator == "-+":
+            return self.replace_belief(symbol, row, BY_SELF if own == BY_SELF else own)
+        if operator == "-++":
+            self.delete_any(symbol, BY_SELF if own == BY_SELF else own)
+        if operator in ("++", "-++"):
+            return self.add_belief_apart(symbol, row, own)
+        return (self.add_belief_last if operator == "+>" else self.add_belief)(symbol, row, own)
+
     def annotated_goal(
-        self, goal: tuple[Any, ...], items: tuple[Term, ...], tail: Term, separate: bool = False
+        self, goal: Goal, items: tuple[Term, ...], tail: Term, separate: bool = False
     ) -> Posted:
         """A goal that is posted with annotations."""
         annotations = own_annotations(items, tail)
         deadlines.watch(self, goal, annotations, separate)
         return Posted(goal, annotations)
 
-    def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Any:
+    def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
         """The goal that a term denotes.
 
         Raises:
@@ -383,27 +404,26 @@ class Mind(Circumstance):
             deadlines.watch(self, goal, annotations, separate)
         return Posted(goal, annotations)
 
-    def test_goal_from(self, term: Term) -> Any:
+    def test_goal_from(self, term: Term) -> Goal | Posted:
         """The test goal for a query known only at run time; fails without plans for it."""
         goal = self.goal_from("+", "?", term)
-        plain = goal.goal if goal.__class__ is Posted else goal
+        plain = goal.goal if isinstance(goal, Posted) else goal
         if not self.may_handle(plain[0]):
             raise Fail
         return goal
 
-    def post_separate(self, goal: Any) -> None:
+    def post_separate(self, goal: Goal | Posted) -> None:
         """``!!g``: a new intention that shares no variables with this one."""
-        annotations: Any = BY_SELF
-        if goal.__class__ is Posted:
-            goal, annotations = goal.goal, goal.annotations
-        names: dict[Any, Any] = {}
-        arguments = tuple(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:])
+        annotations: EventAnnotations = BY_SELF
+        if isinstance(goal, Posted):
+            annotations, goal = goal.annotations, goal.goal
+        names: dict[Var, Var] = {}
+        apart: Goal = (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
         current = self.current
-        event = ((goal[0], *arguments), None, annotations, current.cause if current else None)
-        meta_events.post_new_goal(self, event)
+        meta_events.post_new_goal(self, (apart, None, annotations, current.cause if current else None))
 
     def begin_act(
-        self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: Any
+        self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: NextStep
     ) -> Any:
         """Begin an external action; the intention waits for its completion, if it has not ended already."""
         intention = self.current
@@ -439,7 +459,7 @@ class Mind(Circumstance):
         if self.pending_acts.pop(number, None) is not None:
             self.architecture.cancel_act(number)
 
-    def finish_call(self, result: Any, frame: Frame, next_step: Any) -> Any:
+    def finish_call(self, result: Any, frame: Frame, next_step: NextStep) -> Any:
         """What an internal action that may suspend gave: go on, fail, or wait."""
         if result is False:
             return FAILED

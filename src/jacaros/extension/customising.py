@@ -15,10 +15,11 @@ from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import literal, parts
 from jacaros.bdi.state.engine import Select
-from jacaros.bdi.state.event import EVENT_INTENTION, Event
+from jacaros.bdi.state.event import EVENT_INTENTION, Event, Raised
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan_library import OwnSelects, PlanLibrary
-from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from
@@ -74,33 +75,33 @@ class CustomMind(Mind):
 
     # changes of beliefs, see `jacaros.bdi.rules.belief_update`
 
-    def add_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> object:
+    def add_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Raised:
         """``+b``."""
         self._revise(literal_from(symbol, row, annotations), None)
         return super().add_belief(symbol, row, annotations)
 
-    def replace_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> object:
+    def replace_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Raised:
         """``-+b``."""
         self.delete_any(symbol, annotations)
         return self.add_belief(symbol, row, annotations)
 
     def add_belief_last(
         self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
-    ) -> object:
+    ) -> Raised:
         """``+>b``."""
         self._revise(literal_from(symbol, row, annotations), None)
         return super().add_belief_last(symbol, row, annotations)
 
     def add_belief_apart(
         self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
-    ) -> object:
+    ) -> Raised:
         """``++b``."""
         self._revise(literal_from(symbol, row, annotations), None)
         return super().add_belief_apart(symbol, row, annotations)
 
     def delete_belief(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], apart: bool
-    ) -> object:
+    ) -> Raised:
         """``-b`` and ``--b``."""
         self._revise(None, literal_from(symbol, arguments, annotations))
         return super().delete_belief(symbol, arguments, annotations, apart)
@@ -218,7 +219,7 @@ class ChoosingSelects(OwnSelects):
         plans = self.library.relevant(trigger)
         return self.keep(trigger, self._selected if plans else None, plans)
 
-    def _selected(self, agent: CustomMind, goal: tuple[Term, ...], annotations: object) -> Frame | None:
+    def _selected(self, agent: CustomMind, goal: Goal, annotations: EventAnnotations) -> Frame | None:
         # The context is asked once: what it drew or did may come out otherwise the next time.
         held: list[tuple[Frame, list[tuple[Var, Term]]]] = []
         found: list[Option] = []

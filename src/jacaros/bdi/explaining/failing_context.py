@@ -22,10 +22,11 @@ from jacaros.bdi.rules.query import interpret_rule, solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import Table
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Rule
 from jacaros.bdi.state.search_budget import SearchBudget, SearchLimit
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.arithmetic import RUNNING, functions
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.excerpt import excerpt
@@ -76,7 +77,7 @@ class FailingContexts:
         annotations: of the goal.
     """
 
-    def __init__(self, agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> None:
+    def __init__(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> None:
         self._agent, self._goal, self._annotations = agent, goal, annotations
 
     def fits(self, plan: Plan) -> bool:

@@ -9,8 +9,9 @@ from jacaros.asl.lowering import lower
 from jacaros.asl.source import Span
 from jacaros.bdi.explaining.step_text import step_text
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
-from jacaros.bdi.state.literals import annotations_of_event, literal_of
+from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
 from jacaros.bdi.state.plan import StepInfo
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.excerpt import excerpt
 from jacaros.terms.operators import ArithmeticFault
@@ -62,7 +63,7 @@ class FailureReason:
         self.candidates: tuple[str, ...] = ()
         self._made: _Terms | None = None
 
-    def for_goal(self, annotations: Any, number: int | None = None) -> "FailureReason":
+    def for_goal(self, annotations: EventAnnotations, number: int | None = None) -> "FailureReason":
         """The same reason for the failure event of a goal: this very one, unless it is for another goal already."""
         if self.goal_annotations is None:
             self.goal_annotations = annotations
@@ -117,14 +118,14 @@ class FailureReason:
         """The step that failed, with the values of its variables; empty when a goal without plan is the reason."""
         return str(self._place.step())
 
-    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
+    def inner_goals(self) -> tuple[Goal, ...]:
         """The goals for which the step was made, as far as they are not on the stack any more."""
-        found: tuple[tuple[Any, ...], ...] = self._place.inner_goals()
+        found: tuple[Goal, ...] = self._place.inner_goals()
         return found
 
-    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+    def unplanned(self) -> tuple[Goal, Any] | None:
         """The goal that no plan fits and its annotations, None when that is not the reason."""
-        found: tuple[tuple[Any, ...], Any] | None = self._place.unplanned()
+        found: tuple[Goal, Any] | None = self._place.unplanned()
         return found
 
     def interrupted(self, frames: list[Frame]) -> "FailureReason":
@@ -155,10 +156,10 @@ class _Nowhere:
     def step(self) -> str:
         return ""
 
-    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
+    def inner_goals(self) -> tuple[Goal, ...]:
         return ()
 
-    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+    def unplanned(self) -> tuple[Goal, Any] | None:
         return None
 
     def annotations(self) -> tuple[Term, ...]:
@@ -248,7 +249,7 @@ class _Interrupted(_Nowhere):
     def step(self) -> str:
         return self._step.step()
 
-    def inner_goals(self) -> tuple[tuple[Any, ...], ...]:
+    def inner_goals(self) -> tuple[Goal, ...]:
         return tuple(frame[GOAL] for frame in reversed(self._frames[1:]))
 
     def span(self) -> Span | None:
@@ -261,7 +262,7 @@ class _Interrupted(_Nowhere):
 class GoalPlace(_Nowhere):
     """A goal without plan: ``code`` is the goal, the line is that of the call."""
 
-    def __init__(self, goal: tuple[Any, ...], annotations: Any, caller: Frame | None) -> None:
+    def __init__(self, goal: Goal, annotations: EventAnnotations, caller: Frame | None) -> None:
         super().__init__()
         self.goal, self.goal_annotations = goal, annotations
         self.caller = caller
@@ -279,7 +280,7 @@ class GoalPlace(_Nowhere):
     def span(self) -> Span | None:
         return self._call()[0]
 
-    def unplanned(self) -> tuple[tuple[Any, ...], Any] | None:
+    def unplanned(self) -> tuple[Goal, Any] | None:
         return self.goal, self.goal_annotations
 
     def _call(self) -> tuple[Span | None, str]:
@@ -327,7 +328,7 @@ def code_place(span: Span | None, file: str) -> tuple[Term, ...]:
     return source if span is None else (*source, (CODE_LINE, float(span.line)))
 
 
-def goal_text(goal: tuple[Any, ...]) -> str:
+def goal_text(goal: Goal) -> str:
     """A goal for people; one whose arguments have no value (``g(1 div 0)``) by its name."""
     try:
         return text(literal_of(goal, ()))
@@ -335,7 +336,7 @@ def goal_text(goal: tuple[Any, ...]) -> str:
         return f"{goal[0].functor.name}(...)"
 
 
-def shown_goal(goal: tuple[Any, ...]) -> str:
+def shown_goal(goal: Goal) -> str:
     """The beginning of a goal or another event, with its signs: ``!go(home)``, ``-!go(home)``, ``+low(9)``."""
     trigger = goal[0]
     sign = "" if trigger.operator == "+" and trigger.kind else trigger.operator

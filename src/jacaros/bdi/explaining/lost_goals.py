@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from jacaros.asl.formatter import format_term
 from jacaros.asl.source import Span
@@ -11,7 +11,9 @@ from jacaros.bdi.explaining.failure_reason import FailureReason, shown_goal
 from jacaros.bdi.explaining.step_text import unbracketed
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import GOAL, Intention
+from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.excerpt import excerpt
 from jacaros.terms.text import text
 from jacaros.terms.values import functor, functor_of
@@ -46,9 +48,7 @@ class Loss(NamedTuple):
         return "\n  ".join((self.told, *self.details))
 
 
-def loss(
-    agent: Circumstance, intention: Intention, reason: FailureReason, goal: tuple[Any, ...] | None
-) -> Loss:
+def loss(agent: Circumstance, intention: Intention, reason: FailureReason, goal: Goal | None) -> Loss:
     """What is told of an intention without a plan for its failure.
 
     Args:
@@ -67,8 +67,8 @@ def loss(
 
 
 def note_goals(
-    agent: Circumstance, intention: Intention, reason: FailureReason, goal: tuple[Any, ...] | None
-) -> list[tuple[Any, ...]]:
+    agent: Circumstance, intention: Intention, reason: FailureReason, goal: Goal | None
+) -> list[Goal]:
     """Keep with a reason what only the stack of the intention and the plans of the agent tell, before they change.
 
     Returns:
@@ -88,7 +88,7 @@ def loss_of(what: str, reason: FailureReason) -> Loss:
 
 
 def lost_in_handler(
-    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], reason: FailureReason | None
+    agent: Circumstance, intention: Intention, goal: Goal, reason: FailureReason | None
 ) -> Loss:
     """What is told of a failure event whose plans do not fit."""
     told = f"no applicable plan for the failure event {shown_goal(goal)}; the intention is dropped"
@@ -99,12 +99,12 @@ def lost_in_handler(
     return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.span())
 
 
-def inapplicable(agent: Circumstance, event: tuple[Any, ...], annotations: Any) -> Loss:
+def inapplicable(agent: Circumstance, event: Goal, annotations: EventAnnotations) -> Loss:
     """What is told of an event whose plans are not applicable."""
     return Loss(f"no applicable plan for {shown_goal(event)}", _candidates(agent, event, annotations), None)
 
 
-def lost_question(asker: str, goal: tuple[Any, ...], reason: FailureReason) -> Loss | None:
+def lost_question(asker: str, goal: Goal, reason: FailureReason) -> Loss | None:
     """What is told of a question from *asker* whose plan failed; its goals were noted in the reason.
 
     None when no plan was applicable: that is an answer, as of a plan whose context checks who asks.
@@ -163,7 +163,7 @@ def _terms(reason: FailureReason) -> list[str]:
     return [f"reason: {', '.join(_short(text(excerpt(term))) for term in terms)}"] if terms else []
 
 
-def goals_below(intention: Intention) -> Iterator[tuple[Any, ...]]:
+def goals_below(intention: Intention) -> Iterator[Goal]:
     """What the stack of an intention is for, the goal on top first; for a handler the failure event that it handles."""
     frames = intention.frames
     handlers = len(intention.handlers)
@@ -178,7 +178,7 @@ def goals_below(intention: Intention) -> Iterator[tuple[Any, ...]]:
         index -= 1
 
 
-def _shown(stack: list[tuple[Any, ...]]) -> tuple[str, ...]:
+def _shown(stack: list[Goal]) -> tuple[str, ...]:
     """Goals for people; of a stack of thousands only the first and the last."""
     left = len(stack) - MOST_GOALS
     if left <= 1:
@@ -204,7 +204,7 @@ def _short(told: str, longest: int = LONGEST) -> str:
     return told if len(told) <= longest else f"{told[: longest - 3]}..."
 
 
-def _candidates(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> tuple[str, ...]:
+def _candidates(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> tuple[str, ...]:
     """The plans that there were for a goal, those whose trigger fits it first, each with what its context stops at."""
     plans = agent.library.relevant(goal[0])
     contexts = FailingContexts(agent, goal, annotations)

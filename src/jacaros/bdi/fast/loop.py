@@ -20,6 +20,8 @@ from jacaros.bdi.rules.sel_ev import begin_intention, begin_with, handle_atomic_
 from jacaros.bdi.rules.sel_int import select_intention
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.intention import Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import RUNNING
 from jacaros.terms.unifier import undo
@@ -182,7 +184,7 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
     return None
 
 
-def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> bool:
+def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
     """Put a plan for the goal on the intention; False when the intention goes no further now."""
     if agent.special or agent.option_filter.rows:
         return add_im.push(agent, intention, goal, annotations)
@@ -275,7 +277,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
             frame = frames[-1]
             continue
 
-        annotations: Any = BY_SELF
+        annotations: EventAnnotations = BY_SELF
         if goal.__class__ is not tuple:
             if goal is SUSPENDED:
                 if agent.meta:

@@ -14,7 +14,9 @@ from jacaros.bdi.fast.generated.building import functor_of_literal
 from jacaros.bdi.rules.applicable_plans import Selection
 from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.intention import FIRST_SLOT, STEP, Frame
+from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import CONS, NIL, List, String, Term
 
@@ -58,7 +60,7 @@ class PlanByPlan:
             if key is not None
         }
 
-    def __call__(self, agent: Any, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+    def __call__(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Frame | None:
         """The frame of the first applicable plan, or None."""
         parts = self._parts
         for place in self._places if self._by_key is None else self._relevant(goal[1], self._by_key):
@@ -102,7 +104,7 @@ class _Waiting:
         self._plans, self._place, self._asked = plans, place, 0
         self._selection: Selection | None = None
 
-    def __call__(self, agent: Any, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+    def __call__(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Frame | None:
         """Its frame, if it is applicable."""
         self._asked += 1
         if self._asked > _INTERPRETED:

@@ -1,17 +1,17 @@
 """A plan for a goal or event of an intention becomes part of it: rule AddIM."""
 
-from typing import Any
-
 from jacaros.bdi.explaining import lost_goals
 from jacaros.bdi.rules import meta_events, option_selection, subplans
 from jacaros.bdi.rules.goal_failure import has_room, too_deep, unplanned
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Event
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.triggers import Goal
 
 
 def select_plan(
-    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, intention: Intention | None = None
+    agent: Circumstance, goal: Goal, annotations: EventAnnotations, intention: Intention | None = None
 ) -> Frame | None:
     """Rules RelPl, ApplPl and SelAppl: the frame of the first applicable plan, sub-plans of *intention* first."""
     trail = agent.trail
@@ -32,7 +32,7 @@ def select_plan(
     return frame
 
 
-def push(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> bool:
+def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
     """Rule AddIM: put a plan for the goal on the intention; False when the intention goes no further now."""
     frame = select_plan(agent, goal, annotations, intention)
     return (frame is not None and add_frame(agent, intention, frame)) or go_without(
@@ -70,7 +70,7 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
 
 
 def go_without(
-    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any, frame: Frame | None
+    agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations, frame: Frame | None
 ) -> bool:
     """A goal or event has no plan, or (then *frame* is given, and on the stack) no room for it.
 
@@ -109,6 +109,6 @@ def is_alone(agent: Circumstance) -> bool:
     )
 
 
-def log_inapplicable(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> None:
+def log_inapplicable(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> None:
     """Log why no plan was taken for an event, for an agent whose details are wanted."""
     agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())

@@ -15,8 +15,9 @@ from jacaros.bdi.rules.body_steps import interpreted
 from jacaros.bdi.rules.query import answers
 from jacaros.bdi.rules.searching import run, unify_rows
 from jacaros.bdi.state.intention import Frame
-from jacaros.bdi.state.literals import annotations_of_event, literal_of, namespace_of
+from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of, namespace_of
 from jacaros.bdi.state.plan import ALL_UNIFIERS, Plan
+from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import Trail, undo, unify, unify_annotations
 from jacaros.terms.values import Annotated, Var, arguments_of, deref
@@ -35,11 +36,11 @@ class Selection:
     def __init__(self, plans: Sequence[Plan], outer: Plan | None = None) -> None:
         self.plans, self.outer = plans, outer
 
-    def __call__(self, agent: Any, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+    def __call__(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Frame | None:
         """The frame of the first applicable plan, or None."""
         return next(self.frames(agent, goal, annotations), None)
 
-    def every(self, agent: Any, goal: tuple[Any, ...], annotations: Any) -> Iterator[Frame]:
+    def every(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
         """The frames of all applicable plans: of each the first, or, with ``all_unifs`` in its label, one for each answer
         of its context."""
         for plan in self.plans:
@@ -49,7 +50,7 @@ class Selection:
                     break
             undo(agent.trail, 0)
 
-    def frames(self, agent: Any, goal: tuple[Any, ...], annotations: Any) -> Iterator[Frame]:
+    def frames(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
         """The first frame of each applicable plan, with the bindings that its context made."""
         for plan in self.plans:
             found = next(self._frames_of(plan, agent, goal, annotations), None)
@@ -57,7 +58,9 @@ class Selection:
                 yield found
             undo(agent.trail, 0)
 
-    def _frames_of(self, plan: Plan, agent: Any, goal: tuple[Any, ...], annotations: Any) -> Iterator[Frame]:
+    def _frames_of(
+        self, plan: Plan, agent: Any, goal: Goal, annotations: EventAnnotations
+    ) -> Iterator[Frame]:
         """A frame for each answer of the context.  A plan whose context cannot be evaluated is not applicable."""
         names = Names() if self.outer is None else _names_of(self.outer, agent.outer_frame, plan)
         try:
@@ -75,7 +78,7 @@ class Selection:
             agent.context.report_plan(plan, fault)
 
 
-def is_relevant(plan: Plan, goal: tuple[Any, ...], annotations: Any, names: Names, trail: Trail) -> bool:
+def is_relevant(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, trail: Trail) -> bool:
     """Rule RelPl: whether the trigger of a plan unifies with an event; binds the variables of the plan."""
     literal = plan.node.trigger.literal
     if not isinstance(literal, nodes.Variable) and isinstance(literal.namespace, nodes.Variable):
@@ -110,7 +113,7 @@ def _names_of(outer: Plan, frame: Frame, plan: Plan) -> Names:
     return names
 
 
-def _frame(plan: Plan, goal: tuple[Any, ...], annotations: Any, names: Names, serial: int) -> Frame:
+def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, serial: int) -> Frame:
     """The frame of an applicable plan, at its first step."""
     for name in names_in(plan.node.trigger, plan.node.context):
         names[name]  # made if it has not been asked for: it may be on another branch

@@ -5,25 +5,24 @@ The functions for body formulae return the event to be handled by the same inten
 
 from typing import Any
 
-from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.rules.searching import unify_rows
 from jacaros.bdi.state.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import Posted
-from jacaros.bdi.state.literals import own_annotations
+from jacaros.bdi.state.event import Posted, Raised
 from jacaros.bdi.state.rule import OpenFact, Rule
-from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.terms.order import merge_annotations
 from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
 from jacaros.terms.unifier import undo, unify_annotations
 from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, atom, bare, functor
+from jacaros.trace import Cause
 
 Annotations = tuple[Term, ...]
 
 _OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
 
 
-def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+b``: the event belongs to the intention that made it."""
     # What is usual is written out: a fact that is not held yet.
     table = agent.beliefs[symbol]
@@ -40,7 +39,7 @@ def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Anno
     return (kind, *row)
 
 
-def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``-+b``: the first belief with these annotations goes, whatever its arguments, and the new one comes.
 
     The event of the first half is external.
@@ -63,24 +62,26 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
     return add_belief(agent, symbol, row, annotations)
 
 
-def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+>b``: the belief answers after all others."""
     return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True), False)
 
 
-def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Any:
+def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``++b``: the event is an external one."""
     return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), True)
 
 
-def _own_event(agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool) -> Any:
+def _own_event(
+    agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool
+) -> Raised:
     if new is None:
         return None
     note_change(agent, symbol, row)
     return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
 
 
-def _raise(agent: Circumstance, goal: tuple[Any, ...], annotations: Annotations, apart: bool) -> Any:
+def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
     """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
     unplanned = agent.selects[goal[0]] is None and not _is_kept(agent, goal[0])
     if apart or agent.options.new_focus:
@@ -99,7 +100,7 @@ def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
     return agent.may_handle(kind) or agent.options.events != "discard"
 
 
-def _apart(goal: tuple[Any, ...]) -> tuple[Any, ...]:
+def _apart(goal: Goal) -> Goal:
     """An event for another intention, which shares no variables with this one."""
     names: dict[Var, Var] = {}
     return (goal[0], *(a if a.__class__ in ATOMIC else rename(a, names) for a in goal[1:]))
@@ -153,7 +154,7 @@ def _insert_aside(
 
 def delete_belief(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
-) -> Any:
+) -> Raised:
     """``-b`` and ``--b``: the named annotations (at least the own source) of the first match are taken away."""
     if annotations is not BY_SELF and _is_property(agent, symbol, arguments, annotations):
         return None
@@ -254,32 +255,8 @@ def _delete_own(agent: Circumstance, symbol: Functor) -> None:
             return
 
 
-def change_mind(agent: Circumstance, operator: str, term: Term) -> Any:
-    """A belief operator whose operand is known only at run time: a literal, a plan or a rule.
-
-    Raises:
-        Failure: with ``body_var_without_value`` or ``body_var_not_literal``.
-    """
-    change = agent.change_plans(operator, term)  # type: ignore[attr-defined]
-    if change:
-        return None
-    symbol, row, annotations = parts(term)
-    if symbol is None:
-        raise Failure((functor("error", 1), atom(_operand_error(term))))
-    own = own_annotations(annotations)
-    mind: Any = agent
-    if operator in ("-", "--"):
-        return mind.delete_belief(symbol, row, own, operator == "--")
-    if operator == "-+":
-        return mind.replace_belief(symbol, row, BY_SELF if own == BY_SELF else own)
-    if operator == "-++":
-        mind.delete_any(symbol, BY_SELF if own == BY_SELF else own)
-    if operator in ("++", "-++"):
-        return mind.add_belief_apart(symbol, row, own)
-    return (mind.add_belief_last if operator == "+>" else mind.add_belief)(symbol, row, own)
-
-
-def _operand_error(term: Term) -> str:
+def operand_error(term: Term) -> str:
+    """The error of a term that is believed or given up and is not a literal."""
     return (
         "body_var_without_value"
         if free_variables(term) and bare(term) is not None
@@ -290,7 +267,7 @@ def _operand_error(term: Term) -> str:
 # --- from outside ------------------------------------------------------------------------------------------
 
 
-def tell(agent: Circumstance, term: Term, cause: Any = None) -> bool:
+def tell(agent: Circumstance, term: Term, cause: Cause | None = None) -> bool:
     """Add a belief from outside (a message, the project file); the event is external.  False for no literal."""
     symbol, row, annotations = parts(term)
     if symbol is None:
@@ -300,7 +277,7 @@ def tell(agent: Circumstance, term: Term, cause: Any = None) -> bool:
 
 
 def believe(
-    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
+    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, cause: Cause | None = None
 ) -> None:
     """The same for a literal in parts, with a source among its annotations."""
     new = insert(agent, symbol, row, annotations)
@@ -321,7 +298,12 @@ def untell(agent: Circumstance, term: Term) -> bool:
 
 
 def external_change(
-    agent: Circumstance, operator: str, symbol: Functor, row: Row, annotations: Annotations, cause: Any = None
+    agent: Circumstance,
+    operator: str,
+    symbol: Functor,
+    row: Row,
+    annotations: Annotations,
+    cause: Cause | None = None,
 ) -> None:
     """Raise the external event of a belief change, if anybody cares."""
     table = agent.beliefs[symbol]

@@ -6,7 +6,7 @@ from jacaros.asl import nodes
 from jacaros.asl.reflection import Reflection
 from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.intention import Frame
+from jacaros.bdi.state.intention import Frame, NextStep
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.plans import PLAN as PLAN_TERM
@@ -35,7 +35,7 @@ def is_body_frame(frame: Frame) -> bool:
     return frame[1][0] is _BODY
 
 
-def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: Any) -> Any:
+def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: NextStep) -> Any:
     """A variable as a body formula: a plan body, or an action."""
     term = resolve(value)
     if is_body(term):
@@ -49,7 +49,7 @@ def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: Any) ->
     return agent.begin_act(symbol, arguments_of(term), annotations_of(term), next_step)  # type: ignore[attr-defined]
 
 
-def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: Any) -> Any:
+def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: NextStep) -> Any:
     """Run a body held by a variable, on a frame of its own above the plan's."""
     frame[0] = next_step
     plan = _body_plan(agent, term)

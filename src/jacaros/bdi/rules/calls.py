@@ -3,13 +3,14 @@
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.rules.outcomes import Failure
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import Trail, undo
 from jacaros.terms.values import String, Term, atom, functor
 
 
-def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Iterator[None]:
+def answers_of(context: Any, trail: Trail, action: InternalAction, *arguments: Term) -> Iterator[None]:
     """The answers of a backtracking internal action, on the given trail; its bindings are undone in between.
 
     An error inside ends the answers and is reported: in a condition an action that cannot be done does not hold.
@@ -38,13 +39,14 @@ def answers_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> Ite
         undo(trail, mark)
 
 
-def values_of(context: Any, action: Any, *arguments: Term) -> Iterable[Term]:
+def values_of(context: Any, action: InternalAction, *arguments: Term) -> Iterable[Term]:
     """What the first argument of a backtracking internal action is in each of its answers, as `answers_of` gives them.
 
     *arguments* are the others; the first one has no value yet.
     """
+    assert action.values is not None
     try:
-        values: Iterable[Term] = action.values(*arguments)
+        values = action.values(*arguments)
     except InternalError:
         raise
     except Exception as fault:
@@ -54,7 +56,7 @@ def values_of(context: Any, action: Any, *arguments: Term) -> Iterable[Term]:
     return values if budget is None else budget.counting_answers(values)
 
 
-def first_answer_of(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
+def first_answer_of(context: Any, trail: Trail, action: InternalAction, *arguments: Term) -> bool:
     """The first answer of a backtracking internal action that is a step of its own: errors fail the step."""
     del trail
     for _ in action.function(context, *arguments):
@@ -62,7 +64,7 @@ def first_answer_of(context: Any, trail: Trail, action: Any, *arguments: Term) -
     return False
 
 
-def holds(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
+def holds(context: Any, trail: Trail, action: InternalAction, *arguments: Term) -> bool:
     """Whether an internal action succeeds as a condition, on the given trail; an error is reported and counts as no."""
     outer, context.trail = context.trail, trail
     beliefs = context.agent.beliefs
@@ -79,7 +81,7 @@ def holds(context: Any, trail: Trail, action: Any, *arguments: Term) -> bool:
         beliefs.searching = within
 
 
-def wrong_arity(action: Any, count: int) -> str:
+def wrong_arity(action: InternalAction, count: int) -> str:
     """What is wrong with calling an internal action with so many arguments."""
     most = action.maximum
     expected = (
@@ -95,13 +97,13 @@ def wrong_arity(action: Any, count: int) -> str:
     )
 
 
-def refuse(action: Any, count: int) -> bool:
+def refuse(action: InternalAction, count: int) -> bool:
     """A step calls an internal action with a number of arguments that it does not take."""
     error = (functor("error", 1), atom("wrong_arguments"))
     raise Failure(error, (functor("error_msg", 1), String(wrong_arity(action, count))))
 
 
-def refuse_quietly(context: Any, action: Any, count: int) -> bool:
+def refuse_quietly(context: Any, action: InternalAction, count: int) -> bool:
     """A condition calls an internal action with a number of arguments that it does not take: it does not hold."""
     context.report(action.name, wrong_arity(action, count))
     return False
@@ -113,7 +115,7 @@ def unknown(context: Any, name: str) -> bool:
     return False
 
 
-def cannot_wait(context: Any, action: Any) -> bool:
+def cannot_wait(context: Any, action: InternalAction) -> bool:
     """A condition calls an internal action that may suspend the intention: it does not hold."""
     context.report(action.name, "it takes time, or acts on the intention, and cannot be a condition")
     return False

@@ -7,6 +7,7 @@ from jacaros.bdi.rules.plan_changes import look_at_plans
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, Intention
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.detaching import detached
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term
@@ -54,7 +55,7 @@ def _copied_entry(entry: Any, copies: dict[int, Term]) -> Any:
     return tuple(detached(a, copies) for a in entry) if entry.__class__ is tuple else entry
 
 
-def _copied_goal(goal: tuple[Any, ...], copies: dict[int, Term]) -> tuple[Any, ...]:
+def _copied_goal(goal: Goal, copies: dict[int, Term]) -> Goal:
     return (goal[0], *(detached(rename(argument), copies) for argument in goal[1:]))
 
 

@@ -1,20 +1,19 @@
 """Goals that have to be achieved in time: ``!g[hard_deadline(Ms)]``."""
 
-from typing import Any
-
 from jacaros.bdi.explaining.failure_reason import nowhere
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term, bare, functor
 
 HARD_DEADLINE = functor("hard_deadline", 1)
 
 
-def watch(agent: Circumstance, goal: tuple[Any, ...], annotations: tuple[Term, ...], separate: bool) -> None:
+def watch(agent: Circumstance, goal: Goal, annotations: tuple[Term, ...], separate: bool) -> None:
     """Fail a goal that is still pursued when its deadline has come; goals without one are let be."""
     for annotation in annotations:
         inner = bare(annotation)

@@ -13,6 +13,8 @@ from jacaros.bdi.rules.sel_ev import go_on_later
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import STEP, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.triggers import Goal
 from jacaros.bdi.state.waiting import OWN_SUSPENSION
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
@@ -84,7 +86,7 @@ def _report(agent: Circumstance, fault: Exception) -> None:
         agent.architecture.log("debug", f"{type(fault).__name__}: {fault}")
 
 
-def announce(agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any) -> None:
+def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
     """Tell those who wait for a goal or event that it has been posted."""
     if agent.event_waits:
         agent.notify_event_waits((goal, intention, annotations, None))

@@ -1,8 +1,6 @@
 """Failure: what becomes of a formula that fails or a goal without plan.  The only place where exceptions of internal
 actions become failures of goals."""
 
-from typing import Any
-
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
 from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
@@ -11,8 +9,10 @@ from jacaros.bdi.rules.subplans import handles
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import StepInfo
 from jacaros.bdi.state.search_budget import SearchLimit
+from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.operators import ArithmeticFault
@@ -121,7 +121,7 @@ def _plain_failure(node: nodes.Node) -> tuple[str, str]:
 
 
 def no_plan(
-    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, caller: Frame | None
+    agent: Circumstance, goal: Goal, annotations: EventAnnotations, caller: Frame | None
 ) -> FailureReason:
     """The reason of a goal that has no relevant or no applicable plan."""
     if agent.selects[goal[0]] is None:
@@ -140,7 +140,7 @@ def no_plan(
     return FailureReason(terms() if at_once else terms, GoalPlace(goal, annotations, caller))
 
 
-def too_deep(goal: tuple[Any, ...], annotations: Any, caller: Frame, depth: int) -> FailureReason:
+def too_deep(goal: Goal, annotations: EventAnnotations, caller: Frame, depth: int) -> FailureReason:
     """The reason of a goal whose plan finds no room on the stack of its intention."""
     message = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
     return FailureReason(error_terms("too_deep", message), GoalPlace(goal, annotations, caller))
@@ -149,7 +149,7 @@ def too_deep(goal: tuple[Any, ...], annotations: Any, caller: Frame, depth: int)
 _MAY_BE_BOUND = frozenset({Var, tuple, List})
 
 
-def release_bindings(goal: tuple[Any, ...], serial: int) -> None:
+def release_bindings(goal: Goal, serial: int) -> None:
     """Give the variables of a failed goal back as they were when it was posted."""
     stack: list[Term] = []
     for argument in goal:

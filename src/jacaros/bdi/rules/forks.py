@@ -9,7 +9,7 @@ from typing import Any
 from jacaros.bdi.rules.outcomes import SUSPENDED
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, STEP, Frame, Intention
+from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, STEP, Frame, Intention, NextStep
 from jacaros.terms.substitution import HOLDERS, rename
 from jacaros.terms.values import Var
 
@@ -28,12 +28,14 @@ class Fork:
 
     __slots__ = ("depth", "joins_all", "next_step", "open")
 
-    def __init__(self, joins_all: bool, depth: int, next_step: Any, branches: int) -> None:
+    def __init__(self, joins_all: bool, depth: int, next_step: NextStep, branches: int) -> None:
         self.joins_all, self.depth, self.next_step = joins_all, depth, next_step
         self.open = set(range(branches))
 
 
-def fork(agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ...], next_step: Any) -> Any:
+def fork(
+    agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ...], next_step: NextStep
+) -> Any:
     """Begin the branches; the intention that forks is replaced by theirs."""
     parent = agent.current
     assert parent is not None

@@ -9,15 +9,17 @@ from jacaros.bdi.rules.forks import branch_failed
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.values import atom
 
 _HAS_FAILURE_PLAN = atom("has_failure_plan")
-_Unplanned = tuple[tuple[Any, ...], Any, int]
+_Unplanned = tuple[Goal, Any, int]
 """A goal without a frame, its annotations, and the number by which observers know it."""
 
 
 def unplanned(
-    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+    agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations
 ) -> Posted | None:
     """A goal has no plan: its own handler, or one further down, or the end of the intention."""
     trigger = goal[0]
@@ -53,8 +55,8 @@ def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
 def fail_goal(
     agent: Circumstance,
     intention: Intention,
-    goal: tuple[Any, ...],
-    annotations: Any,
+    goal: Goal,
+    annotations: EventAnnotations,
     reason: FailureReason,
     number: int = -1,
 ) -> Posted | None:
@@ -175,7 +177,7 @@ def _tell_people(agent: Circumstance, loss: lost_goals.Loss, count: int = 1) -> 
 
 
 def _lost_in_handler(
-    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+    agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations
 ) -> None:
     reason = annotations if isinstance(annotations, FailureReason) else None
     if intention.on_failed is not None:

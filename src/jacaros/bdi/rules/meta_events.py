@@ -2,14 +2,13 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
-from jacaros.bdi.state.literals import annotations_of_event, literal_of
-from jacaros.bdi.state.triggers import trigger
+from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
+from jacaros.bdi.state.triggers import Goal, trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, String, Term, atom, structure
@@ -22,7 +21,7 @@ GoalObserver = Callable[[str, str, int, int, str], None]
 
 
 def goal_state(
-    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, state: str, reason: Term = _NO_REASON
+    agent: Circumstance, goal: Goal, annotations: EventAnnotations, state: str, reason: Term = _NO_REASON
 ) -> None:
     """Tell plans that a goal has got into another state: the event comes one cycle later, before ordinary ones."""
     kind = goal[0]
@@ -53,7 +52,7 @@ def observe(agent: Circumstance, intention: Intention, frame: Frame, state: str,
 
 
 def observe_goal(
-    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], number: int, state: str, why: str = ""
+    agent: Circumstance, intention: Intention, goal: Goal, number: int, state: str, why: str = ""
 ) -> None:
     """Tell the observer only, of a goal that may have no frame."""
     kind = goal[0]
@@ -69,7 +68,7 @@ def _goal_number(frame: Frame) -> int | None:
     return failed_number(frame[ANNOTATIONS])
 
 
-def failed_number(annotations: Any) -> int | None:
+def failed_number(annotations: EventAnnotations) -> int | None:
     """Of a failure event, the number of the goal that failed without having got a frame."""
     return annotations.goal_number if isinstance(annotations, FailureReason) else None
 

@@ -6,7 +6,6 @@ one only.
 """
 
 from collections.abc import Iterator
-from typing import Any
 
 from jacaros.bdi.rules.plan_terms import bindings_of, plan_term
 from jacaros.bdi.rules.query import solve_formula
@@ -14,20 +13,21 @@ from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import SELECT_OPTION
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, Frame, Intention
-from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.literals import EventAnnotations, literal_of
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.plans import trigger
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import Term, Var
 
 
-def options(agent: Circumstance, goal: tuple[Any, ...], annotations: Any) -> Iterator[Frame]:
+def options(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
     """The frames of all applicable plans, in the order of the program; a frame holds until the next is asked for."""
     every = agent.library.every_option(goal[0])
     return iter(()) if every is None else every(agent, goal, annotations)
 
 
 def first_option(
-    agent: Circumstance, goal: tuple[Any, ...], annotations: Any, intention: Intention | None
+    agent: Circumstance, goal: Goal, annotations: EventAnnotations, intention: Intention | None
 ) -> Frame | None:
     """The first applicable plan that the rules for ``select__option`` let pass."""
     agent.refused_options = False

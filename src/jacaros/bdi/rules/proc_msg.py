@@ -14,7 +14,7 @@ from jacaros.bdi.state.belief_base import is_source, parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.bdi.state.triggers import Trigger, trigger
+from jacaros.bdi.state.triggers import Goal, Trigger, trigger
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN
@@ -171,9 +171,8 @@ def _achieve(agent: Circumstance, message: SpeechAct) -> None:
         content = message.content
         symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
         if symbol is not CONS and symbol is not NIL:
-            goal = (_achieved(symbol),) + row  # noqa: RUF005 - without a list in between
-            event = (goal, None, _only_from(message.sender), None)
-            agent.post(event)
+            goal: Goal = (_achieved(symbol),) + row  # type: ignore[assignment]  # noqa: RUF005 - without a list in between
+            agent.post((goal, None, _only_from(message.sender), None))
             return
     for content in _contents(message.content):
         symbol, arguments, annotations = literal_from(content, message.sender)

@@ -1,18 +1,17 @@
 """Plans inside plans: they are for what happens while their plan is pursued, and see its variables."""
 
-from typing import Any
-
 from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import concerns
-from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import Goal, Trigger
 
 
 def select_in_scope(
-    agent: Circumstance, intention: Intention, goal: tuple[Any, ...], annotations: Any
+    agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations
 ) -> Frame | None:
     """The frame of the first applicable sub-plan: of the plan on top, then of the plans around it, outward."""
     top = len(intention.frames)
@@ -39,7 +38,7 @@ def _outer(intention: Intention, frame: Frame) -> Frame | None:
     return intention.outer[1] if intention.outer is not None else None
 
 
-def _select(agent: Circumstance, frame: Frame, goal: tuple[Any, ...], annotations: Any) -> Frame | None:
+def _select(agent: Circumstance, frame: Frame, goal: Goal, annotations: EventAnnotations) -> Frame | None:
     select = _select_function(agent, frame[PLAN], goal[0])
     if select is None:
         return None
@@ -71,7 +70,7 @@ def handles(agent: Circumstance, intention: Intention, index: int, kind: Trigger
 
 
 def react(
-    agent: Circumstance, goal: tuple[Any, ...], annotations: Any
+    agent: Circumstance, goal: Goal, annotations: EventAnnotations
 ) -> list[tuple[Intention, Frame, Frame]]:
     """Sub-plans that react to an external event: for each intention the applicable one nearest to the top.
 

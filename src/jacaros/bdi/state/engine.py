@@ -7,13 +7,13 @@ from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.state.intention import Frame
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Rule
-from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
 
-Select = Callable[[Any, tuple[Any, ...], Any], Frame | None]
+Select = Callable[[Any, Goal, Any], Frame | None]
 """``select(agent, goal, annotations)``: the frame of the first applicable plan."""
-Every = Callable[[Any, tuple[Any, ...], Any], Iterator[Frame]]
+Every = Callable[[Any, Goal, Any], Iterator[Frame]]
 """The same for the frames of all applicable plans."""
 
 

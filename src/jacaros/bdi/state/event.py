@@ -1,13 +1,14 @@
 """Events: what happened to goals and beliefs and may need a plan."""
 
-from typing import Any, Final
+from typing import Final
 
 from jacaros.bdi.state.intention import Intention
-from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.literals import EventAnnotations, literal_of
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.values import Term
 from jacaros.trace import Cause
 
-Event = tuple[tuple[Any, ...], Intention | None, Any, Cause | None]
+Event = tuple[Goal, Intention | None, EventAnnotations, Cause | None]
 """``(goal, intention, annotations, cause)``: an entry of the event queue.
 
 goal: a tuple that begins with its `Trigger`, then the arguments.
@@ -29,10 +30,12 @@ class Posted:
 
     __slots__ = ("annotations", "goal")
 
-    def __init__(self, goal: tuple[Any, ...], annotations: Any) -> None:
+    def __init__(self, goal: Goal, annotations: EventAnnotations) -> None:
         self.goal, self.annotations = goal, annotations
 
 
+Raised = Goal | Posted | None
+"""The goal or event that a step raises for its own intention, if any."""
 Annotations = tuple[Term, ...]
 
 

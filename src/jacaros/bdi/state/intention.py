@@ -6,6 +6,8 @@ from typing import Any
 from jacaros.terms.values import Term
 from jacaros.trace import Cause
 
+NextStep = Callable[..., object] | None
+"""What is done next in a plan; None when its body is finished."""
 Frame = list[Any]
 """``[next step, goal, annotations, serial, plan, variable, ...]``, see `jacaros.bdi.fast.generated`.
 

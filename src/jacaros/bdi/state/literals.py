@@ -1,7 +1,8 @@
 """Literals that are put together at run time: of goals and events, with annotations, in namespaces."""
 
-from typing import Any
+from typing import Protocol
 
+from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.negation import positive_form
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve
@@ -19,7 +20,17 @@ from jacaros.terms.values import (
 )
 
 
-def literal_of(goal: tuple[Any, ...], annotations: Any) -> Term:
+class LateAnnotations(Protocol):
+    """The reason of a failure, whose annotations are composed when they are first asked for (`FailureReason`)."""
+
+    def annotations(self) -> tuple[Term, ...]:
+        """The annotations of the failure event."""
+
+
+EventAnnotations = tuple[Term, ...] | LateAnnotations
+
+
+def literal_of(goal: Goal, annotations: EventAnnotations) -> Term:
     """The literal of a goal or event, with its annotations."""
     symbol = goal[0].functor
     term = (symbol, *goal[1:]) if len(goal) > 1 else symbol
@@ -27,10 +38,9 @@ def literal_of(goal: tuple[Any, ...], annotations: Any) -> Term:
     return Annotated(term, found) if found else term
 
 
-def annotations_of_event(annotations: Any) -> tuple[Term, ...]:
+def annotations_of_event(annotations: EventAnnotations) -> tuple[Term, ...]:
     """The annotations of an event; those of failure events are made when first asked for."""
-    found: tuple[Term, ...] = annotations if annotations.__class__ is tuple else annotations.annotations()
-    return found
+    return annotations if isinstance(annotations, tuple) else annotations.annotations()
 
 
 def own_annotations(items: tuple[Term, ...], tail: Term = None) -> tuple[Term, ...]:

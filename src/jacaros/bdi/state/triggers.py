@@ -1,6 +1,6 @@
 """Event kinds: what a plan reacts to, as objects that goals and events carry."""
 
-from jacaros.terms.values import Functor, Held, enter
+from jacaros.terms.values import Functor, Held, Term, enter
 
 
 class Trigger:
@@ -24,6 +24,9 @@ class Trigger:
     def __repr__(self) -> str:
         return f"{self.operator}{self.kind}{self.functor!r}"
 
+
+Goal = tuple[Trigger, *tuple[Term, ...]]
+"""A goal or an event: its kind, then its arguments."""
 
 _triggers: dict[tuple[str, str, Functor], Held] = {}
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.bdi.state.intention import Frame, Intention
+from jacaros.bdi.state.intention import Frame, Intention, NextStep
 from jacaros.terms.values import Term, atom, functor
 
 ACTION = functor("action", 1)
@@ -43,14 +43,14 @@ class Waiting:
     def __init__(self, agent: Any, intention: Intention, reason: Term) -> None:
         self.agent, self.intention, self.reason = agent, intention, reason
         self.frame: Frame | None = None
-        self.next_step: Any = None
+        self.next_step: NextStep = None
         self.ended = False
         self.failure: tuple[str, tuple[Term, ...]] | None = None
         self.on_drop: Callable[[], None] | None = None
         self.on_suspend: Callable[[], None] | None = None
         self.on_resume: Callable[[], None] | None = None
 
-    def attach(self, frame: Frame, next_step: Any) -> None:
+    def attach(self, frame: Frame, next_step: NextStep) -> None:
         """The step is suspended in *frame*, and goes on with *next_step*."""
         self.frame, self.next_step = frame, next_step
         self.intention.waiting = self
