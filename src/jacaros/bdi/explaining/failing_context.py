@@ -24,7 +24,7 @@ from jacaros.bdi.state.belief_base import Table
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.search_budget import SearchBudget, SearchLimit
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.arithmetic import RUNNING, functions
@@ -332,7 +332,7 @@ class _Interpreted:
     def __init__(self, agent: _LookOnly, rule: Rule) -> None:
         self._agent, self._rule = agent, rule.node
 
-    def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Generator[Any, Any, None]:
+    def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """A generator of the answers, see `jacaros.bdi.rules.searching.run`."""
         self._agent.refuse_effects(self._rule.body)
         view: Any = self._agent

@@ -3,7 +3,7 @@
 Stands for `jacaros.bdi.rules.interpreter`, which carries out what is not compiled.
 """
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import islice
 from typing import Any, cast
@@ -28,7 +28,7 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Every, Select
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import ProgramPlans
-from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.triggers import trigger as trigger_of_kind
 from jacaros.terms.unifier import Trail
@@ -113,13 +113,11 @@ class Compiler(Interpreter):
         select = program.selects[kind]
         return (isinstance(select, PlanByPlan) and select.compile_next()) or is_new
 
-    def answers(
-        self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail
-    ) -> Generator[Any, Any, None]:
+    def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """The answers of a rule."""
         if rule.made is None:
             rule.made = self._rule_function(rule)
-        found: Generator[Any, Any, None] = rule.made(agent, arguments, trail)
+        found: Answers = rule.made(agent, arguments, trail)
         return found
 
     def _rule_function(self, rule: Rule) -> Any:

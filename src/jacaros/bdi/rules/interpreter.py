@@ -1,6 +1,6 @@
 """Plans and rules as the language defines them, without any code made for speed."""
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jacaros.bdi.actions.internal_action import InternalAction
@@ -11,7 +11,7 @@ from jacaros.bdi.rules.query import interpret_rule
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Every, Select
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
@@ -53,9 +53,7 @@ class Interpreter:
         """Give a plan that stands for a body made at run time its steps."""
         interpreted(plan)
 
-    def answers(
-        self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail
-    ) -> Generator[Any, Any, None]:
+    def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """The answers of a rule."""
         return interpret_rule(agent, rule.node, arguments, trail)
 

@@ -5,9 +5,6 @@ bound to a variable, sent in a message or passed to an internal action.  Both gi
 `jacaros.bdi.rules.searching.run`.
 """
 
-from collections.abc import Generator
-from typing import Any
-
 from jacaros.asl import nodes
 from jacaros.asl.lowering import Lookup, fresh_names, lower
 from jacaros.asl.walk import operands
@@ -23,7 +20,7 @@ from jacaros.bdi.rules.deconstruction import deconstruct, deconstruct_in
 from jacaros.bdi.rules.searching import exists, run, solve, solve_annotated, unify_rows
 from jacaros.bdi.state.belief_base import literal
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.rule import OpenFact
+from jacaros.bdi.state.rule import Answers, OpenFact
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.substitution import related, rename, resolve
 from jacaros.terms.unifier import Trail, undo, unify
@@ -44,10 +41,8 @@ from jacaros.terms.values import (
     atom,
 )
 
-Search = Generator[Any, Any, None]
 
-
-def answers(agent: Circumstance, node: nodes.Node, lookup: Lookup, trail: Trail) -> Search:
+def answers(agent: Circumstance, node: nodes.Node, lookup: Lookup, trail: Trail) -> Answers:
     """Answers of a condition of the program; its variables are given by *lookup*."""
     if isinstance(node, nodes.And):
         return _all(agent, operands(node), 0, lookup, trail)
@@ -64,7 +59,7 @@ def answers(agent: Circumstance, node: nodes.Node, lookup: Lookup, trail: Trail)
     return solve_formula(agent, lower(node, lookup), trail)
 
 
-def _deconstruction(node: nodes.Relation, lookup: Lookup, trail: Trail) -> Search:
+def _deconstruction(node: nodes.Relation, lookup: Lookup, trail: Trail) -> Answers:
     """``X =.. L``, where X may be written in a namespace."""
     left, right = node.left, lower(node.right, lookup)
     mark = len(trail)
@@ -78,7 +73,9 @@ def _deconstruction(node: nodes.Relation, lookup: Lookup, trail: Trail) -> Searc
     undo(trail, mark)
 
 
-def _all(agent: Circumstance, formulae: list[nodes.Node], first: int, lookup: Lookup, trail: Trail) -> Search:
+def _all(
+    agent: Circumstance, formulae: list[nodes.Node], first: int, lookup: Lookup, trail: Trail
+) -> Answers:
     if first == len(formulae):
         yield ()
         return
@@ -89,21 +86,21 @@ def _all(agent: Circumstance, formulae: list[nodes.Node], first: int, lookup: Lo
             yield ()
 
 
-def _any(agent: Circumstance, formulae: list[nodes.Node], lookup: Lookup, trail: Trail) -> Search:
+def _any(agent: Circumstance, formulae: list[nodes.Node], lookup: Lookup, trail: Trail) -> Answers:
     for formula in formulae:
         found = answers(agent, formula, lookup, trail)
         while (yield found) is not None:
             yield ()
 
 
-def _none(agent: Circumstance, formula: nodes.Node, lookup: Lookup, trail: Trail) -> Search:
+def _none(agent: Circumstance, formula: nodes.Node, lookup: Lookup, trail: Trail) -> Answers:
     if not exists(run(answers(agent, formula, lookup, trail), agent.rule_depth), trail):
         yield ()
 
 
 def _in_any_namespace(
     agent: Circumstance, node: nodes.Literal, namespace: nodes.Variable, lookup: Lookup, trail: Trail
-) -> Search:
+) -> Answers:
     pattern = lower(nodes.replace(node, namespace=None), lookup)
     items = tail = None
     if pattern.__class__ is Annotated:
@@ -116,7 +113,7 @@ def _in_any_namespace(
 
 def _collecting(
     agent: Circumstance, action: InternalAction, node: nodes.InternalAction, lookup: Lookup, trail: Trail
-) -> Search:
+) -> Answers:
     """Collect the answers of a formula of the program, as ``.findall`` does."""
     *template, formula, target = node.arguments
     search = answers(agent, formula, lookup, trail)
@@ -129,7 +126,7 @@ def _collecting(
 
 def interpret_rule(
     agent: Circumstance, rule: nodes.Rule, arguments: tuple[Term, ...], trail: Trail
-) -> Search:
+) -> Answers:
     """Answers of a rule for the given arguments; each is empty, or holds the annotations of the rule's head."""
     lookup = fresh_names()
     head = lower(rule.head, lookup)
@@ -140,7 +137,7 @@ def interpret_rule(
         yield () if rule.head.annotations is None else (tuple(map(resolve, annotations_of(head))),)
 
 
-def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Search:
+def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Answers:
     """Answers of any formula given as a term (see `jacaros.bdi.rules.searching.run` for the protocol)."""
     formula = settle(formula)
     kind = formula.__class__
@@ -164,16 +161,16 @@ def solve_formula(agent: Circumstance, formula: Term, trail: Trail) -> Search:
     return _nothing()
 
 
-def _nothing() -> Search:
+def _nothing() -> Answers:
     return
     yield
 
 
-def _once() -> Search:
+def _once() -> Answers:
     yield ()
 
 
-def _atom(agent: Circumstance, symbol: Functor, trail: Trail) -> Search:
+def _atom(agent: Circumstance, symbol: Functor, trail: Trail) -> Answers:
     if symbol is TRUE:
         return _once()
     if symbol is FALSE or symbol is NIL:
@@ -183,7 +180,7 @@ def _atom(agent: Circumstance, symbol: Functor, trail: Trail) -> Search:
     return solve(agent, agent.beliefs[symbol], (), trail)
 
 
-def _annotated(agent: Circumstance, formula: Annotated, trail: Trail) -> Search:
+def _annotated(agent: Circumstance, formula: Annotated, trail: Trail) -> Answers:
     term = settle(formula.term)
     if term.__class__ is Annotated:
         return _annotated(agent, resolve(formula), trail)
@@ -193,7 +190,7 @@ def _annotated(agent: Circumstance, formula: Annotated, trail: Trail) -> Search:
     return solve_annotated(agent, agent.beliefs[symbol], arguments, formula.annotations, formula.tail, trail)
 
 
-def _anything(agent: Circumstance, pattern: Term, trail: Trail) -> Search:
+def _anything(agent: Circumstance, pattern: Term, trail: Trail) -> Answers:
     """A variable as a query: every belief."""
     for symbol, table in list(agent.beliefs.items()):
         for entry, annotations in table.entries():
@@ -206,7 +203,7 @@ def _anything(agent: Circumstance, pattern: Term, trail: Trail) -> Search:
             undo(trail, mark)
 
 
-def _logic(agent: Circumstance, name: str, formula: Term, trail: Trail) -> Search:
+def _logic(agent: Circumstance, name: str, formula: Term, trail: Trail) -> Answers:
     if name == "&":
         left = solve_formula(agent, formula[1], trail)
         while (yield left) is not None:
@@ -222,7 +219,7 @@ def _logic(agent: Circumstance, name: str, formula: Term, trail: Trail) -> Searc
         yield ()
 
 
-def _relation(name: str, left: Term, right: Term, trail: Trail) -> Search:
+def _relation(name: str, left: Term, right: Term, trail: Trail) -> Answers:
     mark = len(trail)
     if _holds(name, left, right, trail):
         yield ()
@@ -243,7 +240,7 @@ def collecting(agent: Circumstance, node: nodes.InternalAction) -> InternalActio
     return action if action is not None and action.is_collecting(len(node.arguments)) else None
 
 
-def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], trail: Trail) -> Search:
+def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], trail: Trail) -> Answers:
     mark = len(trail)
     context = agent.context
     action = agent.actions.get(symbol.name)
@@ -279,7 +276,7 @@ def collect_formula(
 
 
 def _collect(
-    agent: Circumstance, action: InternalAction, template: Term, search: Search, target: Term, trail: Trail
+    agent: Circumstance, action: InternalAction, template: Term, search: Answers, target: Term, trail: Trail
 ) -> bool:
     mark = len(trail)
     found = []
@@ -298,7 +295,7 @@ def solve_in_namespaces(
     items: tuple[Term, ...] | None,
     tail: Term,
     trail: Trail,
-) -> Search:
+) -> Answers:
     """Answers of a literal whose namespace is a variable; an unbound one takes every namespace in turn."""
     for symbol in list(agent.beliefs):
         if symbol.name != name or symbol.arity != len(arguments) or symbol.negated != negated:

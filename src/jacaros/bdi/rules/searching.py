@@ -1,14 +1,13 @@
 """Searches that generated code makes among facts and rules."""
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from operator import length_hint
 from typing import Any, NoReturn
 
+from jacaros.bdi.state.rule import Answers
 from jacaros.terms.substitution import resolve
 from jacaros.terms.unifier import Trail, each_annotation_match, undo, unify
 from jacaros.terms.values import Term, Var
-
-Answers = Generator[Any, Any, None]
 
 
 def run(question: Answers, limit: int, allowed: int | None = None) -> Iterator[Any]:

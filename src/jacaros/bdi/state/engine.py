@@ -1,12 +1,12 @@
 """The port of plans and rules to what carries them out."""
 
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.state.intention import Frame
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
@@ -46,9 +46,7 @@ class Engine(Protocol):
     def give_steps(self, plan: Plan) -> None:
         """Give a plan that stands for a body made at run time its steps."""
 
-    def answers(
-        self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail
-    ) -> Generator[Any, Any, None]:
+    def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """The answers of a rule, see `jacaros.bdi.rules.searching.run`."""
 
     def searches(self, predicate: Any) -> tuple[Any, Any] | None:

@@ -10,6 +10,9 @@ from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, unify
 from jacaros.terms.values import BY_SELF, Annotated, Term, annotations_of, arguments_of
 
+Answers = Generator[Any, Any, None]
+"""Yields a tuple for each answer, or a generator that is to be run for it (`jacaros.bdi.rules.searching.run`)."""
+
 
 class Rule:
     """A rule in the base.
@@ -31,12 +34,12 @@ class Rule:
         self.of_program = of_program
         self.made: Any = None
 
-    def search(self, agent: Any, arguments: tuple[Term, ...], trail: Trail) -> Generator[Any, Any, None]:
+    def search(self, agent: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """A generator of the answers, see `jacaros.bdi.rules.searching.run`."""
         budget = agent.beliefs.budget
         if budget is not None:
             budget.spend()
-        found: Generator[Any, Any, None] = agent.engine.answers(agent, self, arguments, trail)
+        found: Answers = agent.engine.answers(agent, self, arguments, trail)
         return found
 
     def head_annotations(self) -> tuple[Term, ...]:
@@ -93,7 +96,7 @@ class OpenFact:
         if written is not None:
             self.node = nodes.Rule(nodes.replace(written, annotations=None), _ALWAYS, span=written.span)
 
-    def search(self, agent: Any, arguments: tuple[Term, ...], trail: Trail) -> Generator[Any, Any, None]:
+    def search(self, agent: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """One answer when the arguments unify with a copy."""
         del agent
         own = arguments_of(rename(self.literal))
