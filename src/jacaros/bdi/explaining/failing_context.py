@@ -8,7 +8,7 @@ logged, and it ends after `MOST_STEPS` steps.
 
 from collections.abc import Callable, Generator, Iterator
 from contextlib import suppress
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn, cast
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
@@ -220,7 +220,7 @@ class _LookOnly:
 
     def answers(self, formula: Term, trail: Trail) -> Iterator[Any]:
         """The answers of a formula."""
-        view: Any = self
+        view = cast("Circumstance", self)
         return run(solve_formula(view, formula, trail), self.rule_depth)
 
     def refuse_effects(self, formula: nodes.Node) -> None:
@@ -243,7 +243,7 @@ class _LookOnly:
     def call_own(self, term: Term) -> Term:
         """The value of a function that needs the agent, as `jacaros.bdi.rules.functions.call_own` has it."""
         own = OF_AGENT.get(term[0].name)
-        view: Any = self
+        view = cast("Circumstance", self)
         return self._agent.call_own(term) if own is None else own.evaluate(view, term)
 
     def warn_of_operand(self, what: str, value: Term) -> None:
@@ -274,7 +274,7 @@ class _Actions:
     def __init__(self, agent: Circumstance) -> None:
         self._actions = agent.actions
 
-    def get(self, name: str) -> Any:
+    def get(self, name: str) -> InternalAction | None:
         """The action of a name.
 
         Raises:
@@ -302,7 +302,7 @@ class _Beliefs:
             raise NotRepeatable  # a class of the project looks beliefs up elsewhere
         return _Table(self._agent, table, self.budget)
 
-    def items(self) -> Any:
+    def items(self) -> NoReturn:
         """All tables.
 
         Raises:
@@ -335,5 +335,5 @@ class _Interpreted:
     def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """A generator of the answers, see `jacaros.bdi.rules.searching.run`."""
         self._agent.refuse_effects(self._rule.body)
-        view: Any = self._agent
+        view = cast("Circumstance", self._agent)
         return interpret_rule(view, self._rule, arguments, trail)

@@ -1,7 +1,6 @@
 """Asking about and steering goals and intentions, wherever they are: running, in an event, waiting, suspended."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
 from jacaros.bdi.rules import goal_failure, meta_events
@@ -356,7 +355,7 @@ def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> N
         agent.architecture.ready()
 
 
-def describe(intention: Intention) -> Any:
+def describe(intention: Intention) -> tuple[str, Term]:
     """State of an intention, as ``.intention`` tells it: (name, reason)."""
     if intention.suspended is not None:
         return "suspended", None

@@ -1,7 +1,7 @@
 """What messages do (KQML as Jason defines it): tell, achieve, ask, and the rest."""
 
+from collections.abc import Iterator
 from functools import lru_cache
-from typing import Any
 
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
@@ -227,7 +227,7 @@ def _first_belief(agent: Circumstance, query: Term) -> Term | None:
     return None
 
 
-def _each_belief(agent: Circumstance, query: Term) -> Any:
+def _each_belief(agent: Circumstance, query: Term) -> Iterator[Term]:
     """Instances of a query that hold, with the annotations of the beliefs, the own source left out."""
     symbol, arguments, annotations = parts(query)
     if symbol is None:

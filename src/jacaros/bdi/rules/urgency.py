@@ -104,7 +104,7 @@ class Urgency:
             if isinstance(agent.intentions, UrgentQueue):
                 agent.intentions = deque(agent.intentions)
 
-    def _holds_urgent(self, queue: "deque[Any]") -> bool:
+    def _holds_urgent(self, queue: "deque[Event] | deque[Intention]") -> bool:
         return isinstance(queue, UrgentQueue) and bool(queue) and queue.first_urgency() > 0
 
     def of_plan(self, plan: Plan) -> int:

@@ -4,8 +4,6 @@ compare or hash, and those with sets or maps, of which every agent needs its own
 Such a percept is told from others by the very arguments that its property was written with, and is a belief by itself.
 """
 
-from typing import Any
-
 from jacaros.bdi.state.belief_base import Row, literal, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.rule import OpenFact
@@ -53,6 +51,6 @@ def forget(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotati
     return arguments
 
 
-def _key(symbol: Functor, row: Row) -> tuple[Any, ...]:
+def _key(symbol: Functor, row: Row) -> tuple[object, ...]:
     # No literal begins with None.
     return (None, symbol, *map(id, row))
