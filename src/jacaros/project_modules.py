@@ -11,6 +11,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import RLock
 from types import ModuleType
 
 from jacaros.errors import JacarosError
@@ -18,6 +19,9 @@ from jacaros.module_outlines import INCOMPLETE, UNSEEN, fill
 from jacaros.text_files import file_text
 
 _numbers = itertools.count(1)
+_import_path = RLock()
+"""Held while `sys.path` and `sys.modules` show the files of one project: they belong to the process, so that systems in
+other threads have to wait."""
 
 
 class ModuleUnreadable(JacarosError):
@@ -145,6 +149,10 @@ class ProjectModules:
     @contextmanager
     def _importing(self) -> Iterator[None]:
         """Let imports find the project's files first, and take those files out of the module table again."""
+        with _import_path:
+            yield from self._shown()
+
+    def _shown(self) -> Iterator[None]:
         before = set(sys.modules)
         shown = {name: module for name, module in self._modules.items() if name not in before}
         sys.modules.update(shown)
@@ -155,7 +163,7 @@ class ProjectModules:
         finally:
             for path in paths:
                 sys.path.remove(path)
-            for name in [name for name in sys.modules if name not in before]:
+            for name in [name for name in list(sys.modules) if name not in before]:
                 module = sys.modules[name]
                 if name.startswith(f"{self._prefix}."):
                     self._modules.setdefault(name.removeprefix(f"{self._prefix}."), module)

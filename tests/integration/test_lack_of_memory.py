@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
+from jacaros.bdi.actions import internal_action
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.mas.system import OUT_OF_MEMORY, System
 from jacaros.testing import run_project
 
@@ -29,7 +30,7 @@ def explode(ctx: object) -> None:
 def test_the_first_lack_of_memory_stops_the_robot_and_ends_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(STANDARD, ".explode", InternalAction(".explode", explode))
+    monkeypatch.setitem(internal_action._declared, ".explode", InternalAction(".explode", explode))
     program = tmp_path / "driver.asl"
     program.write_text(
         """

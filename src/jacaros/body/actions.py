@@ -5,10 +5,12 @@ and reasons of failure are the same here.  What else can be done with workspaces
 (`jacaros.env.default.workspace`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
+from types import MappingProxyType
+from typing import Final
 
 from jacaros.bdi.state.act import Completion
 from jacaros.body.call import Call, name_of
@@ -64,13 +66,14 @@ Action = Callable[[Situation, Call, Finish], UnderWay | None]
 
 Raises OperationFailed when it cannot be done."""
 
-ACTIONS: dict[tuple[str, int], Action] = {}
+_declared: dict[tuple[str, int], Action] = {}
+ACTIONS: Final[Mapping[tuple[str, int], Action]] = MappingProxyType(_declared)
 """The actions by name and number of arguments."""
 
 
 def _action(name: str, *arities: int) -> Callable[[Action], Action]:
     def register(action: Action) -> Action:
-        ACTIONS.update({(name, arity): action for arity in arities})
+        _declared.update({(name, arity): action for arity in arities})
         return action
 
     return register

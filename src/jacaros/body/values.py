@@ -19,7 +19,7 @@ formula, plan              its text
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
+from typing import Any, Final
 from weakref import WeakValueDictionary
 
 from jacaros.env.ids import ArtifactId
@@ -180,6 +180,15 @@ class References:
     def forget(self, value: object) -> None:
         """Let go of *value*: nobody will name it again, such as the id of a disposed artifact."""
         self._kept.pop(id(value), None)
+
+
+class _Unkept(References):
+    def of(self, value: object) -> Reference:
+        return reference_to(value)
+
+
+UNKEPT: Final = _Unkept()
+"""For values of Python code: nothing is kept alive, and what a run keeps prints as it does there."""
 
 
 def to_term(value: Any, references: References) -> Term:

@@ -4,15 +4,12 @@ from dataclasses import dataclass, replace
 
 from jacaros.asl.loader import parse_literal
 from jacaros.asl.lowering import fresh_names, lower
-from jacaros.body.values import Outputs, References, symbol_name, to_term, to_value
+from jacaros.body.values import UNKEPT, Outputs, symbol_name, to_term, to_value
 from jacaros.env.values import Atom, Structure
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, Functor, Term, annotations_of, arguments_of, functor, functor_of
-
-REFERENCES = References()
-"""The opaque references of Python code: to the same object always the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +96,7 @@ def term_of(value: object) -> Term:
     """The term for a value of Python code; a `Literal` keeps its annotations."""
     if isinstance(value, Literal):
         return _literal_term(value)
-    return to_term(value, REFERENCES)
+    return to_term(value, UNKEPT)
 
 
 def literal_term(value: object) -> Term:

@@ -13,11 +13,10 @@ from jacaros.bdi.actions.internal_action import ActionError, InternalAction, Reg
 from jacaros.bdi.rules.context import Context
 from jacaros.body.body import AgentBody
 from jacaros.body.call import name_of
-from jacaros.body.values import to_term, to_value
+from jacaros.body.values import UNKEPT, to_term, to_value
 from jacaros.env.values import Out, plain
 from jacaros.errors import InternalError
 from jacaros.extension.faults import FAULTS
-from jacaros.extension.literal import REFERENCES
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.text import text
 from jacaros.terms.values import Reference, Term, bare, is_list, make_list
@@ -72,7 +71,7 @@ class _Classes:
         value = member if not given and not callable(member) else _call(f"{name} of {shown}", member, given)
         if not result or value is None:
             return True
-        return ctx.unify(result[0], to_term(value, REFERENCES))
+        return ctx.unify(result[0], to_term(value, UNKEPT))
 
     def _owner(self, target: Term) -> tuple[Any, str]:
         target = bare(target)
@@ -191,7 +190,7 @@ def _array_to_list(ctx: Context, reference: Term, result: Term) -> bool:
         items = list(value)
     except FAULTS as error:
         raise ActionError(f"the items of {text(reference)}: {_said(error)}") from error
-    return ctx.unify(result, make_list([to_term(item, REFERENCES) for item in items]))
+    return ctx.unify(result, make_list([to_term(item, UNKEPT) for item in items]))
 
 
 def _current_workspaces(ctx: Context, result: Term) -> bool:

@@ -1,17 +1,21 @@
 """Arithmetic on terms: doubles throughout, evaluated when operands are known, kept as a term until then."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextvars import ContextVar
+from types import MappingProxyType
 from typing import Protocol
 
 from jacaros.terms.operators import COMPUTE, named
 from jacaros.terms.values import ARITHMETIC, FUNCTION, Annotated, Term, Var, deref
 
 Evaluator = Callable[..., Term]
-functions: dict[str, Evaluator] = {}
-"""Arithmetic functions by name; they are given the evaluated arguments and return a number, or None when the
-arguments are not known yet.  Functions that need an agent are known to the one that is `RUNNING`."""
+functions: Mapping[str, Evaluator] = MappingProxyType({})
+"""The functions of the language by name, put here by `jacaros.terms.functions`.
+
+They are called with the evaluated arguments and return a number, or None while the arguments are not known.  The agent
+that is `RUNNING` knows those that need an agent.
+"""
 
 
 class Caller(Protocol):

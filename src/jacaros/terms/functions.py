@@ -5,10 +5,11 @@ The parser tells them from internal actions by name and number of arguments.
 
 import math
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Final
 
 from jacaros.terms import arithmetic
-from jacaros.terms.arithmetic import functions, settle
+from jacaros.terms.arithmetic import Evaluator, settle
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
@@ -142,9 +143,16 @@ _OF_NUMBERS: dict[str, Callable[[list[float]], float]] = {
     "math.std_dev": _standard_deviation,
     "math.sum": _sum,
 }
-functions.update({name: _on_number(compute) for name, compute in _OF_A_NUMBER.items()})
-functions.update({name: _on_list(compute) for name, compute in _OF_NUMBERS.items()})
-functions.update({"math.e": lambda: math.e, "math.pi": lambda: math.pi, ".length": _length})
+FUNCTIONS: Final[Mapping[str, Evaluator]] = MappingProxyType(
+    {
+        **{name: _on_number(compute) for name, compute in _OF_A_NUMBER.items()},
+        **{name: _on_list(compute) for name, compute in _OF_NUMBERS.items()},
+        "math.e": lambda: math.e,
+        "math.pi": lambda: math.pi,
+        ".length": _length,
+    }
+)
+arithmetic.functions = FUNCTIONS
 
 ARITIES: Final[dict[str, tuple[int, float]]] = {
     **dict.fromkeys(_OF_A_NUMBER, (1, 1)),

@@ -20,6 +20,7 @@ Formulae, plans and triggers are terms too (a program may pass them around): str
 another `Functor.kind` than `PLAIN`.
 """
 
+import itertools
 from _weakref import _remove_dead_weakref  # type: ignore[attr-defined]
 from collections.abc import Callable, Iterable, Iterator
 from operator import is_
@@ -185,6 +186,9 @@ class Annotated:
         return f"Annotated({self.term!r}, {self.annotations!r})"
 
 
+_reference_numbers = itertools.count(1)
+
+
 class Reference:
     """An opaque object; printed as ``cobj_N``.
 
@@ -194,11 +198,9 @@ class Reference:
     """
 
     __slots__ = ("__weakref__", "number", "value")
-    _count = 0
 
     def __init__(self, value: object) -> None:
-        Reference._count += 1
-        self.value, self.number = value, Reference._count
+        self.value, self.number = value, next(_reference_numbers)
 
     def __eq__(self, other: object) -> bool:
         if other.__class__ is not Reference:

@@ -5,7 +5,8 @@ from itertools import pairwise
 import pytest
 from recording_host import RecordingHost, mind
 
-from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
+from jacaros.bdi.actions import internal_action
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast import loop
 from jacaros.bdi.rules import sel_ev
 from jacaros.bdi.rules.outcomes import Failure
@@ -164,7 +165,7 @@ def test_a_lack_of_memory_is_reported_to_the_host(monkeypatch: pytest.MonkeyPatc
     def explode(ctx: object) -> None:
         raise MemoryError
 
-    monkeypatch.setitem(STANDARD, ".explode", InternalAction(".explode", explode))
+    monkeypatch.setitem(internal_action._declared, ".explode", InternalAction(".explode", explode))
     host = mind("!g. +!g <- .explode. -!g[error(E)] <- .print(E).")
     host.run()
     assert host.printed == ["no_memory"]

@@ -5,6 +5,7 @@ from recording_host import mind
 
 from jacaros.asl.checks.beliefs import beliefs_of
 from jacaros.asl.loader import load_program
+from jacaros.bdi.actions import internal_action
 from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
 from jacaros.terms.values import Term
 
@@ -16,7 +17,7 @@ def total(found: list[Term]) -> Term:
 @pytest.fixture(autouse=True)
 def _total(monkeypatch: pytest.MonkeyPatch) -> None:
     action = InternalAction(".total", total, arity=3, condition=1, collects=True, repeatable=True)
-    monkeypatch.setitem(STANDARD, ".total", action)
+    monkeypatch.setitem(internal_action._declared, ".total", action)
 
 
 def printed(program: str) -> list[str]:

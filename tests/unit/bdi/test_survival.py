@@ -5,7 +5,8 @@ import gc
 import pytest
 from recording_host import believed, mind, printed
 
-from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
+from jacaros.bdi.actions import internal_action
+from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import String, Term, Var, atom, structure
@@ -74,7 +75,7 @@ def test_an_exception_of_an_internal_action_fails_its_step_only(
     def explode(ctx: object) -> None:
         raise fault
 
-    monkeypatch.setitem(STANDARD, ".explode", InternalAction(".explode", explode))
+    monkeypatch.setitem(internal_action._declared, ".explode", InternalAction(".explode", explode))
     program = """
     !a. !b.
     +!a <- .explode; .print(never).

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 import pytest
 
 import jacaros.terms.functions  # noqa: F401 - the functions of the language
-from jacaros.terms.arithmetic import RUNNING, calculated, functions, settle
+from jacaros.terms.arithmetic import RUNNING, calculated, settle
 from jacaros.terms.collections import MapValue, SetValue
 from jacaros.terms.operators import BINARY, ArithmeticFault
 from jacaros.terms.substitution import resolve
@@ -185,13 +185,20 @@ def test_an_unknown_function_stays_a_term() -> None:
     assert text(call("math.unknown", 1.0)) == "math.unknown(1)"
 
 
-def test_a_function_added_by_a_program_is_called() -> None:
-    functions["my.double"] = lambda value: value * 2
+def test_a_function_of_the_running_agent_is_called() -> None:
+    class Doubling:
+        def call_own(self, term: Term) -> Term:
+            return settle(term[1]) * 2
+
+        def warn_of_operand(self, what: str, value: Term) -> None:
+            raise AssertionError(what)
+
+    before = RUNNING.set(Doubling())
     try:
         assert call("my.double", 4.0) == 8.0
         assert calculated("+", (functor("my.double", 1, kind=FUNCTION), 4.0), 1.0) == 9.0
     finally:
-        del functions["my.double"]
+        RUNNING.reset(before)
 
 
 def test_arithmetic_inside_terms_is_evaluated_when_they_are_resolved() -> None:

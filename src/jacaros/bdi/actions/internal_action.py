@@ -13,9 +13,10 @@ made before a yield are taken back before the next one is looked for.  A functio
 (``suspends``) calls `Context.suspend` and returns what that gave.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from types import MappingProxyType
+from typing import Any, Final, TypeVar
 
 from jacaros.asl.declaration import Declaration
 from jacaros.terms.values import Term
@@ -83,7 +84,7 @@ class InternalAction(Declaration):
 
     def __call__(self, function: Declared) -> Declared:
         """Register *function* under the name."""
-        STANDARD[self.name] = replace(self, function=function)
+        _declared[self.name] = replace(self, function=function)
         return function
 
     def is_collecting(self, count: int) -> bool:
@@ -94,5 +95,6 @@ class InternalAction(Declaration):
 internal_action = InternalAction
 
 Registry = dict[str, InternalAction]
-STANDARD: Registry = {}
+_declared: Registry = {}
+STANDARD: Final[Mapping[str, InternalAction]] = MappingProxyType(_declared)
 """The internal actions of the language; an agent may have more."""

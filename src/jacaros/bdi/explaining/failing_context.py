@@ -27,9 +27,10 @@ from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.search_budget import SearchBudget, SearchLimit
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.arithmetic import RUNNING, functions
+from jacaros.terms.arithmetic import RUNNING
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.excerpt import excerpt
+from jacaros.terms.functions import FUNCTIONS
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
@@ -234,7 +235,7 @@ class _LookOnly:
         for node in walk(formula):
             if isinstance(node, nodes.FunctionCall):
                 own = OF_AGENT.get(node.name)
-                if node.name not in functions and not (own is not None and own.repeatable):
+                if node.name not in FUNCTIONS and not (own is not None and own.repeatable):
                     raise NotRepeatable
             elif isinstance(node, nodes.Literal) and isinstance(node.namespace, nodes.Variable):
                 raise NotRepeatable

@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.asl.loader import parse_term
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.body.values import References, to_term
+from jacaros.body.values import UNKEPT, to_term
 from jacaros.errors import UsageError
 from jacaros.extension.views import Message
 from jacaros.mas.embedding.errors import UnknownAgent
@@ -20,8 +20,6 @@ from jacaros.terms.values import Term, bare, is_list, list_items
 
 Send = Callable[[SpeechAct], bool]
 """Delivers a message; False when there is no such receiver."""
-
-_REFERENCES = References()
 
 
 class Mailbox(Stream[Message]):
@@ -154,7 +152,7 @@ def term_of(content: object) -> Term:
     """
     if type(content) is str:
         return lower_value(parse_term(content))
-    return to_term(content, _REFERENCES)
+    return to_term(content, UNKEPT)
 
 
 def _bindings(asked: Term, names: Any, told: Term) -> dict[str, Any] | None:

@@ -3,7 +3,9 @@
 Nothing here knows of agents beyond what is passed in: tables of beliefs, the trail, the context of internal actions.
 """
 
-from typing import Any
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Final
 
 from jacaros.bdi.rules.calls import (
     answers_of,
@@ -108,20 +110,22 @@ _FUNCTIONS = (
 )
 _CLASSES = (Annotated, InternalError, NextPlan, Remaining, Functor, List, String, Trail, Var)
 
-NAMES: dict[str, Any] = {
-    **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},
-    **{
-        each.numbers.__name__: each.numbers
-        for each in OPERATORS
-        if each.numbers is not None and not each.code
-    },
-    "ATOMIC": ATOMIC,
-    "BY_SELF": BY_SELF,
-    "CLOSED": CLOSED,
-    "CONS": CONS,
-    "FAILED": FAILED,
-    "NESTED": NESTED,
-    "copy": rename,
-    "new": object.__new__,
-}
+NAMES: Final[Mapping[str, Any]] = MappingProxyType(
+    {
+        **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},
+        **{
+            each.numbers.__name__: each.numbers
+            for each in OPERATORS
+            if each.numbers is not None and not each.code
+        },
+        "ATOMIC": ATOMIC,
+        "BY_SELF": BY_SELF,
+        "CLOSED": CLOSED,
+        "CONS": CONS,
+        "FAILED": FAILED,
+        "NESTED": NESTED,
+        "copy": rename,
+        "new": object.__new__,
+    }
+)
 """The global names of generated code."""
