@@ -23,12 +23,11 @@ from jacaros.bdi.rules import (
     plan_changes,
     query,
     uptake,
+    waits,
 )
-from jacaros.bdi.rules.answers import AnswerByPlan
-from jacaros.bdi.rules.clr_int import pop_finished
+from jacaros.bdi.rules.answers import answer_by_plan
 from jacaros.bdi.rules.context import Context
-from jacaros.bdi.rules.failure import error_terms, output_misfit, step_failure
-from jacaros.bdi.rules.goal_failure import fail_intention
+from jacaros.bdi.rules.failure import output_misfit
 from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.belief_base import parts
@@ -41,7 +40,7 @@ from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.bdi.state.triggers import Goal, trigger
-from jacaros.bdi.state.waiting import ACTION, OWN_SUSPENSION, Waiting, is_action
+from jacaros.bdi.state.waiting import ACTION, ActWait, Waiting
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.plans import is_body
@@ -248,13 +247,15 @@ class Mind(Circumstance):
         if waiting is None:
             return
         if not completion.success:
-            waiting.fail("the action failed", (ERROR, atom("action_failed")), *completion.annotations)
+            waits.fail(
+                self, waiting, "the action failed", (ERROR, atom("action_failed")), *completion.annotations
+            )
             return
         misfit = self._take_outputs(completion)
         if misfit is None:
-            waiting.resume()
+            waits.succeed(self, waiting)
         else:
-            waiting.fail("", *misfit)
+            waits.fail(self, waiting, "", *misfit)
 
     def _take_outputs(self, completion: Completion) -> tuple[Term, ...] | None:
         """Bind the output variables of an act; why it failed when one has another value already."""
@@ -276,68 +277,8 @@ class Mind(Circumstance):
         cloning.copy_mind(original, self)
         self.architecture.ready()
 
-    # --- ends of waits -------------------------------------------------------------------------------------
-
-    def waiting_ended(self, waiting: Waiting) -> None:
-        """A suspended step succeeded or failed: its intention goes on in the next cycle."""
-        if waiting.frame is None:
-            return
-        self.do_soon(lambda: self._go_on(waiting))
-        self.architecture.ready()
-
-    def _go_on(self, waiting: Waiting) -> None:
-        intention = waiting.intention
-        if intention.dropped or intention.waiting is not waiting:
-            return
-        if intention.suspended is not None:
-            intention.waiting = None
-            intention.parked = False
-            self._hold_until_resumed(waiting)
-            return
-        intention.waiting = None
-        self._end_wait(waiting)
-
-    def _hold_until_resumed(self, ended: Waiting) -> None:
-        """The wait ended while the intention is suspended: success and failure alike come after ``.resume``."""
-        intention = ended.intention
-        held = Waiting(self, intention, ended.reason)
-        intention.waiting = held
-
-        def resumed() -> None:
-            if intention.waiting is held:
-                intention.waiting = None
-                self._end_wait(ended)
-
-        def on_resume() -> None:
-            # The end of an external action is looked at in the next cycle, as any other; that of a wait has been.
-            if is_action(ended.reason):
-                self.do_soon(resumed)
-                self.architecture.ready()
-            else:
-                resumed()
-
-        held.on_resume = on_resume
-
-    def _end_wait(self, waiting: Waiting) -> None:
-        intention, frame = waiting.intention, waiting.frame
-        assert frame is not None
-        if waiting.failure is None:
-            frame[0] = waiting.next_step
-            if self.meta and waiting.reason is not OWN_SUSPENSION:
-                meta_events.top_goal_state(self, intention, "executing")
-            if pop_finished(self, intention):
-                self.make_ready(intention)
-            return
-        message, annotations = waiting.failure
-        given = {t[0] for t in annotations if t.__class__ is tuple}
-        defaults = (
-            error_terms("internal_action", message) if message else error_terms("internal_action", "")[:1]
-        )
-        annotations = (*(term for term in defaults if term[0] not in given), *annotations)
-        reason = step_failure(frame, Failure(*annotations))
-        posted = fail_intention(self, intention, reason)
-        if posted is not None:
-            self.post((posted.goal, intention, posted.annotations, None))
+    drop_wait = waits.drop
+    notify_event_waits = waits.notify_event_waits
 
     # --- called by generated code --------------------------------------------------------------------------
 
@@ -445,19 +386,12 @@ class Mind(Circumstance):
             # It would be made ready in the next cycle before all others: it may as well be ready now.
             intention.frames[-1][0] = next_step
             return None
-        waiting = Waiting(self, intention, (ACTION, (symbol, *arguments) if arguments else symbol))
+        waiting = ActWait(intention, (ACTION, (symbol, *arguments) if arguments else symbol), number)
         waiting.attach(intention.frames[-1], next_step)
-        waiting.on_drop = lambda: self._cancel_act(number)
-        waiting.on_suspend = lambda: self.architecture.suspend_act(number)
-        waiting.on_resume = lambda: self.architecture.resume_act(number)
         self.pending_acts[number] = waiting
         if completion is not None:
             self.complete(number, completion)
         return SUSPENDED
-
-    def _cancel_act(self, number: int) -> None:
-        if self.pending_acts.pop(number, None) is not None:
-            self.architecture.cancel_act(number)
 
     def finish_call(self, result: Any, frame: Frame, next_step: NextStep) -> Any:
         """What an internal action that may suspend gave: go on, fail, or wait."""
@@ -468,7 +402,7 @@ class Mind(Circumstance):
         if isinstance(result, Waiting) and not (result.ended and result.failure is None):
             result.attach(frame, next_step)
             if result.ended:
-                self.waiting_ended(result)
+                waits.announce_end(self, result)
             return SUSPENDED
         if frame in self.current.frames if self.current is not None else False:
             frame[0] = next_step
@@ -496,7 +430,7 @@ class Mind(Circumstance):
         self, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...]
     ) -> None:
         """Answer a question by a plan for its test goal; whatever fails is answered with false."""
-        AnswerByPlan(self, message, symbol, arguments, annotations).begin()
+        answer_by_plan(self, message, symbol, arguments, annotations)
 
 
 def _no_goal(term: Term) -> str:

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from jacaros.bdi.actions.internal_action import ActionError, Crashed, InternalAction, WrongArguments
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.failure import error_terms
-from jacaros.bdi.state.waiting import Waiting
+from jacaros.bdi.rules.waits import fail, succeed
+from jacaros.bdi.state.waiting import CoroutineWait, Waiting
 from jacaros.body.values import Outputs, to_value
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel import signature as operations
@@ -102,7 +103,7 @@ class _Callee:
     def begin(self, ctx: Context, *terms: Term) -> Waiting:
         """A coroutine: the intention waits for its end."""
         call = _Call(self, ctx, terms)
-        waiting = ctx.suspend(self.name)
+        agent, waiting = ctx.agent, CoroutineWait(ctx.suspendable(), self.name)
 
         def ended(value: object, error: BaseException | None) -> None:
             try:
@@ -111,23 +112,22 @@ class _Callee:
                 fits = call.accept(value)
             except Crashed as crashed:
                 ctx.architecture.log("error", str(crashed))
-                waiting.fail(str(crashed), *error_terms("internal_action", str(crashed)))
+                fail(agent, waiting, str(crashed), *error_terms("internal_action", str(crashed)))
             except WrongArguments as wrong:
-                waiting.fail(str(wrong), *error_terms("wrong_arguments", str(wrong)))
+                fail(agent, waiting, str(wrong), *error_terms("wrong_arguments", str(wrong)))
             except ActionError as refused:
-                waiting.fail(str(refused), *refused.annotations, *_message(refused))
+                fail(agent, waiting, str(refused), *refused.annotations, *_message(refused))
             else:
                 del ctx.trail[:]
                 if fits:
-                    waiting.resume()
+                    succeed(agent, waiting)
                 else:
                     failed = f"internal action {self.name} failed"
-                    waiting.fail(failed, *error_terms("ia_failed", failed))
+                    fail(agent, waiting, failed, *error_terms("ia_failed", failed))
 
         work = self.function(*call.arguments)
         assert inspect.iscoroutine(work)
-        task = ctx.architecture.start_coroutine(work, ended)
-        waiting.on_drop = task.cancel
+        waiting.task = ctx.architecture.start_coroutine(work, ended)
         return waiting
 
     # arguments

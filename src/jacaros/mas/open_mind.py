@@ -60,7 +60,7 @@ class OpenMind:
     def _do(self, change: Callable[[], None]) -> None:
         mind = self.mind
         if mind.running:
-            mind.do_soon(change)
+            mind.do_soon(lambda _: change())
         else:
             change()
         mind.architecture.ready()

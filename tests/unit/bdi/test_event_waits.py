@@ -3,6 +3,7 @@
 from recording_host import mind
 
 from jacaros.bdi.state.event_waits import EventWait, EventWaits
+from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.values import functor
 
@@ -11,7 +12,7 @@ OTHER = trigger("+", "", functor("b", 1))
 
 
 def wait(waits: EventWaits, kind: object) -> EventWait:
-    made = EventWait(kind, None, None)  # type: ignore[arg-type]
+    made = EventWait(Intention(1), None, None, 0.0, kind, None)  # type: ignore[arg-type]
     waits.add(made)
     return made
 

@@ -150,9 +150,9 @@ class Storm:
         agent = self.agent
         waits = [
             *agent.pending_acts.values(),
-            *(each.waiting.waiting for each in agent.condition_waits.values()),
+            *agent.condition_waits.values(),
         ]
-        waits += [each.waiting.waiting for held in agent.event_waits.values() for each in held.values()]
+        waits += [each for held in agent.event_waits.values() for each in held.values()]
         assert not any(waiting.intention.dropped for waiting in waits)
         ready = [intention for intention in agent.intentions if not intention.dropped]
         assert len(ready) == len(set(ready))

@@ -18,7 +18,7 @@ from jacaros.bdi.state.event import EVENT_GOAL, Event
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import OWN_SUSPENSION, Waiting
+from jacaros.bdi.state.waiting import OWN_SUSPENSION, OwnSuspension
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.substitution import rename, resolve
@@ -258,9 +258,7 @@ def suspend(ctx: Context, goal: Term = None) -> object:
     if current is None or current.suspended is None:
         return None
     # The step lasts until the intention is resumed: a last step does not end its goal before.
-    held = Waiting(ctx.agent, current, OWN_SUSPENSION)
-    held.on_resume = held.resume
-    return held
+    return OwnSuspension(current)
 
 
 @internal_action(".resume", arity=1, suspends=True)

@@ -7,17 +7,16 @@ from jacaros.bdi.actions.internal_action import (
     WrongArguments,
     internal_action,
 )
-from jacaros.bdi.architecture import Timer
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.context import Context
-from jacaros.bdi.rules.proc_msg import from_sender
+from jacaros.bdi.rules.proc_msg import nobody_there, time_out_question
+from jacaros.bdi.rules.waits import set_alarm
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.bdi.state.waiting import Waiting
+from jacaros.bdi.state.waiting import AnswerWait, Waiting
 from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
     NIL,
-    PLAIN,
     Functor,
     String,
     Term,
@@ -25,10 +24,8 @@ from jacaros.terms.values import (
     atom,
     bare,
     functor,
-    functor_of,
     is_list,
     list_items,
-    make_list,
 )
 
 ERROR = functor("error", 1)
@@ -69,11 +66,7 @@ def _say(
 
 
 def _nobody(receiver: str) -> ActionError:
-    return ActionError(*_nobody_there(receiver))
-
-
-def _nobody_there(receiver: str) -> tuple[str, Term]:
-    return f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
+    return ActionError(*nobody_there(receiver))
 
 
 def _direct(written: Written) -> Function | None:
@@ -134,65 +127,6 @@ def _receivers(receiver: Term) -> list[str]:
     return [_name(receiver, "the receiver")]
 
 
-def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
-    sender = own_name if message.sender == "self" else message.sender
-    symbol = functor_of(content)
-    return from_sender(content, sender) if symbol is not None and symbol.kind == PLAIN else content
-
-
-class _Question:
-    """A synchronous question to one or several agents."""
-
-    def __init__(
-        self, ctx: Context, waiting: Waiting, target: Term, receivers: list[str], many: bool
-    ) -> None:
-        self.ctx, self.waiting, self.target, self.many = ctx, waiting, target, many
-        self.missing = list(receivers)
-        self.answers: list[Term] = []
-        self.ids: list[str] = []
-        self.timer: Timer | None = None
-
-    def answered(self, message: SpeechAct) -> None:
-        """An answer has come."""
-        self.ctx.agent.pending_asks.pop(message.in_reply_to, None)
-        if message.performative == "undelivered":
-            self.forget()
-            self.waiting.fail(*_nobody_there(message.sender))
-            return
-        content = atom("false") if message.performative == "untell" else self._with_source(message)
-        self.answers.append(content)
-        if len(self.answers) == len(self.missing):
-            self._end(make_list(self.answers) if self.many else content)
-
-    def _with_source(self, message: SpeechAct) -> Term:
-        """The answer, every literal of it with the answering agent as source."""
-        if is_list(message.content):
-            return make_list(
-                [_told_by(item, self.ctx.agent.name, message) for item in list_items(message.content)]
-            )
-        return _told_by(message.content, self.ctx.agent.name, message)
-
-    def timed_out(self) -> None:
-        """No answer in time."""
-        self._end(atom("timeout"))
-
-    def _end(self, value: Term) -> None:
-        self.forget()
-        if self.ctx.unify(self.target, value):
-            del self.ctx.trail[:]
-            self.waiting.resume()
-        else:
-            self.waiting.fail("the answer does not fit", (ERROR, atom("ask_failed")))
-
-    def forget(self) -> None:
-        """Nobody waits for the answers any more."""
-        for message_id in self.ids:
-            if self.ctx.agent.pending_asks.pop(message_id, None) is not None:
-                self.ctx.agent.abandoned_asks.add(message_id)
-        if self.timer is not None:
-            self.timer.cancel()
-
-
 @internal_action(".send", arity=(3, 5), suspends=True, direct=_direct, body_only=True, performative=1)
 def send(ctx: Context, receiver: Term, performative: Term, content: Term, *rest: Term) -> Waiting | None:
     """``.send(To, Performative, Content [, Answer [, Timeout]])``: a message; with an answer, a synchronous question.
@@ -220,18 +154,16 @@ def _ask(
         if not ctx.unify(rest[0], NIL):
             raise ActionError("the answer does not fit", (ERROR, atom("ask_failed")))
         return None
-    waiting = ctx.suspend("ask")
-    question = _Question(ctx, waiting, rest[0], receivers, many)
-    waiting.on_drop = question.forget
+    waiting = AnswerWait(ctx.suspendable(), rest[0], many, len(receivers))
     for name in receivers:
         message_id = ctx.agent.next_message_id()
-        question.ids.append(message_id)
-        ctx.agent.pending_asks[message_id] = question.answered
+        waiting.ids.append(message_id)
+        ctx.agent.pending_asks[message_id] = waiting
         _say(ctx.agent, name, act, content, None, message_id)
     if len(rest) > 1:
         if rest[1].__class__ is not float:
             raise WrongArguments(f"the time-out must be a number of milliseconds, not {text(rest[1])}")
-        question.timer = ctx.architecture.set_timer(rest[1] / 1000.0, question.timed_out)
+        waiting.alarm = set_alarm(ctx.agent, rest[1] / 1000.0, time_out_question, waiting)
     return waiting
 
 

@@ -1,12 +1,14 @@
 """Questions of other agents that a plan for a test goal answers."""
 
+from typing import Any
+
 from jacaros.asl import nodes
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.explaining.lost_goals import lost_question
 from jacaros.bdi.rules.proc_msg import answer
 from jacaros.bdi.state.belief_base import without_sources
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.intention import Frame
+from jacaros.bdi.state.intention import FIRST_SLOT, STEP, Frame
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import trigger
@@ -16,49 +18,47 @@ from jacaros.terms.values import BY_SELF, Annotated, Functor, Term, atom, functo
 _ANSWER = trigger("+", "", functor("answer", 0, namespace="jacaros"))
 
 
-class AnswerByPlan:
-    """A question from another agent that a plan ``+?q`` of this one answers.
+def answer_by_plan(
+    agent: Circumstance,
+    message: SpeechAct,
+    symbol: Functor,
+    arguments: tuple[Term, ...],
+    annotations: tuple[Term, ...],
+) -> None:
+    """Answer a question from another agent by a plan ``+?q``: begin an intention whose bottom frame sends the answer.
 
     Args:
         agent: who answers.
         message: the question.
         symbol, arguments, annotations: the test goal; the asker is a source of it.
     """
-
-    def __init__(
-        self,
-        agent: Circumstance,
-        message: SpeechAct,
-        symbol: Functor,
-        arguments: tuple[Term, ...],
-        annotations: tuple[Term, ...],
-    ) -> None:
-        self.agent, self.message, self.annotations = agent, message, annotations
-        self.goal = (trigger("+", "?", symbol), *arguments)
-
-    def begin(self) -> None:
-        """Begin an intention whose bottom frame sends the answer."""
-        agent = self.agent
-        intention = agent.new_intention()
-        intention.on_failed = self.failed
-        frame: Frame = [self._answered, (_ANSWER,), BY_SELF, agent.trail.serial, _answer_plan()]
-        intention.frames.append(frame)
-        agent.post((self.goal, intention, self.annotations, None))
-
-    def _answered(self, agent: Circumstance, frame: Frame) -> None:
-        symbol = self.goal[0].functor
-        term: Term = (symbol, *self.goal[1:]) if len(self.goal) > 1 else symbol
-        answer(agent, self.message, without_sources(resolve(Annotated(term, self.annotations))))
-        frame[0] = None
-
-    def failed(self, reason: FailureReason | None) -> None:
-        """No plan, which is an answer, or a plan that failed, which is logged."""
-        loss = None if reason is None else lost_question(self.message.sender, self.goal, reason)
-        if loss is not None:
-            self.agent.architecture.log("warning", loss.text())
-        answer(self.agent, self.message, None)
+    intention = agent.new_intention()
+    goal = (trigger("+", "?", symbol), *arguments)
+    intention.on_failed = (_answer_failure, (message, goal))
+    answer_term = Annotated((symbol, *arguments) if arguments else symbol, annotations)
+    frame: Frame = [send_answer, (_ANSWER,), BY_SELF, agent.trail.serial, ANSWER_PLAN, message, answer_term]
+    intention.frames.append(frame)
+    agent.post((goal, intention, annotations, None))
 
 
-def _answer_plan() -> Plan:
-    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("answer")), None, nodes.Body())
-    return Plan(node, atom("answer"))
+def send_answer(agent: Circumstance, frame: Frame) -> None:
+    """The step of the bottom frame: a plan has answered the question."""
+    message, found = frame[FIRST_SLOT:]
+    answer(agent, message, without_sources(resolve(found)))
+    frame[STEP] = None
+
+
+def _answer_failure(
+    agent: Circumstance, reason: FailureReason | None, message: SpeechAct, goal: tuple[Any, ...]
+) -> None:
+    """No plan, which is an answer, or a plan that failed, which is logged."""
+    loss = None if reason is None else lost_question(message.sender, goal, reason)
+    if loss is not None:
+        agent.architecture.log("warning", loss.text())
+    answer(agent, message, None)
+
+
+ANSWER_PLAN = Plan(
+    nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("answer")), None, nodes.Body()), atom("answer")
+)
+"""The plan of the bottom frame."""

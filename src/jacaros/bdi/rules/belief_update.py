@@ -112,7 +112,7 @@ def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
         agent.do_soon(look_again)
 
 
-def look_again() -> None:
+def look_again(_: Circumstance) -> None:
     """A task that does nothing: for its sake the agent looks at awaited conditions again."""
 
 

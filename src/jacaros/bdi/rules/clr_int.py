@@ -4,11 +4,10 @@ from jacaros.bdi.rules import meta_events, rescue
 from jacaros.bdi.rules.stack import achieve
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import GOAL, PLAN, Frame, Intention
-from jacaros.bdi.state.waiting import Waiting
+from jacaros.bdi.state.waiting import GoalConditionWait
 from jacaros.errors import InternalError
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
-from jacaros.terms.values import atom
 
 
 def pop_finished(agent: Circumstance, intention: Intention) -> bool:
@@ -19,7 +18,7 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         if frame[0] is not None:
             return True
         if frame[PLAN].goal_condition is not None and not _is_achieved(agent, frame):
-            Waiting(agent, intention, atom("goal_condition")).attach(frame, None)
+            GoalConditionWait(intention).attach(frame, None)
             return False
         trigger = frame[GOAL][0]
         if trigger.failing:

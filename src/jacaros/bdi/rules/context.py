@@ -14,10 +14,9 @@ from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.waiting import Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Term, atom
+from jacaros.terms.values import Term
 
 _SHORT, _KEPT = 200, 200
 """Characters of a text whose syntax is kept, and how many of them are."""
@@ -133,9 +132,9 @@ class Context:
             "warning", f"the context of plan {text(plan.label)} cannot be evaluated: {fault}"
         )
 
-    def suspend(self, reason: str) -> Waiting:
-        """Suspend the calling intention; to be returned by the action.  See `Waiting`."""
+    def suspendable(self) -> Intention:
+        """The calling intention, for an action that returns what it waits for (`jacaros.bdi.state.waiting.Waiting`)."""
         current = self.intention
         if current is None:
             raise RuntimeError("only the step of an intention can be suspended")
-        return Waiting(self.agent, current, atom(reason))
+        return current

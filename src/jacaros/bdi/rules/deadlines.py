@@ -3,6 +3,7 @@
 from jacaros.bdi.explaining.failure_reason import nowhere
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.failure import error_terms
+from jacaros.bdi.rules.waits import set_alarm
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.literals import literal_of
@@ -23,18 +24,19 @@ def watch(agent: Circumstance, goal: Goal, annotations: tuple[Term, ...], separa
 
 def _set(agent: Circumstance, goal: Term, delay: float, intention: Intention | None) -> None:
     height = len(intention.frames) - 1 if intention is not None else 0
+    set_alarm(agent, delay, _pass, goal, intention, height)
 
-    def rings() -> None:
-        agent.do_soon(over)
-        agent.architecture.ready()
 
-    def over() -> None:
-        if intention is None or _pursues(agent, intention, goal, height):
-            goals.fail_goal(
-                agent, goal, nowhere(*error_terms("deadline_reached", "the goal was not achieved in time"))
-            )
+def _pass(agent: Circumstance, goal: Term, intention: Intention | None, height: int) -> None:
+    agent.do_soon(_fail, goal, intention, height)
+    agent.architecture.ready()
 
-    agent.architecture.set_timer(delay, rings)
+
+def _fail(agent: Circumstance, goal: Term, intention: Intention | None, height: int) -> None:
+    if intention is None or _pursues(agent, intention, goal, height):
+        goals.fail_goal(
+            agent, goal, nowhere(*error_terms("deadline_reached", "the goal was not achieved in time"))
+        )
 
 
 def _pursues(agent: Circumstance, intention: Intention, goal: Term, height: int) -> bool:

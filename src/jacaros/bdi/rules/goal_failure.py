@@ -110,7 +110,8 @@ def fail_intention(
     goal = None if unplanned is None else unplanned[0]
     if intention.on_failed is not None:
         lost_goals.note_goals(agent, intention, reason, goal)
-        intention.on_failed(reason)
+        function, arguments = intention.on_failed
+        function(agent, reason, *arguments)
     else:
         agent.architecture.goal_lost()
         budget = agent.budgets.get(reason.error())
@@ -181,7 +182,8 @@ def _lost_in_handler(
 ) -> None:
     reason = annotations if isinstance(annotations, FailureReason) else None
     if intention.on_failed is not None:
-        intention.on_failed(reason)
+        function, arguments = intention.on_failed
+        function(agent, reason, *arguments)
     else:
         agent.architecture.goal_lost()
         _tell_people(agent, lost_goals.lost_in_handler(agent, intention, goal, reason))

@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 
 from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
-from jacaros.bdi.rules import goal_failure, meta_events
+from jacaros.bdi.rules import goal_failure, meta_events, waits
 from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.failure import release_bindings
 from jacaros.bdi.rules.stack import achieve, cut, pending_event, remove_event
+from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import (
     EVENT_ANNOTATIONS,
@@ -18,7 +19,8 @@ from jacaros.bdi.state.event import (
     event_literal,
 )
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
-from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.literals import literal_of, own_annotations
+from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term
@@ -166,9 +168,9 @@ def drop_desire(agent: Circumstance, goal: Term) -> None:
 
 def drop_all_intentions(agent: Circumstance) -> None:
     """All but the running one; what ``.at`` is to post does not come either."""
-    for timer in agent.delayed_events:
-        timer.cancel()
-    agent.delayed_events.clear()
+    for alarm in list(agent.alarms.values()):
+        if alarm.function is post_external:
+            waits.cancel_alarm(agent, alarm)
     for intention in list(agent.alive.values()):
         if intention is not agent.current:
             drop_intention(agent, intention)
@@ -227,8 +229,8 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
     if event is not None and event in agent.events:
         agent.events.remove(event)
         agent.suspended_events.append(event)
-    if intention.waiting is not None and intention.waiting.on_suspend is not None:
-        intention.waiting.on_suspend()
+    if intention.waiting is not None:
+        waits.suspend(agent, intention.waiting)
 
 
 def resume_goal(agent: Circumstance, goal: Term) -> None:
@@ -259,8 +261,8 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     elif intention.parked:
         intention.parked = False
         agent.make_ready(intention)
-    elif intention.waiting is not None and intention.waiting.on_resume is not None:
-        intention.waiting.on_resume()
+    elif intention.waiting is not None:
+        waits.resume(agent, intention.waiting)
 
 
 # --- ending goals from outside -----------------------------------------------------------------------------
@@ -347,6 +349,13 @@ def _fail_pending(agent: Circumstance, intention: Intention, reason: FailureReas
             intention,
             goal_failure.fail_goal(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], reason),
         )
+
+
+def post_external(agent: Circumstance, kind: Trigger, literal: Term) -> None:
+    """Post an external event, such as ``.at`` announced and ``.signal`` makes."""
+    _, arguments, annotations = parts(rename(literal))
+    agent.post(((kind, *arguments), None, own_annotations(annotations), None))
+    agent.architecture.ready()
 
 
 def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:

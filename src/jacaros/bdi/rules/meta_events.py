@@ -32,7 +32,7 @@ def goal_state(
         return
     told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
     event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
-    agent.do_soon(lambda: _insert(agent, event))
+    agent.do_soon(_insert, event)
 
 
 def frame_state(

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
-from jacaros.bdi.rules import belief_update, rescue
+from jacaros.bdi.rules import belief_update, rescue, waits
 from jacaros.bdi.rules.meta_events import post_new_goal
 from jacaros.bdi.rules.plan_terms import relevant_plans
 from jacaros.bdi.rules.query import solve_formula
@@ -15,6 +15,7 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal, Trigger, trigger
+from jacaros.bdi.state.waiting import AnswerWait
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN
@@ -25,6 +26,7 @@ from jacaros.terms.values import (
     BY_SELF,
     CONS,
     NIL,
+    PLAIN,
     SOURCE,
     SOURCE_SELF,
     Annotated,
@@ -43,6 +45,7 @@ from jacaros.terms.values import (
     make_list,
 )
 
+ERROR = functor("error", 1)
 RECEIVED = trigger("+", "!", functor("kqml_received", 4))
 
 
@@ -89,12 +92,57 @@ def _answers_question(agent: Circumstance, message: SpeechAct) -> bool:
     """Whether the message is the answer to a question of the agent: who asked has it then, or nobody wants it any more."""
     question = message.in_reply_to
     if question in agent.pending_asks:
-        agent.pending_asks[question](message)
+        take_answer(agent, agent.pending_asks[question], message)
         return True
     if question in agent.abandoned_asks:
         agent.abandoned_asks.remove(question)
         return True
     return False
+
+
+def take_answer(agent: Circumstance, waiting: AnswerWait, message: SpeechAct) -> None:
+    """An answer to a question of this agent has come, or the question was not delivered."""
+    agent.pending_asks.pop(str(message.in_reply_to), None)
+    if message.performative == "undelivered":
+        waits.forget(agent, waiting)
+        waits.fail(agent, waiting, *nobody_there(message.sender))
+        return
+    content = atom("false") if message.performative == "untell" else _with_source(agent, message)
+    waiting.answers.append(content)
+    if len(waiting.answers) == waiting.expected:
+        _end_question(agent, waiting, make_list(waiting.answers) if waiting.many else content)
+
+
+def time_out_question(agent: Circumstance, waiting: AnswerWait) -> None:
+    """No answer came in time."""
+    _end_question(agent, waiting, atom("timeout"))
+
+
+def _end_question(agent: Circumstance, waiting: AnswerWait, value: Term) -> None:
+    waits.forget(agent, waiting)
+    if agent.context.unify(waiting.target, value):
+        del agent.trail[:]
+        waits.succeed(agent, waiting)
+    else:
+        waits.fail(agent, waiting, "the answer does not fit", (ERROR, atom("ask_failed")))
+
+
+def _with_source(agent: Circumstance, message: SpeechAct) -> Term:
+    """The answer, every literal of it with the answering agent as source."""
+    if is_list(message.content):
+        return make_list([_told_by(item, agent.name, message) for item in list_items(message.content)])
+    return _told_by(message.content, agent.name, message)
+
+
+def _told_by(content: Term, own_name: str, message: SpeechAct) -> Term:
+    sender = own_name if message.sender == "self" else message.sender
+    symbol = functor_of(content)
+    return from_sender(content, sender) if symbol is not None and symbol.kind == PLAIN else content
+
+
+def nobody_there(receiver: str) -> tuple[str, Term]:
+    """Why a message cannot be delivered: for people, and as the error of the step."""
+    return f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
 
 
 def _handled_by_program(agent: Circumstance, message: SpeechAct, select: Select) -> bool:

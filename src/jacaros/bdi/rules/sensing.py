@@ -1,12 +1,11 @@
 """The first part of a reasoning cycle: what came in since the last one."""
 
-from jacaros.bdi.rules import rescue
+from jacaros.bdi.rules import rescue, waits
 from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.urgency import read_urgent_messages
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.errors import InternalError
-from jacaros.terms.unifier import undo
 
 
 def look_around(agent: Circumstance, cycle: int) -> None:
@@ -45,9 +44,9 @@ def housekeeping(agent: Circumstance, looks: bool = True) -> None:
 def do_tasks(agent: Circumstance) -> None:
     """The housekeeping that is due."""
     while agent.tasks:
-        task = agent.tasks.popleft()
+        function, arguments = agent.tasks.popleft()
         try:
-            task()
+            function(agent, *arguments)
         except InternalError:
             raise
         except Exception as fault:
@@ -56,22 +55,5 @@ def do_tasks(agent: Circumstance) -> None:
 
 def check_conditions(agent: Circumstance) -> None:
     """Resume the intentions whose awaited condition holds now."""
-    waits = agent.condition_waits
-    for wait in waits.take_due():
-        waiting = wait.waiting
-        if waiting.ended:
-            waits.remove(wait)
-            continue
-        try:
-            held = wait.holds()
-        except InternalError:
-            raise
-        except Exception as fault:
-            undo(agent.trail, 0)
-            waits.remove(wait)
-            waiting.fail(rescue.told(fault))
-        else:
-            if held:
-                waits.remove(wait)
-                waiting.resume()
+    waits.check_conditions(agent)
     do_tasks(agent)

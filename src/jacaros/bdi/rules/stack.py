@@ -25,7 +25,7 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
     """Take the frame at *index* and all above off the stack, and whatever the intention waits for."""
     if intention.waiting is not None:
         waiting, intention.waiting = intention.waiting, None
-        waiting.cancel()
+        agent.drop_wait(waiting)
     event = pending_event(agent, intention)
     if event is not None:
         remove_event(agent, event)

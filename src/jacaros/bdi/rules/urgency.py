@@ -249,7 +249,7 @@ def plans_changed(agent: Circumstance) -> None:
         return
     agent.urgency.rank()
     # In the next cycle: the step that is being made has the queues in its hands.
-    agent.do_soon(lambda: _sort(agent))
+    agent.do_soon(_sort)
 
 
 def _sort(agent: Circumstance) -> None:

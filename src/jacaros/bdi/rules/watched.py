@@ -49,7 +49,7 @@ class WatchedGoal:
         self._goal = (trigger("+", "!", symbol), *arguments)
         self._bottom = (_WATCHED, float(id(self)))
         intention = agent.new_intention()
-        intention.on_failed = self._ended_in_failure
+        intention.on_failed = (_end_in_failure, (self,))
         frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _bottom_plan()]
         intention.frames.append(frame)
         agent.post((self._goal, intention, own_annotations(annotations), None))
@@ -74,10 +74,16 @@ class WatchedGoal:
         self.achieved = True
         self._on_end()
 
-    def _ended_in_failure(self, reason: FailureReason | None) -> None:
+    def end_in_failure(self, reason: FailureReason | None) -> None:
+        """The goal failed and no plan took over."""
         self.failed = True
         self.reason = reason
         self._on_end()
+
+
+def _end_in_failure(agent: Circumstance, reason: FailureReason | None, goal: WatchedGoal) -> None:
+    del agent
+    goal.end_in_failure(reason)
 
 
 def _bottom_plan() -> Plan:

@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.architecture import Architecture, Timer
+from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import SELECT_OPTION, BeliefTables
 from jacaros.bdi.state.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
 from jacaros.bdi.state.budget import budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
-from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event, event_literal
+from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.event_waits import EventWaits
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.options import Options
@@ -20,10 +20,9 @@ from jacaros.bdi.state.probe import Probe
 from jacaros.bdi.state.search_budget import SearchBudget
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import Waiting
-from jacaros.terms.substitution import rename
+from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, Waiting
 from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, unify
+from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
 
 CROWD = 2000
@@ -58,13 +57,14 @@ class Circumstance:
         urgency: how urgent things are (`jacaros.bdi.rules.urgency.Urgency`); None while no plan is more urgent than others.
         urgent: something in the queues is more urgent than the rest, or may be: they are kept in order of urgency.
         inbox, percepts: what was received and noticed, and not yet looked at.
-        tasks: housekeeping for the beginning of the next cycle.
+        tasks: housekeeping for the beginning of the next cycle: functions, and their arguments behind the agent.
         suspended_events: goal events whose goal was suspended before it became an intention.
-        delayed_events: timers of the events that ``.at`` is to post.
+        alarms: calls that are due at a moment, by number.
+        alarms_made: number of alarms so far.
         event_waits: those who wait for an event.
         condition_waits: those who wait for a condition.
-        pending_acts: external actions under way, by number.
-        pending_asks: questions whose answer is awaited, by message id.
+        pending_acts: those who wait for an external action, by its number.
+        pending_asks: those who wait for an answer, by the id of the question.
         abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
         meta: whether plans or an observer want to hear of changes of goal states.
         goal_observer: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
@@ -106,6 +106,8 @@ class Circumstance:
         "abandoned_asks",
         "accepts",
         "actions",
+        "alarms",
+        "alarms_made",
         "alive",
         "architecture",
         "asleep",
@@ -122,7 +124,6 @@ class Circumstance:
         "crowd",
         "current",
         "cycles",
-        "delayed_events",
         "drowsy",
         "edges",
         "engine",
@@ -174,6 +175,8 @@ class Circumstance:
     )
 
     call_own: Callable[[Term], Term]
+    drop_wait: Callable[[Waiting], None]
+    notify_event_waits: Callable[[Event], None]
 
     def __init__(
         self,
@@ -216,13 +219,14 @@ class Circumstance:
         self.atomic_over = False
         self.inbox: deque[SpeechAct] = deque()
         self.percepts: deque[list[Percept]] = deque()
-        self.tasks: deque[Callable[[], None]] = deque()
+        self.tasks: deque[tuple[Callable[..., None], tuple[Any, ...]]] = deque()
         self.suspended_events: list[Event] = []
-        self.delayed_events: dict[Timer, None] = {}
+        self.alarms: dict[int, Alarm] = {}
+        self.alarms_made = 0
         self.event_waits = EventWaits()
         self.condition_waits = ConditionWaits()
-        self.pending_acts: dict[int, Waiting] = {}
-        self.pending_asks: dict[str, Any] = {}
+        self.pending_acts: dict[int, ActWait] = {}
+        self.pending_asks: dict[str, AnswerWait] = {}
         self.abandoned_asks: set[str | None] = set()
         self.meta = False
         self.goal_observer: Callable[[str, str, int, int, str], None] | None = None
@@ -292,15 +296,15 @@ class Circumstance:
             self.atomic_over = False
         if intention.waiting is not None:
             waiting, intention.waiting = intention.waiting, None
-            waiting.cancel()
+            self.drop_wait(waiting)
 
     def may_handle(self, kind: Trigger) -> bool:
         """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
         return self.subplans or self.selects[kind] is not None
 
-    def do_soon(self, task: Callable[[], None]) -> None:
-        """Have some housekeeping done at the beginning of the next cycle."""
-        self.tasks.append(task)
+    def do_soon(self, function: Callable[..., None], *arguments: Any) -> None:
+        """Call a function with the agent and the arguments at the beginning of the next cycle."""
+        self.tasks.append((function, arguments))
         self.called = True
 
     def queue(self, event: Event) -> None:
@@ -351,20 +355,6 @@ class Circumstance:
         intentions, crowd = self.intentions, self.crowd
         for _ in range(min(len(crowd), max(1, CROWD - len(intentions)))):
             intentions.append(crowd.popleft())
-
-    def notify_event_waits(self, event: Event) -> None:
-        """Resume the intentions that wait for this event."""
-        for wait in self.event_waits.candidates(event[EVENT_GOAL][0]):
-            mark = len(self.trail)
-            found = unify(wait.pattern, rename(event_literal(event)), self.trail)
-            if found:
-                # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
-                del self.trail[mark:]
-                self.event_waits.remove(wait)
-                wait.waiting.resume()
-            else:
-                while len(self.trail) > mark:
-                    self.trail.pop().ref = None
 
     def is_idle(self) -> bool:
         """Whether there is nothing to do until something comes from outside or a timer ends."""

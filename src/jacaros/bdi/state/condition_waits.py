@@ -1,10 +1,11 @@
 """Waits for conditions (``.wait(p(X) & not q)``), found by the beliefs that they ask for."""
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping
 
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.state.belief_base import BeliefTables, Row
+from jacaros.bdi.state.intention import Intention
+from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.substitution import ATOMIC
 from jacaros.terms.values import (
     ACTION,
@@ -26,24 +27,63 @@ Asked = tuple[Functor, tuple[int, ...], Row]
 """The beliefs that a literal asks for: their functor, the places of the arguments that are known, and these."""
 
 
-class ConditionWait:
-    """A wait for a condition.
+class ConditionWait(TimedWait):
+    """Waits for a condition.
 
     Attributes:
-        holds: tells whether the condition holds now.
-        waiting: has `resume`, `fail` and `ended`.
+        formula: the condition.
         asked: the beliefs that the condition depends on; None when it may depend on anything.
         number: its place among the waits of the agent.
     """
 
-    __slots__ = ("asked", "holds", "number", "waiting")
+    __slots__ = ("asked", "formula", "number")
 
-    def __init__(self, holds: Callable[[], bool], waiting: Any, asked: list[Asked] | None) -> None:
-        self.holds, self.waiting, self.asked = holds, waiting, asked
+    def __init__(
+        self,
+        intention: Intention,
+        reason: Term,
+        elapsed: Term,
+        began: float,
+        formula: Term,
+        asked: list[Asked] | None,
+    ) -> None:
+        super().__init__(intention, reason, elapsed, began)
+        self.formula, self.asked = formula, asked
         self.number = 0
 
 
-class ConditionWaits(dict[int, ConditionWait]):
+class ConditionObserver:
+    """Python code around the agent that waits for a condition: a live object, which no stored mind holds.
+
+    Attributes:
+        asked, number: as in `ConditionWait`.
+    """
+
+    asked: list[Asked] | None = None
+    number = 0
+
+    @property
+    def ended(self) -> bool:
+        """Whether nobody waits any longer."""
+        raise NotImplementedError
+
+    def holds(self) -> bool:
+        """Whether the condition holds now."""
+        raise NotImplementedError
+
+    def resume(self) -> None:
+        """Take note that the condition holds."""
+        raise NotImplementedError
+
+    def fail(self, message: str) -> None:
+        """Take note that the condition cannot be evaluated."""
+        raise NotImplementedError
+
+
+AnyWait = ConditionWait | ConditionObserver
+
+
+class ConditionWaits(dict[int, AnyWait]):
     """The waits of one agent, by their numbers.
 
     Attributes:
@@ -53,12 +93,12 @@ class ConditionWaits(dict[int, ConditionWait]):
 
     def __init__(self) -> None:
         super().__init__()
-        self.restless: dict[int, ConditionWait] = {}
-        self.due: dict[int, ConditionWait] = {}
-        self._index: dict[Functor, dict[tuple[int, ...], dict[Row, dict[int, ConditionWait]]]] = {}
+        self.restless: dict[int, AnyWait] = {}
+        self.due: dict[int, AnyWait] = {}
+        self._index: dict[Functor, dict[tuple[int, ...], dict[Row, dict[int, AnyWait]]]] = {}
         self._count = 0
 
-    def add(self, wait: ConditionWait) -> None:
+    def add(self, wait: AnyWait) -> None:
         """Begin to wait; the condition is looked at in the next cycle."""
         self._count += 1
         wait.number = self._count
@@ -70,7 +110,7 @@ class ConditionWaits(dict[int, ConditionWait]):
             by_values = self._index.setdefault(symbol, {}).setdefault(places, {})
             by_values.setdefault(values, {})[wait.number] = wait
 
-    def remove(self, wait: ConditionWait) -> None:
+    def remove(self, wait: AnyWait) -> None:
         """Wait no more; nothing happens if it is over already."""
         if self.pop(wait.number, None) is None:
             return
@@ -109,7 +149,7 @@ class ConditionWaits(dict[int, ConditionWait]):
             for held in list(by_values.values()):
                 self.restless.update(held)
 
-    def take_due(self) -> list[ConditionWait]:
+    def take_due(self) -> list[AnyWait]:
         """The waits to look at, in the order in which they began."""
         due = {**self.restless, **self.due} if self.due else self.restless
         self.due = {}

@@ -1,26 +1,35 @@
 """Waits for events (``.wait({+e})``), found by the kind of event: others that wait cost an event nothing."""
 
 from collections.abc import Iterator
-from typing import Any
 
+from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.values import Term
 
 
-class EventWait:
-    """A wait for an event.
+class EventWait(TimedWait):
+    """Waits for an event.
 
     Attributes:
         kind: of the events that may be meant; None for all.
         pattern: what the literal of the event has to unify with.
-        waiting: has `resume`.
         number: it is the so-many-th wait of the agent.
     """
 
-    __slots__ = ("kind", "number", "pattern", "waiting")
+    __slots__ = ("kind", "number", "pattern")
 
-    def __init__(self, kind: Trigger | None, pattern: Term, waiting: Any) -> None:
-        self.kind, self.pattern, self.waiting = kind, pattern, waiting
+    def __init__(
+        self,
+        intention: Intention,
+        reason: Term,
+        elapsed: Term,
+        began: float,
+        kind: Trigger | None,
+        pattern: Term,
+    ) -> None:
+        super().__init__(intention, reason, elapsed, began)
+        self.kind, self.pattern = kind, pattern
         self.number = 0
 
 

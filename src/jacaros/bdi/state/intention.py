@@ -36,8 +36,8 @@ class Intention:
         forks: the forks it is a branch of, outermost first, with the number of the branch.
         outer: intention and frame whose sub-plan reacts here to something outside, or None.
         urgencies: the urgency of each frame with those below it; only there when the agent has urgent plans.
-        on_failed: called with the reason (`FailureReason`, or None) when it ends in failure, in place of the usual
-            warning.
+        on_failed: what is called in place of the usual warning when it ends in failure, with the agent and the reason
+            (`FailureReason`, or None), and the arguments that follow these; or None.
     """
 
     __slots__ = (
@@ -68,7 +68,7 @@ class Intention:
         self.cause = cause
         self.outer: tuple[Intention, Frame] | None = None
         self.forks: tuple[tuple[Any, int], ...] = ()
-        self.on_failed: Callable[[Any], None] | None = None
+        self.on_failed: tuple[Callable[..., None], tuple[Any, ...]] | None = None
 
     def is_atomic(self) -> bool:
         """Whether a plan on the stack is atomic."""

@@ -1,10 +1,14 @@
-"""What an intention waits for: a timer, an answer, an external action."""
+"""What an intention waits for, as data.  `jacaros.bdi.rules.waits` says what follows when a wait ends.
+
+A wait for an event or a condition stands with the index that finds it (`event_waits`, `condition_waits`).
+"""
 
 from collections.abc import Callable
 from typing import Any
 
+from jacaros.bdi.architecture import Timer
 from jacaros.bdi.state.intention import Frame, Intention, NextStep
-from jacaros.terms.values import Term, atom, functor
+from jacaros.terms.values import Functor, Term, atom, functor
 
 ACTION = functor("action", 1)
 """Functor of the reason of those who wait for the end of an external action."""
@@ -18,59 +22,138 @@ def is_action(reason: Term) -> bool:
     return reason.__class__ is tuple and reason[0] is ACTION
 
 
-class Waiting:
-    """A suspended step; whoever made it calls `resume` or `fail` once.
+class Alarm:
+    """A call that is due at a moment of the run's clock.
 
     Attributes:
-        reason: a term for ``.intention`` and ``.suspended``.
-        on_drop: called when the intention is dropped meanwhile.
-        on_suspend, on_resume: called when it is suspended and resumed meanwhile.
+        number: its place among the alarms of the agent.
+        due: the moment, in seconds since the Unix epoch.
+        function, arguments: called with the agent and the arguments; a function of a module, so that it has a name.
+        timer: of the host, which rings.
     """
 
-    __slots__ = (
-        "agent",
-        "ended",
-        "failure",
-        "frame",
-        "intention",
-        "next_step",
-        "on_drop",
-        "on_resume",
-        "on_suspend",
-        "reason",
-    )
+    __slots__ = ("arguments", "due", "function", "number", "timer")
 
-    def __init__(self, agent: Any, intention: Intention, reason: Term) -> None:
-        self.agent, self.intention, self.reason = agent, intention, reason
+    timer: Timer
+
+    def __init__(
+        self, number: int, due: float, function: Callable[..., None], arguments: tuple[Any, ...]
+    ) -> None:
+        self.number, self.due, self.function, self.arguments = number, due, function, arguments
+
+
+class Waiting:
+    """A suspended step.
+
+    Attributes:
+        intention: whose step it is.
+        reason: a term for ``.intention`` and ``.suspended``.
+        frame: of the step, once the step has been suspended.
+        next_step: with which the frame goes on.
+        ended: the step has succeeded or failed, or its intention is gone.
+        failure: why the step failed: a message, and annotations that may hold an ``error(..)``; None when it succeeded.
+        alarm: what ends the wait at a moment, or None.
+    """
+
+    __slots__ = ("alarm", "ended", "failure", "frame", "intention", "next_step", "reason")
+
+    def __init__(self, intention: Intention, reason: Term) -> None:
+        self.intention, self.reason = intention, reason
         self.frame: Frame | None = None
         self.next_step: NextStep = None
         self.ended = False
         self.failure: tuple[str, tuple[Term, ...]] | None = None
-        self.on_drop: Callable[[], None] | None = None
-        self.on_suspend: Callable[[], None] | None = None
-        self.on_resume: Callable[[], None] | None = None
+        self.alarm: Alarm | None = None
 
     def attach(self, frame: Frame, next_step: NextStep) -> None:
         """The step is suspended in *frame*, and goes on with *next_step*."""
         self.frame, self.next_step = frame, next_step
         self.intention.waiting = self
 
-    def resume(self) -> None:
-        """The step has succeeded; the intention goes on in the agent's next cycle."""
-        if not self.ended:
-            self.ended = True
-            self.agent.waiting_ended(self)
 
-    def fail(self, message: str, *annotations: Term) -> None:
-        """The step has failed; *annotations* may hold an ``error(..)``."""
-        if not self.ended:
-            self.ended = True
-            self.failure = (message, annotations)
-            self.agent.waiting_ended(self)
+class ActWait(Waiting):
+    """Waits for the end of the external action with a number."""
 
-    def cancel(self) -> None:
-        """The intention is gone."""
-        if not self.ended:
-            self.ended = True
-            if self.on_drop is not None:
-                self.on_drop()
+    __slots__ = ("number",)
+
+    def __init__(self, intention: Intention, reason: Term, number: int) -> None:
+        super().__init__(intention, reason)
+        self.number = number
+
+
+class TimedWait(Waiting):
+    """Waits for a time, and perhaps for something that comes before.
+
+    Attributes:
+        elapsed: unified with the milliseconds that it took; None when nobody asks.
+        began: when it began, in seconds since the Unix epoch.
+    """
+
+    __slots__ = ("began", "elapsed")
+
+    def __init__(self, intention: Intention, reason: Term, elapsed: Term, began: float) -> None:
+        super().__init__(intention, reason)
+        self.elapsed, self.began = elapsed, began
+
+
+class AnswerWait(Waiting):
+    """Waits for the answers to a question.
+
+    Attributes:
+        target: unified with the answer, or with the list of the answers.
+        many: the question went to a list of agents.
+        expected: how many answers there will be.
+        answers: those that have come.
+        ids: of the messages that asked.
+    """
+
+    __slots__ = ("answers", "expected", "ids", "many", "target")
+
+    def __init__(self, intention: Intention, target: Term, many: bool, expected: int) -> None:
+        super().__init__(intention, _ASK)
+        self.target, self.many, self.expected = target, many, expected
+        self.answers: list[Term] = []
+        self.ids: list[str] = []
+
+
+class OwnSuspension(Waiting):
+    """Waits for the ``.resume`` of the intention that suspended itself."""
+
+    __slots__ = ()
+
+    def __init__(self, intention: Intention) -> None:
+        super().__init__(intention, OWN_SUSPENSION)
+
+
+class GoalConditionWait(Waiting):
+    """Waits for the goal condition of a plan whose body has ended."""
+
+    __slots__ = ()
+
+    def __init__(self, intention: Intention) -> None:
+        super().__init__(intention, _GOAL_CONDITION)
+
+
+class HeldEnd(Waiting):
+    """Waits for ``.resume``: the wait *held* ended while the intention was suspended."""
+
+    __slots__ = ("held",)
+
+    def __init__(self, held: Waiting) -> None:
+        super().__init__(held.intention, held.reason)
+        self.held = held
+
+
+class CoroutineWait(Waiting):
+    """Waits for a coroutine of the project.  It is a live object: a mind that waits for one cannot be stored."""
+
+    __slots__ = ("task",)
+
+    task: Timer
+
+    def __init__(self, intention: Intention, name: str) -> None:
+        super().__init__(intention, atom(name))
+
+
+_ASK: Functor = atom("ask")
+_GOAL_CONDITION: Functor = atom("goal_condition")

@@ -10,7 +10,7 @@ from jacaros.bdi.explaining.lost_goals import loss_of
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.watched import WatchedGoal
-from jacaros.bdi.state.condition_waits import ConditionWait, asked_by
+from jacaros.bdi.state.condition_waits import ConditionObserver, asked_by
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
 from jacaros.errors import UsageError
@@ -136,7 +136,7 @@ class RunningAgent(OpenMind):
         return f"<agent {self.name}{' (ended)' if self.ended else ''}>"
 
 
-class _Awaited:
+class _Awaited(ConditionObserver):
     """A condition that Python code waits for, among those that the agent looks at (`Circumstance.condition_waits`)."""
 
     def __init__(self, mind: Mind, formula: str) -> None:
@@ -145,12 +145,12 @@ class _Awaited:
         self._formula = formula
         self._term, self._names = question(formula)
         self._found: dict[str, Any] = {}
-        self._entry = ConditionWait(self._holds, self, asked_by(self._term, mind.beliefs, mind.actions))
-        mind.condition_waits.add(self._entry)
+        self.asked = asked_by(self._term, mind.beliefs, mind.actions)
+        mind.condition_waits.add(self)
         mind.called = True
         mind.architecture.ready()
 
-    def _holds(self) -> bool:
+    def holds(self) -> bool:
         mark = len(self._mind.trail)
         try:
             for _ in self._mind.context.answers(self._term):
@@ -175,7 +175,7 @@ class _Awaited:
             self.future.set_exception(UsageError(f"{self._formula} cannot be evaluated: {message}"))
 
     def forget(self) -> None:
-        self._mind.condition_waits.remove(self._entry)
+        self._mind.condition_waits.remove(self)
 
 
 class Goal(PursuedGoal):
@@ -207,7 +207,7 @@ class Goal(PursuedGoal):
         """
         self._awaited = True
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        dropped = ConditionWait(lambda: self.state == "dropped", _Ends(future), None)
+        dropped = _Dropped(self, future)
         if not self._watched.ended and self._agent_ended():
             await asyncio.sleep(0)  # a run that has ended says so one turn later
             self._waits.check()
@@ -270,15 +270,18 @@ class Goal(PursuedGoal):
         return failed
 
 
-class _Ends:
-    """Ends a wait from among the conditions that an agent looks at."""
+class _Dropped(ConditionObserver):
+    """Ends the wait for a goal when the goal is dropped; it stands among the conditions that the agent looks at."""
 
-    def __init__(self, future: asyncio.Future[None]) -> None:
-        self._future = future
+    def __init__(self, goal: Goal, future: asyncio.Future[None]) -> None:
+        self._goal, self._future = goal, future
 
     @property
     def ended(self) -> bool:
         return self._future.done()
+
+    def holds(self) -> bool:
+        return self._goal.state == "dropped"
 
     def resume(self) -> None:
         if not self._future.done():

@@ -1,0 +1,239 @@
+"""What follows when a wait ends, or its intention is dropped, suspended or resumed: one function each."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from jacaros.bdi.rules import meta_events, rescue
+from jacaros.bdi.rules.clr_int import pop_finished
+from jacaros.bdi.rules.failure import error_terms, step_failure
+from jacaros.bdi.rules.goal_failure import fail_intention
+from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.condition_waits import ConditionObserver, ConditionWait
+from jacaros.bdi.state.event import EVENT_GOAL, Event, event_literal
+from jacaros.bdi.state.event_waits import EventWait
+from jacaros.bdi.state.waiting import (
+    OWN_SUSPENSION,
+    ActWait,
+    Alarm,
+    AnswerWait,
+    CoroutineWait,
+    HeldEnd,
+    OwnSuspension,
+    TimedWait,
+    Waiting,
+    is_action,
+)
+from jacaros.errors import InternalError
+from jacaros.terms.substitution import rename
+from jacaros.terms.unifier import undo, unify
+from jacaros.terms.values import Term, atom, functor
+
+ERROR = functor("error", 1)
+
+# --- alarms ------------------------------------------------------------------------------------------------
+
+
+def set_alarm(agent: Circumstance, delay: float, function: Callable[..., None], *arguments: Any) -> Alarm:
+    """Call *function* with the agent and the arguments after *delay* seconds of the run's clock."""
+    agent.alarms_made += 1
+    alarm = Alarm(agent.alarms_made, agent.architecture.now() + delay, function, arguments)
+    agent.alarms[alarm.number] = alarm
+    alarm.timer = agent.architecture.set_timer(delay, partial(_ring, agent, alarm))
+    return alarm
+
+
+def cancel_alarm(agent: Circumstance, alarm: Alarm) -> None:
+    """Take an alarm back; nothing happens if it has rung."""
+    if agent.alarms.pop(alarm.number, None) is not None:
+        alarm.timer.cancel()
+
+
+def _ring(agent: Circumstance, alarm: Alarm) -> None:
+    del agent.alarms[alarm.number]
+    alarm.function(agent, *alarm.arguments)
+
+
+# --- ends --------------------------------------------------------------------------------------------------
+
+
+def succeed(agent: Circumstance, waiting: Waiting) -> None:
+    """The step has succeeded: the intention goes on in the next cycle."""
+    if not waiting.ended:
+        waiting.ended = True
+        announce_end(agent, waiting)
+
+
+def fail(agent: Circumstance, waiting: Waiting, message: str, *annotations: Term) -> None:
+    """The step has failed; *annotations* may hold an ``error(..)``."""
+    if not waiting.ended:
+        waiting.failure = (message, annotations)
+        succeed(agent, waiting)
+
+
+def announce_end(agent: Circumstance, waiting: Waiting) -> None:
+    """Let the intention go on in the next cycle, if the step has been suspended already."""
+    if waiting.frame is not None:
+        agent.do_soon(_take_up_end, waiting)
+        agent.architecture.ready()
+
+
+def _take_up_end(agent: Circumstance, waiting: Waiting) -> None:
+    intention = waiting.intention
+    if intention.dropped or intention.waiting is not waiting:
+        return
+    if intention.suspended is not None:
+        # Success and failure alike come after ``.resume``.
+        intention.parked = False
+        intention.waiting = HeldEnd(waiting)
+        return
+    intention.waiting = None
+    _continue(agent, waiting)
+
+
+def _release(agent: Circumstance, waiting: HeldEnd) -> None:
+    if waiting.intention.waiting is waiting:
+        waiting.intention.waiting = None
+        _continue(agent, waiting.held)
+
+
+def _continue(agent: Circumstance, waiting: Waiting) -> None:
+    """The intention goes on behind the step, or with the failure of the step."""
+    intention, frame = waiting.intention, waiting.frame
+    assert frame is not None
+    if waiting.failure is None:
+        frame[0] = waiting.next_step
+        if agent.meta and waiting.reason is not OWN_SUSPENSION:
+            meta_events.top_goal_state(agent, intention, "executing")
+        if pop_finished(agent, intention):
+            agent.make_ready(intention)
+        return
+    message, annotations = waiting.failure
+    given = {t[0] for t in annotations if t.__class__ is tuple}
+    defaults = error_terms("internal_action", message) if message else error_terms("internal_action", "")[:1]
+    annotations = (*(term for term in defaults if term[0] not in given), *annotations)
+    reason = step_failure(frame, Failure(*annotations))
+    posted = fail_intention(agent, intention, reason)
+    if posted is not None:
+        agent.post((posted.goal, intention, posted.annotations, None))
+
+
+# --- dropped, suspended, resumed ---------------------------------------------------------------------------
+
+
+def drop(agent: Circumstance, waiting: Waiting) -> None:
+    """The intention is gone."""
+    if not waiting.ended:
+        waiting.ended = True
+        forget(agent, waiting)
+
+
+def forget(agent: Circumstance, waiting: Waiting) -> None:
+    """Give up what the wait has under way."""
+    if waiting.alarm is not None:
+        cancel_alarm(agent, waiting.alarm)
+    if isinstance(waiting, ActWait):
+        if agent.pending_acts.pop(waiting.number, None) is not None:
+            agent.architecture.cancel_act(waiting.number)
+    elif isinstance(waiting, EventWait):
+        agent.event_waits.remove(waiting)
+    elif isinstance(waiting, ConditionWait):
+        agent.condition_waits.remove(waiting)
+    elif isinstance(waiting, AnswerWait):
+        for message_id in waiting.ids:
+            if agent.pending_asks.pop(message_id, None) is not None:
+                agent.abandoned_asks.add(message_id)
+    elif isinstance(waiting, CoroutineWait):
+        waiting.task.cancel()
+
+
+def suspend(agent: Circumstance, waiting: Waiting) -> None:
+    """The intention was suspended: an external action may pause, all others run on and their end is held."""
+    if isinstance(waiting, ActWait):
+        agent.architecture.suspend_act(waiting.number)
+
+
+def resume(agent: Circumstance, waiting: Waiting) -> None:
+    """The intention was resumed."""
+    if isinstance(waiting, ActWait):
+        agent.architecture.resume_act(waiting.number)
+    elif isinstance(waiting, OwnSuspension):
+        succeed(agent, waiting)
+    elif isinstance(waiting, HeldEnd):
+        # The end of an external action is looked at in the next cycle, as any other; that of a wait has been.
+        if is_action(waiting.reason):
+            agent.do_soon(_release, waiting)
+            agent.architecture.ready()
+        else:
+            _release(agent, waiting)
+
+
+# --- times, events and conditions --------------------------------------------------------------------------
+
+
+def come_true(agent: Circumstance, waiting: TimedWait) -> None:
+    """What was waited for has come."""
+    forget(agent, waiting)
+    if waiting.elapsed is not None:
+        # A clock may be set back meanwhile.
+        seconds = max(0.0, agent.architecture.now() - waiting.began)
+        agent.context.unify(waiting.elapsed, float(round(seconds * 1000)))
+        del agent.trail[:]
+    succeed(agent, waiting)
+
+
+def time_out(agent: Circumstance, waiting: TimedWait) -> None:
+    """What was waited for did not come in time."""
+    if waiting.elapsed is not None:
+        come_true(agent, waiting)
+    else:
+        forget(agent, waiting)
+        fail(agent, waiting, "the wait is over without what it waited for", (ERROR, atom("wait_timeout")))
+
+
+def notify_event_waits(agent: Circumstance, event: Event) -> None:
+    """Resume the intentions that wait for this event."""
+    for wait in agent.event_waits.candidates(event[EVENT_GOAL][0]):
+        mark = len(agent.trail)
+        if unify(wait.pattern, rename(event_literal(event)), agent.trail):
+            # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
+            del agent.trail[mark:]
+            come_true(agent, wait)
+        else:
+            undo(agent.trail, mark)
+
+
+def check_conditions(agent: Circumstance) -> None:
+    """Resume the intentions whose awaited condition holds now."""
+    for wait in agent.condition_waits.take_due():
+        if wait.ended:
+            agent.condition_waits.remove(wait)
+            continue
+        try:
+            held = wait.holds() if isinstance(wait, ConditionObserver) else _holds(agent, wait)
+        except InternalError:
+            raise
+        except Exception as fault:
+            undo(agent.trail, 0)
+            agent.condition_waits.remove(wait)
+            if isinstance(wait, ConditionObserver):
+                wait.fail(rescue.told(fault))
+            else:
+                forget(agent, wait)
+                fail(agent, wait, rescue.told(fault))
+        else:
+            if held:
+                agent.condition_waits.remove(wait)
+                if isinstance(wait, ConditionObserver):
+                    wait.resume()
+                else:
+                    come_true(agent, wait)
+
+
+def _holds(agent: Circumstance, wait: ConditionWait) -> bool:
+    """Whether an awaited condition holds now; its variables are bound then."""
+    if not agent.context.succeeds(wait.formula):
+        return False
+    del agent.trail[:]
+    return True
