@@ -1,11 +1,13 @@
 """Run the conformance cases; all of them must pass.
 
 check_conformance.py language       all areas of the language, on the virtual clock
+check_conformance.py plain          the same without anything that is there for speed alone (JACAROS_PLAIN=1)
 check_conformance.py formatted      the same programs as `jacaros fmt` lays them out
 check_conformance.py real-time      the areas about the reasoning cycle, on the wall clock
 check_conformance.py environment    artifacts, on the virtual clock
 """
 
+import os
 import shutil
 import subprocess
 import sys
@@ -28,6 +30,10 @@ def main(arguments: list[str]) -> int:
     suite = arguments[0] if arguments else "language"
     if suite == "language":
         return judge(*run(CASES, "fast", 2))
+    if suite == "plain":
+        os.environ["JACAROS_PLAIN"] = "1"
+        language = judge(*run(CASES, "fast", 2))
+        return judge(*run(ROOT / "tests" / "conformance_environment", "fast", 2)) or language
     if suite == "formatted":
         with tempfile.TemporaryDirectory() as scratch:
             return judge(*run(formatted(Path(scratch)), "fast", 2))

@@ -62,7 +62,7 @@ KINDS: Final[dict[str, Kind]] = {
     "not-a-step": Kind("error", "a term where a step is expected"),
     "organisation-library": Kind("warning", "a library for organisations, which are not supported"),
     "plan-never-selected": Kind("warning", "a plan behind one that is always taken before it"),
-    "plan-too-large": Kind("error", "a plan that Python cannot compile"),
+    "plan-too-large": Kind("warning", "a plan that Python cannot compile"),
     "prefixed-action": Kind("error", "an internal action with '~' or a namespace"),
     "reserved-word": Kind("error", "a reserved word as a name"),
     "second-body": Kind("error", "a plan with two '<-'"),

@@ -43,9 +43,9 @@ from jacaros.terms.text import text
 def command(file: Path, show: bool, wanted: str | None, imports: bool) -> int:
     """Compile all plans and rules of FILE, an agent program (.asl), and tell how much code they become.
 
-    Nothing of that is needed to run a program: an agent compiles its plans when their first event comes. What is wrong
-    in the program is told as `jacaros check` tells it, with exit code 1. No Python code of the project is run, unless you
-    give --import.
+    Nothing of that is needed to run a program: an agent compiles its plans while it has nothing to do, or when their first
+    event comes. What is wrong in the program is told as `jacaros check` tells it, with exit code 1. No Python code of the
+    project is run, unless you give --import.
     """  # fmt: skip
     program, code = _read(existing(file, (".asl",)), imports)
     if program is None:

@@ -373,7 +373,7 @@ def _check_program(
 
 
 def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
-    """Plans that are left out because Python does not compile them."""
+    """Plans that take longer because Python does not compile them."""
     from jacaros.bdi.engines import new_engine  # here: see `_of_artifacts`
     from jacaros.bdi.fast.compiler import too_large
     from jacaros.bdi.state.plan_library import ProgramPlans
@@ -381,7 +381,11 @@ def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
     for plan, fault in too_large(plans, code.actions):
         yield Diagnostic(
-            "error", fault, plan.node.span, "write several plans, or rules for parts of it", "plan-too-large"
+            "warning",
+            f"{fault}: it takes longer",
+            plan.node.span,
+            "write several plans, or rules for parts of it",
+            "plan-too-large",
         )
 
 

@@ -47,10 +47,9 @@ class Compiler(Interpreter):
         super().__init__(actions)
         self._functions: dict[Any, Any] = {}
         self._begun = False
+        self._one_by_one: dict[Trigger, PlanByPlan] = {}
 
-    def run(self, agent: Circumstance, fuel: int) -> bool:
-        """Let an agent make at most *fuel* reasoning cycles; True when there is more to do."""
-        return loop.run(agent, fuel)
+    run = staticmethod(loop.run)
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
         """What chooses among plans for one kind of event."""
@@ -66,7 +65,10 @@ class Compiler(Interpreter):
         if len(plans) <= FEW:
             with suppress(*TOO_LARGE):
                 return compiled(plans, outer)
-        return PlanByPlan(plans, outer, compiled)
+        one_by_one = PlanByPlan(plans, outer, compiled)
+        if outer is None:
+            self._one_by_one[trigger] = one_by_one
+        return one_by_one.select()
 
     def every(self, trigger: Trigger, plans: Sequence[Plan]) -> Every:
         """The same for all applicable plans."""
@@ -96,7 +98,7 @@ class Compiler(Interpreter):
         self._begun = True
         program = agent.library.program
         for _, told in too_large(program.plans, self.actions):
-            agent.architecture.log("warning", f"{told}; it is carried out step by step, which takes longer")
+            agent.architecture.log("warning", f"{told}: it takes longer")
         if agent.urgency is not None:
             for kind in program.kinds():
                 if agent.urgency.by_trigger[kind]:
@@ -107,11 +109,10 @@ class Compiler(Interpreter):
         """Compile something that no event has asked for yet; False when there is nothing left."""
         return any(self._compile_ahead(program, kind) for kind in program.kinds())
 
-    @staticmethod
-    def _compile_ahead(program: ProgramPlans, kind: Trigger) -> bool:
+    def _compile_ahead(self, program: ProgramPlans, kind: Trigger) -> bool:
         is_new = kind not in program.selects
-        select = program.selects[kind]
-        return (isinstance(select, PlanByPlan) and select.compile_next()) or is_new
+        program.selects[kind]  # made when it is looked up
+        return (kind in self._one_by_one and self._one_by_one[kind].compile_next()) or is_new
 
     def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """The answers of a rule."""

@@ -34,7 +34,8 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     if options.search_limit and fuel > 1:
         # Each cycle has the whole budget of searches.
         return all(run(agent, 1) for _ in range(fuel))
-    begin_turn(agent)
+    if agent.crowd or options.search_limit:
+        begin_turn(agent)
     # Calls inside terms are evaluated for this agent meanwhile.
     before = RUNNING.set(agent)
     agent.running = True

@@ -44,7 +44,7 @@ class PlanByPlan:
     def __init__(self, plans: Sequence[Plan], outer: Plan | None, compiled: Compile) -> None:
         self._plans, self._outer, self._compiled = plans, outer, compiled
         self._parts: list[Select] = [_Waiting(self, place) for place in range(len(plans))]
-        self._places = range(len(plans))
+        self._places: Sequence[int] = range(len(plans))
         self._by_key: dict[Any, list[int]] | None = None
         self._rest: list[int] = []
         groups = None if outer is not None else _grouped(plans)
@@ -60,22 +60,28 @@ class PlanByPlan:
             if key is not None
         }
 
-    def __call__(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Frame | None:
-        """The frame of the first applicable plan, or None."""
-        parts = self._parts
-        for place in self._places if self._by_key is None else self._relevant(goal[1], self._by_key):
-            frame = parts[place](agent, goal, annotations)
-            if frame is not None:
-                return frame
-        return None
+    def select(self) -> Select:
+        """The function that chooses among the plans: one with nothing to look up but what it is given."""
+        parts, every, by_key, rest = self._parts, self._places, self._by_key, self._rest
 
-    def _relevant(self, key: Any, by_key: dict[Any, list[int]]) -> Sequence[int]:
-        """The places of the plans that may be relevant for a first argument."""
-        if key.__class__ is tuple:
-            key = None if key[0].kind else key[0]
-        elif key.__class__ is List:
-            key = CONS
-        return by_key.get(key, self._rest) if key.__class__ in ATOMIC else self._places
+        def select(agent: Any, goal: Goal, annotations: EventAnnotations) -> Frame | None:
+            places: Sequence[int] = every
+            if by_key is not None:
+                # Only the plans that may be relevant for the first argument.
+                key = goal[1]
+                if key.__class__ is tuple:
+                    key = None if key[0].kind else key[0]
+                elif key.__class__ is List:
+                    key = CONS
+                if key.__class__ in ATOMIC:
+                    places = by_key.get(key, rest)
+            for place in places:
+                frame = parts[place](agent, goal, annotations)
+                if frame is not None:
+                    return frame
+            return None
+
+        return select
 
     def compile_next(self) -> bool:
         """Compile one more plan; False when none is left."""

@@ -27,9 +27,7 @@ class Interpreter:
     def __init__(self, actions: Mapping[str, InternalAction]) -> None:
         self.actions = actions
 
-    def run(self, agent: Circumstance, fuel: int) -> bool:
-        """Let an agent make at most *fuel* reasoning cycles; True when there is more to do."""
-        return cycle.run(agent, fuel)
+    run = staticmethod(cycle.run)
 
     def begin(self, agent: Circumstance) -> None:
         """An agent is about to begin: nothing is to be prepared."""
