@@ -4,7 +4,6 @@ import os
 from collections.abc import Mapping
 
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.fast.compiler import Compiler
 from jacaros.bdi.rules.interpreter import Interpreter
 from jacaros.bdi.state.engine import Engine
 
@@ -21,4 +20,8 @@ def new_engine(actions: Mapping[str, InternalAction], plain: bool | None = None)
         actions: the internal actions that they may call.
         plain: without generated code; as `is_plain` says unless given.
     """
-    return Interpreter(actions) if (is_plain() if plain is None else plain) else Compiler(actions)
+    if is_plain() if plain is None else plain:
+        return Interpreter(actions)
+    from jacaros.bdi.fast.compiler import Compiler  # here: a plain run does without it altogether
+
+    return Compiler(actions)

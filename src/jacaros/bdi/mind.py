@@ -28,7 +28,6 @@ from jacaros.bdi.rules import (
 from jacaros.bdi.rules.answers import answer_by_plan
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.failure import output_misfit
-from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
@@ -36,6 +35,7 @@ from jacaros.bdi.state.event import Posted, Raised
 from jacaros.bdi.state.intention import Frame, NextStep
 from jacaros.bdi.state.literals import EventAnnotations, own_annotations
 from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.outcomes import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id

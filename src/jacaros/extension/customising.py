@@ -11,13 +11,13 @@ from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.rules.option_selection import options
-from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import literal, parts
 from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.event import EVENT_INTENTION, Event, Raised
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.outcomes import Failure
 from jacaros.bdi.state.plan_library import OwnSelects, PlanLibrary
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden

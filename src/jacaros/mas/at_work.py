@@ -8,7 +8,7 @@ from types import FrameType
 from jacaros.asl.formatter import format_term
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import cycle
-from jacaros.bdi.rules.outcomes import FAILED
+from jacaros.bdi.state.outcomes import FAILED
 from jacaros.bdi.state.plan import Plan
 from jacaros.mas.agent_host import AgentHost
 

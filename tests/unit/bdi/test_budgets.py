@@ -9,10 +9,10 @@ from jacaros.bdi.actions import internal_action
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast import loop
 from jacaros.bdi.rules import sel_ev
-from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state import circumstance
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.outcomes import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import SOURCE_PERCEPT, atom, structure
 

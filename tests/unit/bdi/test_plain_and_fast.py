@@ -1,12 +1,14 @@
 """The rules of the language as they are written (``JACAROS_PLAIN=1``) and what is there for speed do the same."""
 
+import os
+import subprocess
 import sys
 from pathlib import Path
 from random import Random
 
 import pytest
 
-from jacaros.bdi.fast.generated import conditions, unit
+from jacaros.bdi.fast.generated import conditions
 from jacaros.testing import run_project
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools"))
@@ -45,11 +47,20 @@ def test_a_program_prints_the_same_plain_and_fast(program, monkeypatch):
     assert plain.exit_code == fast.exit_code
 
 
-def test_nothing_generated_runs_when_what_is_there_for_speed_is_left_out(monkeypatch):
-    monkeypatch.setenv("JACAROS_PLAIN", "1")
-    monkeypatch.setattr(unit.CodeUnit, "execute", lambda self: pytest.fail("code was generated"))
-    for program in PROGRAMS[::10]:
-        run_project(program, seconds=120)
+def test_what_is_there_for_speed_is_not_even_imported_when_it_is_left_out():
+    script = (
+        "import sys; from jacaros.testing import run_project; "
+        f"print(run_project({str(PROGRAMS[0])!r}, seconds=120).exit_code, "
+        "[name for name in sys.modules if name.startswith('jacaros.bdi.fast')])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env=os.environ | {"JACAROS_PLAIN": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "0 []"
 
 
 def test_plain_and_fast_make_the_same_cycles(monkeypatch, tmp_path):

@@ -13,7 +13,6 @@ from jacaros.bdi.rules.clr_int import end_achieved_goals, pop_finished
 from jacaros.bdi.rules.cycle import begin_turn, has_work, look_at_names
 from jacaros.bdi.rules.exec_int import announce, execute, step_failed, tell_waiting
 from jacaros.bdi.rules.goal_failure import fail_intention, has_room
-from jacaros.bdi.rules.outcomes import FAILED, SUSPENDED
 from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.sel_ev import begin_intention, begin_with, handle_atomic_event, pass_over
@@ -21,6 +20,7 @@ from jacaros.bdi.rules.sel_int import select_intention
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.outcomes import FAILED, SUSPENDED
 from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import RUNNING

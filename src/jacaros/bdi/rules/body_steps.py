@@ -16,10 +16,10 @@ from jacaros.asl.lowering import Names, lower
 from jacaros.asl.walk import names_in, nodes_in
 from jacaros.bdi.rules.calls import first_answer_of, refuse
 from jacaros.bdi.rules.forks import join_branch
-from jacaros.bdi.rules.outcomes import FAILED
 from jacaros.bdi.rules.query import answers, collecting
 from jacaros.bdi.rules.searching import Remaining, release, run
 from jacaros.bdi.state.intention import FIRST_SLOT, PLAN, STEP, Frame
+from jacaros.bdi.state.outcomes import FAILED
 from jacaros.bdi.state.plan import Plan, StepInfo
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.unifier import Trail, undo

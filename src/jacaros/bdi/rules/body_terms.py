@@ -4,9 +4,9 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.reflection import Reflection
-from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Frame, NextStep
+from jacaros.bdi.state.outcomes import Failure
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.plans import PLAN as PLAN_TERM

@@ -4,12 +4,12 @@ actions become failures of goals."""
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
 from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
-from jacaros.bdi.rules.outcomes import Fail, Failure
 from jacaros.bdi.rules.subplans import handles
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
+from jacaros.bdi.state.outcomes import Fail, Failure
 from jacaros.bdi.state.plan import StepInfo
 from jacaros.bdi.state.search_budget import SearchLimit
 from jacaros.bdi.state.triggers import Goal

@@ -8,11 +8,11 @@ from jacaros.bdi.rules import meta_events, rescue
 from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.failure import error_terms, step_failure
 from jacaros.bdi.rules.goal_failure import fail_intention
-from jacaros.bdi.rules.outcomes import Failure
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.condition_waits import ConditionObserver, ConditionWait
 from jacaros.bdi.state.event import EVENT_GOAL, Event, event_literal
 from jacaros.bdi.state.event_waits import EventWait
+from jacaros.bdi.state.outcomes import Failure
 from jacaros.bdi.state.waiting import (
     OWN_SUSPENSION,
     ActWait,

@@ -7,7 +7,7 @@ A program that never stops growing loses some of its goals, with a reason, and n
 from typing import Any, Final, Protocol
 
 from jacaros.bdi.architecture import Architecture
-from jacaros.bdi.rules.outcomes import Failure
+from jacaros.bdi.state.outcomes import Failure
 from jacaros.terms.values import String, atom, functor
 
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)

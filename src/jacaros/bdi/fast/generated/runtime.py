@@ -19,7 +19,6 @@ from jacaros.bdi.rules.calls import (
 )
 from jacaros.bdi.rules.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
 from jacaros.bdi.rules.forks import join_branch
-from jacaros.bdi.rules.outcomes import FAILED, NextPlan
 from jacaros.bdi.rules.searching import (
     Remaining,
     deeper,
@@ -44,6 +43,7 @@ from jacaros.bdi.state.literals import (
     positive,
     resolve_all,
 )
+from jacaros.bdi.state.outcomes import FAILED, NextPlan
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import calculated
 from jacaros.terms.negation import qualify
