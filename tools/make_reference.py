@@ -18,10 +18,10 @@ import jacaros.bdi.actions.standard
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.artifacts.ros.wheels import WheeledArtifact
-from jacaros.asl.functions import ARITIES
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.env import Artifact, describe
+from jacaros.terms.functions import ARITIES
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
