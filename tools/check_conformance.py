@@ -2,6 +2,7 @@
 
 check_conformance.py language       all areas of the language, on the virtual clock
 check_conformance.py plain          the same without anything that is there for speed alone (JACAROS_PLAIN=1)
+check_conformance.py restored       the same with minds that are stored and restored at random cycles
 check_conformance.py formatted      the same programs as `jacaros fmt` lays them out
 check_conformance.py real-time      the areas about the reasoning cycle, on the wall clock
 check_conformance.py environment    artifacts, on the virtual clock
@@ -34,6 +35,8 @@ def main(arguments: list[str]) -> int:
         os.environ["JACAROS_PLAIN"] = "1"
         language = judge(*run(CASES, "fast", 2))
         return judge(*run(ROOT / "tests" / "conformance_environment", "fast", 2)) or language
+    if suite == "restored":
+        return restored()
     if suite == "formatted":
         with tempfile.TemporaryDirectory() as scratch:
             return judge(*run(formatted(Path(scratch)), "fast", 2))
@@ -44,6 +47,17 @@ def main(arguments: list[str]) -> int:
         return judge(*run(ROOT / "tests" / "conformance_environment", "fast", 2))
     print(f"no suite {suite}", file=sys.stderr)
     return 2
+
+
+def restored() -> int:
+    """Run the language with minds that are stored as JSON and restored; list those that could not be stored."""
+    with tempfile.TemporaryDirectory() as scratch:
+        report = Path(scratch) / "not_restored"
+        os.environ["JACAROS_NOT_RESTORED"] = str(report)
+        code = judge(*run(CASES, "fast", 2, command=f"{sys.executable} {ROOT / 'tools' / 'run_restored.py'}"))
+        lines = sorted(report.read_text(encoding="utf-8").splitlines()) if report.exists() else []
+    print("\n".join(["minds that could not be stored:", *(lines or ["none"])]))
+    return code
 
 
 def formatted(scratch: Path) -> Path:
@@ -61,17 +75,19 @@ def formatted(scratch: Path) -> Path:
     return copy
 
 
-def run(folder: Path, clock: str, jobs: int, *options: str) -> tuple[Counter[str], Counter[str]]:
+def run(
+    folder: Path, clock: str, jobs: int, *options: str, command: str = f"{JACAROS} run"
+) -> tuple[Counter[str], Counter[str]]:
     """How many cases of each area pass, and how many there are; shows the report of the checker."""
     with tempfile.TemporaryDirectory() as scratch:
         results = Path(scratch) / "results.xml"
-        command = f"{JACAROS} run {{project}} --clock {clock}"
+        whole = f"{command} {{project}} --clock {clock}"
         checker = ROOT / "tests" / "conformance" / "check.py"
         call = (
             sys.executable,
             checker,
             "--command",
-            command,
+            whole,
             "--jobs",
             str(jobs),
             "--junit",

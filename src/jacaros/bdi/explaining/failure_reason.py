@@ -175,26 +175,26 @@ class _Nowhere:
 class StepPlace(_Nowhere):
     """The formula of a step that failed."""
 
-    __slots__ = ("_frame", "_info")
+    __slots__ = ("frame", "info")
 
     def __init__(self, frame: Frame, info: StepInfo) -> None:
         super().__init__()
-        self._frame, self._info = frame, info
+        self.frame, self.info = frame, info
 
     @property
     def node(self) -> nodes.Node:
-        return _failed_formula(self._info.node)
+        return _failed_formula(self.info.node)
 
     @property
     def plan(self) -> Any:
-        return self._frame[PLAN]
+        return self.frame[PLAN]
 
     def annotations(self) -> tuple[Term, ...]:
         return _code(self._resolved(lower(self.node, self._value)), self.node.span, self.plan.file)
 
     def step(self) -> str:
         term = lower(self.node, lambda name: UNNAMED if name[0] == "_" else self._value(name))
-        return step_text(self._info.node, self._resolved(excerpt(term)))
+        return step_text(self.info.node, self._resolved(excerpt(term)))
 
     def _resolved(self, term: Term) -> Term:
         """The formula, with the values of its variables."""
@@ -208,8 +208,8 @@ class StepPlace(_Nowhere):
 
     def _value(self, name: str) -> Term:
         """The value of a variable, as far as it has one."""
-        slot = self.plan.slots.get(name, len(self._frame))
-        value = self._frame[slot] if slot < len(self._frame) else None
+        slot = self.plan.slots.get(name, len(self.frame))
+        value = self.frame[slot] if slot < len(self.frame) else None
         return Var(name) if value is None else value
 
     def span(self) -> Span | None:

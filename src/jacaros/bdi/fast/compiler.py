@@ -91,6 +91,20 @@ class Compiler(Interpreter):
         else:
             install_body(unit, plan, compiler, first)
 
+    def step_at(self, plan: Plan, position: str) -> Any:
+        """The step at a position of a plan; the plan is compiled if that has not been done."""
+        if position[0] == "i":
+            return super().step_at(plan, position)
+        if not hasattr(plan.first, "__globals__"):
+            if plan.body_term is not None:
+                self.give_steps(plan)
+            else:
+                head = plan.node.trigger
+                symbol = plan.trigger_functor() or functor("plan", 0)
+                self.select(trigger_of_kind(head.operator, head.kind, symbol), [plan], plan.scope)
+        first: Any = plan.first
+        return first.__globals__[f"{first.__name__.rpartition('_')[0]}_{position[1:]}"]
+
     def begin(self, agent: Circumstance) -> None:
         """An agent is about to begin: compile what is urgent, and tell what is too large.  Done for the first one."""
         if self._begun:

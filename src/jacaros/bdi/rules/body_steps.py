@@ -32,6 +32,7 @@ class Step:
     """A step of a plan.
 
     Attributes:
+        plan: whose step it is.
         node: its formula.
         info: what is known of it.
         steps: the same for all steps of the plan, by their names.
@@ -41,10 +42,11 @@ class Step:
         place: where it keeps in the frame what it needs for itself.
     """
 
-    __slots__ = ("__name__", "first", "info", "names", "next", "node", "place", "steps")
+    __slots__ = ("__name__", "first", "info", "names", "next", "node", "place", "plan", "steps")
 
-    def __init__(self, node: nodes.Node, name: str, steps: dict[str, StepInfo]) -> None:
+    def __init__(self, node: nodes.Node, name: str, plan: Plan, steps: dict[str, StepInfo]) -> None:
         self.__name__ = name
+        self.plan = plan
         self.node = node
         self.next: Next = None
         self.info = steps[name] = StepInfo(node, "None")
@@ -131,12 +133,15 @@ class InterpretedBody:
     Attributes:
         first: the first of them; None when there are none.
         steps: what is known of each, by its name.
+        by_name: the steps themselves.
         extra: how many places of the frame they need for themselves.
     """
 
     def __init__(self, plan: Plan) -> None:
         self.steps: dict[str, StepInfo] = {}
         self.extra = 0
+        self.by_name: dict[str, Step] = {}
+        self._plan = plan
         self._behind_variables = FIRST_SLOT + len(plan.slots)
         self._count = 0
         body = plan.node.body
@@ -148,11 +153,15 @@ class InterpretedBody:
         if not formulae:
             return behind
         names = [first, *(self._name() for _ in formulae[1:])]
-        steps = [Step(node, name, self.steps) for node, name in zip(formulae, names, strict=True)]
+        steps = [self._made(Step, node, name) for node, name in zip(formulae, names, strict=True)]
         for step, following in zip(steps, [*steps[1:], behind], strict=True):
             step.go_on_with(following)
             self._fill(step, step.node)
         return steps[0]
+
+    def _made(self, kind: type[Step], node: nodes.Node, name: str) -> Step:
+        step = self.by_name[name] = kind(node, name, self._plan, self.steps)
+        return step
 
     def _name(self) -> str:
         self._count += 1
@@ -178,7 +187,7 @@ class InterpretedBody:
             step.names = names_in(node.condition)
             step.place = self._behind_variables + self.extra
             self.extra += 1
-            again, first = Round(node, self._name(), self.steps), self._name()
+            again, first = self._made(Round, node, self._name()), self._name()
             again.go_on_with(step.next)
             again.names, again.place = step.names, step.place
             again.first = (self._steps(node.body.steps, first, again),)

@@ -52,7 +52,7 @@ def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: NextSte
 def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: NextStep) -> Any:
     """Run a body held by a variable, on a frame of its own above the plan's."""
     frame[0] = next_step
-    plan = _body_plan(agent, term)
+    plan = plan_of_body(agent, term)
     assert agent.current is not None
     if plan.first is not None:
         inner: Frame = [plan.first, (_BODY,), BY_SELF, agent.trail.serial, plan, *([None] * plan.size)]
@@ -61,7 +61,7 @@ def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: NextStep
     return None
 
 
-def _body_plan(agent: Circumstance, term: Term) -> Plan:
+def plan_of_body(agent: Circumstance, term: Term) -> Plan:
     """A body as a plan; one that is run often is made once."""
     known = agent.bodies.get(id(term))
     if known is not None and known[0] is term:
@@ -70,6 +70,7 @@ def _body_plan(agent: Circumstance, term: Term) -> Plan:
     body = Reflection(shared=True).body(term)
     node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("body")), None, body)
     plan = Plan(node, atom("body"))
+    plan.body_term = term
     plan.keep_all_variables()
     agent.engine.give_steps(plan)
     if len(agent.bodies) > 256:

@@ -51,6 +51,16 @@ class Interpreter:
         """Give a plan that stands for a body made at run time its steps."""
         interpreted(plan)
 
+    def step_at(self, plan: Plan, position: str) -> Any:
+        """The step at a position (`jacaros.bdi.state.plan.position_of`) of a plan.
+
+        Raises:
+            ValueError: the position is one of generated code.
+        """
+        if position[0] != "i":
+            raise ValueError(f"a step of {plan!r} was stored by compiled code, and this run interprets plans")
+        return interpreted(plan).by_name[f"step_{position[1:]}"]
+
     def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """The answers of a rule."""
         return interpret_rule(agent, rule.node, arguments, trail)

@@ -40,8 +40,13 @@ def set_alarm(agent: Circumstance, delay: float, function: Callable[..., None], 
     agent.alarms_made += 1
     alarm = Alarm(agent.alarms_made, agent.architecture.now() + delay, function, arguments)
     agent.alarms[alarm.number] = alarm
-    alarm.timer = agent.architecture.set_timer(delay, partial(_ring, agent, alarm))
+    start_alarm(agent, alarm, delay)
     return alarm
+
+
+def start_alarm(agent: Circumstance, alarm: Alarm, delay: float) -> None:
+    """Have the host ring after *delay* seconds."""
+    alarm.timer = agent.architecture.set_timer(delay, partial(_ring, agent, alarm))
 
 
 def cancel_alarm(agent: Circumstance, alarm: Alarm) -> None:

@@ -98,10 +98,9 @@ class ConditionWaits(dict[int, AnyWait]):
         self._index: dict[Functor, dict[tuple[int, ...], dict[Row, dict[int, AnyWait]]]] = {}
         self._count = 0
 
-    def add(self, wait: AnyWait) -> None:
-        """Begin to wait; the condition is looked at in the next cycle."""
-        self._count += 1
-        wait.number = self._count
+    def add(self, wait: AnyWait, number: int | None = None) -> None:
+        """Begin to wait; the condition is looked at in the next cycle.  *number* is that of a wait that was stored."""
+        self._count = wait.number = self._count + 1 if number is None else number
         self[wait.number] = self.due[wait.number] = wait
         if wait.asked is None:
             self.restless[wait.number] = wait

@@ -46,6 +46,9 @@ class Engine(Protocol):
     def give_steps(self, plan: Plan) -> None:
         """Give a plan that stands for a body made at run time its steps."""
 
+    def step_at(self, plan: Plan, position: str) -> Any:
+        """The step at a position (`jacaros.bdi.state.plan.position_of`) of a plan, which is compiled if necessary."""
+
     def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """The answers of a rule, see `jacaros.bdi.rules.searching.run`."""
 

@@ -40,10 +40,9 @@ class EventWaits(dict[Trigger | None, dict[int, EventWait]]):
         super().__init__()
         self._count = 0
 
-    def add(self, wait: EventWait) -> None:
-        """Begin to wait."""
-        self._count += 1
-        wait.number = self._count
+    def add(self, wait: EventWait, number: int | None = None) -> None:
+        """Begin to wait; *number* is that of a wait that was stored."""
+        self._count = wait.number = self._count + 1 if number is None else number
         self.setdefault(wait.kind, {})[wait.number] = wait
 
     def remove(self, wait: EventWait) -> None:

@@ -50,6 +50,7 @@ class Plan:
         label: term of the label, without annotations.
         annotations: those of the label, without its sources.
         atomic: whether the label says ``atomic``.
+        body_term: the body that a variable held, for whose sake the plan was made; or None.
         by_name: internal actions that reach variables by their names: all variables of the plan are kept for them.
         urgency: the number of ``urgency(N)`` in the label, 0 without.
         first: the first step, None for an empty body; set when the plan is first needed.
@@ -68,6 +69,7 @@ class Plan:
         "_slots",
         "annotations",
         "atomic",
+        "body_term",
         "by_name",
         "first",
         "goal_condition",
@@ -90,6 +92,7 @@ class Plan:
         self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
         self.atomic = ATOMIC_LABEL in self.annotations
         self.urgency = _urgency(self.annotations) if self.annotations else 0
+        self.body_term: Term = None
         self.replaceable = node.goal_condition is None and not node.subplans
         self._slots: dict[str, int] | None = None
         self.interpreted: Any = None
@@ -146,6 +149,11 @@ class Plan:
         if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
             return None
         return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def position_of(step: Any) -> str:
+    """Where a step is in its plan: "g" for generated code or "i" for an interpreted step, and its number."""
+    return ("g" if hasattr(step, "__globals__") else "i") + str(step.__name__.rpartition("_")[2])
 
 
 def _urgency(annotations: tuple[Term, ...]) -> int:

@@ -192,9 +192,25 @@ class PlanLibrary:
 
     def take_over(self, other: "PlanLibrary") -> None:
         """Have the plans of the library of another agent that runs the same program."""
+        self.take_parts(other.plans, other.own, other.removed, other._sources)
+
+    def parts(self) -> tuple[Any, ...] | None:
+        """What makes it differ from the plans of the program, for `take_parts`; None when it does not."""
+        if self.plans is self.program.plans and not self._sources:
+            return None
+        return self.plans, self.own, self.removed, self._sources
+
+    def take_parts(
+        self, plans: list[Plan], own: list[Plan], removed: list[Plan], sources: dict[Plan, tuple[Term, ...]]
+    ) -> None:
+        """Hold these plans."""
         self._differ_from_program()
-        self.plans, self.own, self.removed = list(other.plans), list(other.own), list(other.removed)
-        self._sources = dict(other._sources)
+        self.plans, self.own, self.removed, self._sources = (
+            list(plans),
+            list(own),
+            list(removed),
+            dict(sources),
+        )
 
     def sources(self, plan: Plan) -> tuple[Term, ...]:
         """Who told a plan; it goes when nobody is left."""

@@ -140,7 +140,7 @@ def install_body(unit: CodeUnit, plan: Plan, body: BodyCompiler, first: str) -> 
     plan.size = body.frame.size
     for name, info in body.infos.items():
         function = unit.globals[name]
-        function.info, function.steps = info, body.infos
+        function.plan, function.info, function.steps = plan, info, body.infos
 
 
 def compile_search_function(
