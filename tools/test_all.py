@@ -100,6 +100,7 @@ def parts() -> list[Part]:
         # The checker prints at its end.
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language"), budget=120, quiet_minutes=30),
         Part("plain", (PYTHON, "tools/check_conformance.py", "plain"), budget=180, quiet_minutes=30),
+        Part("restored", (PYTHON, "tools/check_conformance.py", "restored"), budget=180, quiet_minutes=30),
         Part("formatted", (PYTHON, "tools/check_conformance.py", "formatted"), budget=120, quiet_minutes=30),
         Part(
             "environment", (PYTHON, "tools/check_conformance.py", "environment"), budget=50, quiet_minutes=30

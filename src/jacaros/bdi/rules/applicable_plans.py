@@ -115,8 +115,8 @@ def _names_of(outer: Plan, frame: Frame, plan: Plan) -> Names:
 
 def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, serial: int) -> Frame:
     """The frame of an applicable plan, at its first step."""
-    for name in names_in(plan.node.trigger, plan.node.context):
+    body = interpreted(plan)
+    for name in body.known:
         names[name]  # made if it has not been asked for: it may be on another branch
     values = [deref(names[name]) if name in names else None for name in plan.slots]
-    body = interpreted(plan)
     return [body.first, goal, annotations, serial, plan, *values, *([None] * body.extra)]

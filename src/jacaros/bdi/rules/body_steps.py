@@ -134,6 +134,7 @@ class InterpretedBody:
         first: the first of them; None when there are none.
         steps: what is known of each, by its name.
         by_name: the steps themselves.
+        known: the variables that have a value when the body begins: those of trigger and context.
         extra: how many places of the frame they need for themselves.
     """
 
@@ -141,6 +142,7 @@ class InterpretedBody:
         self.steps: dict[str, StepInfo] = {}
         self.extra = 0
         self.by_name: dict[str, Step] = {}
+        self.known = names_in(plan.node.trigger, plan.node.context)
         self._plan = plan
         self._behind_variables = FIRST_SLOT + len(plan.slots)
         self._count = 0
