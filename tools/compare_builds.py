@@ -1,8 +1,8 @@
 """Run random programs in two builds, or on two paths of one build, and show the first difference.
 
 compare_builds.py --old ../before/src --new src --seconds 3600     two source trees, side by side
-compare_builds.py --seconds 600                                    the loops for plain and for all agents, and
-                                                                   compiled and searched contexts, of this tree
+compare_builds.py --seconds 600                                    this tree with and without what is there for speed,
+                                                                   and with searched contexts
 compare_builds.py --seed 17 --programs 1 --show                    print the program of a number
 
 A program ends, whatever is drawn: goals call later goals only, waits are short.  What agents print has to be the same, in
@@ -29,12 +29,13 @@ PATIENCE = 8.0
 
 def work(path: str) -> None:
     """Be a worker: read projects as lines, run each on one *path*, write what came of it as lines."""
-    from jacaros.bdi.fast.generated import conditions
     from jacaros.testing import run_project
 
     if path == "plain":
         os.environ["JACAROS_PLAIN"] = "1"
     elif path == "searched":
+        from jacaros.bdi.fast.generated import conditions  # here: the other build may have it elsewhere
+
         conditions._MAX_LOOPS = 0
     answers, sys.stdout = sys.stdout, sys.stderr
     for line in sys.stdin:
@@ -60,7 +61,7 @@ class Build:
     def run(self, files: dict[str, str]) -> dict[str, object] | None:
         """What came of a project; None when it took too long or ended the process."""
         if self._process is None:
-            command = (sys.executable, str(Path(__file__)), "--worker", self._path or "plain")
+            command = (sys.executable, str(Path(__file__)), "--worker", self._path or "fast")
             self._process = subprocess.Popen(
                 command,
                 stdin=subprocess.PIPE,
