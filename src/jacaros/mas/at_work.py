@@ -7,7 +7,8 @@ from types import FrameType
 
 from jacaros.asl.formatter import format_term
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules import cycle
+from jacaros.bdi.rules.applicable_plans import Selection
+from jacaros.bdi.rules.body_steps import Step
 from jacaros.bdi.state.outcomes import FAILED
 from jacaros.bdi.state.plan import Plan
 from jacaros.mas.agent_host import AgentHost
@@ -29,7 +30,7 @@ def task_of(frame: FrameType | None) -> FrameType | None:
         module = inner.f_globals.get("__name__", "")
         if module == "importlib._bootstrap":
             return None
-        if _is_generated(inner):
+        if _place_in_program(inner) is not None:
             task = inner
         if module == _LOOP:
             return task or callback
@@ -41,13 +42,13 @@ def at_work(frame: FrameType | None) -> str:
     """What is being done, for people: ``agent bob, plan +!find(X) (bob.asl:7)``."""
     frames = list(_outwards(frame))
     host = next((found for found in map(_host, frames) if found is not None), None)
-    generated = [each for each in frames if _is_generated(each)]
-    place = _place(generated[0]) if generated else _place_of_python(frames)
+    places = [found for each in frames if (found := _place_in_program(each)) is not None]
+    place = "{}:{}".format(*places[0]) if places else _place_of_python(frames)
     if host is None:
         return place
-    plan = _plan_at(host, generated[-1]) if generated else None
+    plan = _plan_at(host, *places[-1]) if places else None
     doing = f", plan {format_term(plan.node.trigger)}" if plan is not None else ""
-    called = _own_python(frames) if generated else None
+    called = _own_python(frames) if places else None
     inside = f", in {_place(called)}" if called is not None else ""
     return f"agent {host.name}{doing} ({place}{inside})"
 
@@ -65,15 +66,26 @@ def _is_generated(frame: FrameType) -> bool:
     return names.get("FAILED") is FAILED and "__name__" not in names
 
 
+def _place_in_program(frame: FrameType) -> tuple[str, int] | None:
+    """File and line of the agent program that a frame executes, compiled or interpreted."""
+    if _is_generated(frame):
+        return frame.f_code.co_filename, _line(frame)
+    node = None
+    if frame.f_code is Step.__call__.__code__:
+        node = frame.f_locals["self"].node
+    elif frame.f_code is Selection._frames_of.__code__:
+        node = frame.f_locals["plan"].node
+    return None if node is None or node.span is None else (node.span.file.name, node.span.line)
+
+
 def _host(frame: FrameType) -> AgentHost | None:
     """The host of the agent whose cycles a frame makes."""
-    mind = frame.f_locals.get("agent") if frame.f_code is cycle.run.__code__ else None
+    mind = frame.f_locals.get("self") if frame.f_code is Mind.run.__code__ else None
     return mind.architecture if mind is not None and isinstance(mind.architecture, AgentHost) else None
 
 
-def _plan_at(host: AgentHost, frame: FrameType) -> Plan | None:
+def _plan_at(host: AgentHost, file: str, line: int) -> Plan | None:
     """The plan in whose text a step stands."""
-    file, line = frame.f_code.co_filename, _line(frame)
     mind = host.mind
     return _covering(mind.library.plans, file, line) if isinstance(mind, Mind) else None
 
@@ -89,7 +101,7 @@ def _covering(plans: Sequence[Plan], file: str, line: int) -> Plan | None:
 def _own_python(frames: Sequence[FrameType]) -> FrameType | None:
     """The innermost frame of the project's own Python code above the agent program."""
     for frame in frames:
-        if _is_generated(frame):
+        if _place_in_program(frame) is not None:
             return None
         if not _is_library(frame):
             return frame
