@@ -51,6 +51,13 @@ def test_the_listing_is_python_and_says_what_its_names_mean(
     assert lines == shown(capsys, program, "--show")
 
 
+def test_a_join_by_an_index_is_shown(program: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path(program).write_text("+!go : p(X, Y, _) & p(Y, Z, _) <- .print(Z).", encoding="utf-8")
+    assert any(
+        line.endswith(": (0,)") for line in shown(capsys, program, "--show") if line.startswith("# K_")
+    )
+
+
 @pytest.mark.parametrize("wanted", ["done", "@done"])
 def test_of_a_labelled_plan_only_its_steps_are_shown(
     wanted: str, program: str, capsys: pytest.CaptureFixture[str]

@@ -104,7 +104,11 @@ def _described(value: Any) -> str:
         return f"the plan {text_of(value.label)}"
     if isinstance(value, (Functor, Trigger)):
         return repr(value)
-    return f"{value.__module__}.{value.__qualname__}" if callable(value) else text_of(value)
+    if callable(value):
+        return f"{value.__module__}.{value.__qualname__}"
+    if value.__class__ is tuple and not (value and isinstance(value[0], Functor)):
+        return repr(value)  # places of arguments, by which an index finds rows
+    return text_of(value)
 
 
 def _beside(writer: Writer) -> Iterator[str]:
