@@ -39,33 +39,33 @@ class PlanByPlan:
         compiled: compiles one of them.
     """
 
-    __slots__ = ("_by_key", "_compiled", "_outer", "_parts", "_places", "_plans", "_rest")
+    __slots__ = ("_by_key", "_compiled", "_outer", "_parts", "_plans", "_rest")
 
     def __init__(self, plans: Sequence[Plan], outer: Plan | None, compiled: Compile) -> None:
         self._plans, self._outer, self._compiled = plans, outer, compiled
         self._parts: list[Select] = [_Waiting(self, place) for place in range(len(plans))]
-        self._places: Sequence[int] = range(len(plans))
-        self._by_key: dict[Any, list[int]] | None = None
-        self._rest: list[int] = []
+        self._by_key: dict[Any, list[Select]] | None = None
+        self._rest: list[Select] = []
         groups = None if outer is not None else _grouped(plans)
         if groups is not None:
             self._make_table([key for key, group in groups for _ in group])
 
     def _make_table(self, keys: list[Any]) -> None:
         """Note for each first argument which plans may be relevant for it; None stands for any."""
-        self._rest = [place for place, key in enumerate(keys) if key is None]
+        parts = list(zip(keys, self._parts, strict=True))
+        self._rest = [part for key, part in parts if key is None]
         self._by_key = {
-            key: [place for place, own in enumerate(keys) if own is None or own is key or own == key]
+            key: [part for own, part in parts if own is None or own is key or own == key]
             for key in dict.fromkeys(keys)
             if key is not None
         }
 
     def select(self) -> Select:
         """The function that chooses among the plans: one with nothing to look up but what it is given."""
-        parts, every, by_key, rest = self._parts, self._places, self._by_key, self._rest
+        every, by_key, rest = self._parts, self._by_key, self._rest
 
         def select(agent: Any, goal: Goal, annotations: EventAnnotations) -> Frame | None:
-            places: Sequence[int] = every
+            parts = every
             if by_key is not None:
                 # Only the plans that may be relevant for the first argument.
                 key = goal[1]
@@ -74,9 +74,9 @@ class PlanByPlan:
                 elif key.__class__ is List:
                     key = CONS
                 if key.__class__ in ATOMIC:
-                    places = by_key.get(key, rest)
-            for place in places:
-                frame = parts[place](agent, goal, annotations)
+                    parts = by_key.get(key, rest)
+            for part in parts:
+                frame = part(agent, goal, annotations)
                 if frame is not None:
                     return frame
             return None
@@ -93,8 +93,10 @@ class PlanByPlan:
 
     def compile(self, place: int) -> Select:
         """Compile one of the plans."""
-        part = self._parts[place] = self._compiled(self._plans[place : place + 1], self._outer)
-        return part
+        old, new = self._parts[place], self._compiled(self._plans[place : place + 1], self._outer)
+        for parts in (self._parts, self._rest, *(self._by_key or {}).values()):
+            parts[:] = [new if part is old else part for part in parts]
+        return new
 
     def interpreted(self, place: int) -> Selection:
         """One of the plans, not compiled."""
