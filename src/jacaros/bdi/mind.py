@@ -12,17 +12,15 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.engines import new_engine
 from jacaros.bdi.rules import (
     belief_update,
-    body_terms,
     cloning,
-    deadlines,
-    edge_signals,
     forks,
     functions,
     goals,
     meta_events,
+    perceiving,
     plan_changes,
+    plan_terms,
     query,
-    uptake,
     waits,
 )
 from jacaros.bdi.rules.answers import answer_by_plan
@@ -35,7 +33,7 @@ from jacaros.bdi.state.event import Posted, Raised
 from jacaros.bdi.state.intention import Frame, NextStep
 from jacaros.bdi.state.literals import EventAnnotations, own_annotations
 from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.outcomes import FAILED, SUSPENDED, Fail, Failure
+from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
@@ -236,7 +234,7 @@ class Mind(Circumstance):
 
         It is taken up when the plan for its event has ended, or waits for something itself.
         """
-        return uptake.is_untaken(self, name)
+        return perceiving.is_untaken(self, name)
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """An external action ended; an id that is not pending (any more) is ignored."""
@@ -270,7 +268,7 @@ class Mind(Circumstance):
 
     def shut_down_in(self, milliseconds: float) -> None:
         """The agent will be ended after so many milliseconds; its plans may prepare for it."""
-        edge_signals.shutting_down(self, milliseconds)
+        meta_events.shutting_down(self, milliseconds)
 
     def copy_mind_of(self, original: "Mind") -> None:
         """Begin with what another agent believes, wants and knows how to do; this one must be new."""
@@ -324,7 +322,7 @@ class Mind(Circumstance):
     ) -> Posted:
         """A goal that is posted with annotations."""
         annotations = own_annotations(items, tail)
-        deadlines.watch(self, goal, annotations, separate)
+        waits.watch(self, goal, annotations, separate)
         return Posted(goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
@@ -342,7 +340,7 @@ class Mind(Circumstance):
             return goal
         annotations = own_annotations(annotations_of(term))
         if kind == "!":
-            deadlines.watch(self, goal, annotations, separate)
+            waits.watch(self, goal, annotations, separate)
         return Posted(goal, annotations)
 
     def test_goal_from(self, term: Term) -> Goal | Posted:
@@ -408,7 +406,7 @@ class Mind(Circumstance):
             frame[0] = next_step
         return None
 
-    run_value = body_terms.run_value
+    run_value = plan_terms.run_value
 
     fork = forks.fork
 

@@ -19,9 +19,9 @@ from jacaros.bdi.explaining.failure_reason import FailureReason, StepPlace
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import waits
 from jacaros.bdi.rules.body_steps import interpreted
-from jacaros.bdi.rules.body_terms import plan_of_body
 from jacaros.bdi.rules.functions import known_names
 from jacaros.bdi.rules.plan_changes import look_at_plans
+from jacaros.bdi.rules.plan_terms import plan_of_body
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.condition_waits import ConditionObserver

@@ -17,7 +17,7 @@ from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.event import EVENT_INTENTION, Event, Raised
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.outcomes import Failure
+from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.plan_library import OwnSelects, PlanLibrary
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden

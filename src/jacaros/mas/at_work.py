@@ -9,8 +9,7 @@ from jacaros.asl.formatter import format_term
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.applicable_plans import Selection
 from jacaros.bdi.rules.body_steps import Step
-from jacaros.bdi.state.outcomes import FAILED
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan import FAILED, Plan
 from jacaros.mas.agent_host import AgentHost
 
 _LOOP = "asyncio.events"

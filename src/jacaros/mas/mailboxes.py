@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from contextlib import suppress
 
-from jacaros.bdi.state.outcomes import Failure
+from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.mas.ports import Mailbox
 from jacaros.terms.detaching import detached, holds_collection

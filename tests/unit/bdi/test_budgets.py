@@ -12,7 +12,7 @@ from jacaros.bdi.rules import sel_ev
 from jacaros.bdi.state import circumstance
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.outcomes import Failure
+from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import SOURCE_PERCEPT, atom, structure
 

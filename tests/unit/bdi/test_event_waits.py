@@ -2,9 +2,9 @@
 
 from recording_host import mind
 
-from jacaros.bdi.state.event_waits import EventWait, EventWaits
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.triggers import trigger
+from jacaros.bdi.state.waiting import EventWait, EventWaits
 from jacaros.terms.values import functor
 
 ADDED = trigger("+", "", functor("a", 1))

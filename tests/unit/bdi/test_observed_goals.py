@@ -7,8 +7,8 @@ from random import Random
 import pytest
 from recording_host import mind
 
+from jacaros.bdi.rules.clr_int import pending_event
 from jacaros.bdi.rules.meta_events import failed_number, observe_goals
-from jacaros.bdi.rules.stack import pending_event
 from jacaros.bdi.state.act import Act, Completion
 from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL

@@ -5,7 +5,7 @@ from types import CodeType
 
 import pytest
 
-from jacaros.bdi.fast.generated import line_numbers
+from jacaros.bdi.fast.generated import writer
 
 TEXT = """def first(x):
     if x:
@@ -32,9 +32,9 @@ def lines_by_name(code, found=None):
 
 @pytest.mark.parametrize("by_table", [True, False])
 def test_a_traceback_shows_the_lines_of_the_program(by_table, monkeypatch):
-    monkeypatch.setattr(line_numbers, "_TABLES_ARE_KNOWN", by_table)
+    monkeypatch.setattr(writer, "_TABLES_ARE_KNOWN", by_table)
     names = {}
-    exec(line_numbers.compile_text(TEXT, ORIGINS, "program.asl"), names)
+    exec(writer.compile_text(TEXT, ORIGINS, "program.asl"), names)
     with pytest.raises(ZeroDivisionError) as raised:
         names["first"](True)
     places = [(f.filename, f.lineno, f.name) for f in traceback.extract_tb(raised.value.__traceback__)[1:]]
@@ -47,7 +47,7 @@ def test_a_traceback_shows_the_lines_of_the_program(by_table, monkeypatch):
 
 
 def test_both_ways_give_the_same_lines(monkeypatch):
-    by_table = lines_by_name(line_numbers.compile_text(TEXT, ORIGINS, "program.asl"))
-    monkeypatch.setattr(line_numbers, "_TABLES_ARE_KNOWN", False)
-    by_tree = lines_by_name(line_numbers.compile_text(TEXT, ORIGINS, "program.asl"))
+    by_table = lines_by_name(writer.compile_text(TEXT, ORIGINS, "program.asl"))
+    monkeypatch.setattr(writer, "_TABLES_ARE_KNOWN", False)
+    by_tree = lines_by_name(writer.compile_text(TEXT, ORIGINS, "program.asl"))
     assert by_table == by_tree

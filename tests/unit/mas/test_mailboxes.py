@@ -2,7 +2,7 @@
 
 import pytest
 
-from jacaros.bdi.state.outcomes import Failure
+from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.mas.directory import Directory
 from jacaros.mas.mailboxes import Mailboxes

@@ -8,8 +8,16 @@ own generator: a run with a seed repeats itself.
 from collections.abc import Iterator
 from itertools import count
 
-from jacaros.bdi.actions.arguments import characters, elements, number, string, whole
-from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import (
+    ActionError,
+    WrongArguments,
+    characters,
+    elements,
+    internal_action,
+    number,
+    string,
+    whole,
+)
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.text import text
 from jacaros.terms.values import (

@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import fresh_names, lower
-from jacaros.bdi.actions.arguments import elements
-from jacaros.bdi.actions.internal_action import WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import WrongArguments, elements, internal_action
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.state.belief_base import parts, without_sources

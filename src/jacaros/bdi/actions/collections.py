@@ -7,8 +7,7 @@ when it is something else.  A change is not taken back when a search goes back b
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
-from jacaros.bdi.actions.arguments import members
-from jacaros.bdi.actions.internal_action import WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import WrongArguments, internal_action, members
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.deep import as_key

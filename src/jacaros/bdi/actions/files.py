@@ -1,7 +1,13 @@
 """Internal actions on files: programs that are included, saved, and looked for."""
 
-from jacaros.bdi.actions.arguments import characters, elements, string
-from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import (
+    ActionError,
+    WrongArguments,
+    characters,
+    elements,
+    internal_action,
+    string,
+)
 from jacaros.bdi.actions.java_regex import matches_whole
 from jacaros.bdi.rules.agent_text import agent_text
 from jacaros.bdi.rules.context import Context

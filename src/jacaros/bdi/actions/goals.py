@@ -9,14 +9,13 @@ from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import WrongArguments, internal_action
 from jacaros.bdi.explaining.failure_reason import code_place, nowhere, shown_goal
 from jacaros.bdi.rules import goals
-from jacaros.bdi.rules.body_terms import is_body_frame
+from jacaros.bdi.rules.clr_int import achieve, pending_event
 from jacaros.bdi.rules.context import Context
-from jacaros.bdi.rules.plan_terms import bindings_of, variables_of
-from jacaros.bdi.rules.stack import achieve, pending_event
+from jacaros.bdi.rules.plan_terms import bindings_of, is_body_frame, variables_of
 from jacaros.bdi.state.event import EVENT_GOAL, Event
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
-from jacaros.bdi.state.outcomes import SUSPENDED, Failure
+from jacaros.bdi.state.plan import SUSPENDED, Failure
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.waiting import OWN_SUSPENSION, OwnSuspension
 from jacaros.terms.order import annotation_set

@@ -2,8 +2,16 @@
 
 from collections.abc import Iterator
 
-from jacaros.bdi.actions.arguments import characters, elements, members, number, whole
-from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import (
+    ActionError,
+    WrongArguments,
+    characters,
+    elements,
+    internal_action,
+    members,
+    number,
+    whole,
+)
 from jacaros.bdi.actions.java_regex import replace_all
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue

@@ -3,8 +3,14 @@
 import re
 from dataclasses import replace
 
-from jacaros.bdi.actions.arguments import characters, string, whole
-from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import (
+    ActionError,
+    WrongArguments,
+    characters,
+    internal_action,
+    string,
+    whole,
+)
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.state.intention import PLAN
 from jacaros.errors import JacarosError

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator
 
-from jacaros.bdi.actions.arguments import characters, string, whole
-from jacaros.bdi.actions.internal_action import ActionError, internal_action
+from jacaros.bdi.actions.internal_action import ActionError, characters, internal_action, string, whole
 from jacaros.bdi.actions.java_regex import replace_all
 from jacaros.bdi.rules.context import Context
 from jacaros.errors import JacarosError

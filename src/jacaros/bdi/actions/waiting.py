@@ -9,9 +9,8 @@ from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.goals import post_external
 from jacaros.bdi.rules.plan_terms import trigger_of
 from jacaros.bdi.state.condition_waits import ConditionWait, asked_by
-from jacaros.bdi.state.event_waits import EventWait
 from jacaros.bdi.state.intention import Intention
-from jacaros.bdi.state.waiting import TimedWait
+from jacaros.bdi.state.waiting import EventWait, TimedWait
 from jacaros.terms.substitution import rename
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, String, Term, functor, make_list

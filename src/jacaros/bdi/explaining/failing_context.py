@@ -21,11 +21,11 @@ from jacaros.bdi.rules.functions import OF_AGENT
 from jacaros.bdi.rules.query import interpret_rule, solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import Table
+from jacaros.bdi.state.budget import SearchBudget, SearchLimit
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Answers, Rule
-from jacaros.bdi.state.search_budget import SearchBudget, SearchLimit
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.arithmetic import RUNNING
 from jacaros.terms.deep import CyclicTerm

@@ -1,13 +1,14 @@
 """The reasoning cycle of an agent with nothing out of the ordinary about it.
 
-Stands for `jacaros.bdi.rules.cycle` with all that it calls: `sensing`, `sel_ev`, `applicable_plans`, `add_im`, `sel_int`,
+Stands for `jacaros.bdi.rules.cycle` with all that it calls: `sel_ev`, `applicable_plans`, `add_im`, `sel_int`,
 `exec_int` and `clr_int`.  With empty queues the next cycle would pick the very event and intention of this one, so an
 intention goes on as long as nothing else wants a cycle.  What an agent has that is rarer is left to the rules.
 """
 
 from typing import Any
 
-from jacaros.bdi.rules import add_im, edge_signals, failure, rescue, sensing
+from jacaros.bdi.rules import add_im, failure, meta_events
+from jacaros.bdi.rules import cycle as plain_cycle
 from jacaros.bdi.rules.add_im import add_frame, go_without, log_inapplicable
 from jacaros.bdi.rules.clr_int import end_achieved_goals, pop_finished
 from jacaros.bdi.rules.cycle import begin_turn, has_work, look_at_names
@@ -20,7 +21,7 @@ from jacaros.bdi.rules.sel_int import select_intention
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.outcomes import FAILED, SUSPENDED
+from jacaros.bdi.state.plan import FAILED, SUSPENDED
 from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import RUNNING
@@ -42,7 +43,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     try:
         begun = fuel
         if agent.asleep:
-            edge_signals.awake(agent)
+            meta_events.awake(agent)
         events, intentions = agent.events, agent.intentions
         always = options.percept_interval == 1
         while fuel > 0 and not agent.stopped:
@@ -79,7 +80,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                     raise
                 except Exception as fault:
                     fuel -= 1
-                    rescue.give_up(agent, agent.current or intention, fault)
+                    failure.give_up(agent, agent.current or intention, fault)
                 if agent.requeued:
                     events.extendleft(reversed(agent.requeued))
                     agent.requeued.clear()
@@ -89,7 +90,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                     return False
             elif (events and agent.atomic is None) or agent.inbox:
                 fuel -= 1
-            elif not (agent.percepts or agent.tasks or (agent.edges and edge_signals.fall_asleep(agent))):
+            elif not (agent.percepts or agent.tasks or (agent.edges and meta_events.fall_asleep(agent))):
                 if not events and agent.atomic is None:
                     agent.cycles += begun - fuel
                     return False
@@ -112,15 +113,15 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         or (agent.urgency is not None and agent.inbox)
         or agent.options.percept_interval != 1
     ):
-        sensing.look_around(agent, cycle)
+        plain_cycle.look_around(agent, cycle)
         return
     agent.next_count -= 1  # what comes in may bring new names as any step does
     # What is usual: there is a message, or percepts, and nothing else.
     if agent.percepts:
         take_percepts(agent)
         if agent.tasks:
-            sensing.do_tasks(agent)
-            sensing.check_conditions(agent)
+            plain_cycle.do_tasks(agent)
+            plain_cycle.check_conditions(agent)
     waiting = len(agent.inbox)
     agent.called = waiting > 1 or agent.special or agent.urgent
     if waiting:

@@ -11,7 +11,7 @@ from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.predicates import given_positions
 from jacaros.bdi.fast.generated.unit import compile_search_function
 from jacaros.bdi.rules.searching import run, solve
-from jacaros.bdi.state.search_budget import SearchBudget
+from jacaros.bdi.state.budget import SearchBudget
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Functor, Term, Var
 

@@ -19,8 +19,7 @@ from jacaros.bdi.rules.forks import join_branch
 from jacaros.bdi.rules.query import answers, collecting
 from jacaros.bdi.rules.searching import Remaining, release, run
 from jacaros.bdi.state.intention import FIRST_SLOT, PLAN, STEP, Frame
-from jacaros.bdi.state.outcomes import FAILED
-from jacaros.bdi.state.plan import Plan, StepInfo
+from jacaros.bdi.state.plan import FAILED, Plan, StepInfo
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.unifier import Trail, undo
 from jacaros.terms.values import Annotated, Term, Var, arguments_of, bare, deref, functor, functor_of

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.state.outcomes import Failure
+from jacaros.bdi.state.plan import Failure
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import Trail, undo
 from jacaros.terms.values import String, Term, atom, functor

@@ -6,12 +6,14 @@ Each cycle takes in what has come, takes up one event, and lets one intention ma
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from jacaros.bdi.rules import edge_signals, rescue
+from jacaros.bdi.rules import failure, meta_events, waits
 from jacaros.bdi.rules.clr_int import end_achieved_goals
 from jacaros.bdi.rules.exec_int import execute
+from jacaros.bdi.rules.perceiving import take_percepts
+from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.sel_ev import event_of, handle_atomic_event, handle_event, is_ready
 from jacaros.bdi.rules.sel_int import select_intention
-from jacaros.bdi.rules.sensing import look_around
+from jacaros.bdi.rules.urgency import read_urgent_messages
 from jacaros.bdi.state.bounded_beliefs import INTERVAL, watch
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.errors import InternalError
@@ -41,7 +43,7 @@ def turn(agent: Circumstance) -> Iterator[None]:
     agent.running = True
     try:
         if agent.asleep:
-            edge_signals.awake(agent)
+            meta_events.awake(agent)
         yield
     finally:
         agent.running = False
@@ -84,7 +86,7 @@ def _cycle(agent: Circumstance) -> bool:
     except InternalError:
         raise
     except Exception as fault:
-        rescue.give_up(agent, agent.current or intention, fault)
+        failure.give_up(agent, agent.current or intention, fault)
     agent.cycles += 1
     if agent.requeued:
         agent.events.extendleft(reversed(agent.requeued))
@@ -104,7 +106,7 @@ def _waits(agent: Circumstance) -> bool:
     if (agent.events and agent.atomic is None) or agent.inbox:
         agent.cycles += 1
         return True
-    return bool(agent.percepts or agent.tasks or (agent.edges and edge_signals.fall_asleep(agent)))
+    return bool(agent.percepts or agent.tasks or (agent.edges and meta_events.fall_asleep(agent)))
 
 
 def _is_done(agent: Circumstance) -> bool:
@@ -119,3 +121,54 @@ def has_work(agent: Circumstance) -> bool:
     if agent.atomic is not None:
         return is_ready(agent, agent.atomic) or event_of(agent, agent.atomic) is not None
     return bool(agent.events or agent.intentions or agent.crowd)
+
+
+def look_around(agent: Circumstance, cycle: int) -> None:
+    """Take in what has come since the last look: percepts, ends of waits, one message."""
+    agent.next_count -= 1  # what comes in may bring new names as any step does
+    looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
+    housekeeping(agent, looks)
+    if agent.inbox and looks:
+        (read_message if agent.urgency is None else read_urgent_messages)(agent)
+    agent.called = bool(
+        agent.inbox
+        or agent.percepts
+        or agent.tasks
+        or agent.condition_waits.want_a_look()
+        or agent.special
+        or agent.urgent
+    )
+
+
+def looks_now(agent: Circumstance, cycle: int) -> bool:
+    """Whether an agent that does not look at percepts and messages in every cycle (``nrcbp``) does in this one."""
+    if cycle < agent.next_look and (agent.events or agent.intentions or agent.tasks):
+        return False
+    agent.next_look = cycle + agent.options.percept_interval
+    return True
+
+
+def housekeeping(agent: Circumstance, looks: bool = True) -> None:
+    """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
+    if agent.percepts and looks:
+        take_percepts(agent)
+    do_tasks(agent)
+    check_conditions(agent)
+
+
+def do_tasks(agent: Circumstance) -> None:
+    """The housekeeping that is due."""
+    while agent.tasks:
+        function, arguments = agent.tasks.popleft()
+        try:
+            function(agent, *arguments)
+        except InternalError:
+            raise
+        except Exception as fault:
+            failure.passed_over(agent, "a delayed change of an intention", fault)
+
+
+def check_conditions(agent: Circumstance) -> None:
+    """Resume the intentions whose awaited condition holds now."""
+    waits.check_conditions(agent)
+    do_tasks(agent)

@@ -6,14 +6,14 @@ from jacaros.bdi.actions.internal_action import Crashed
 from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.add_im import push
 from jacaros.bdi.rules.clr_int import pop_finished
+from jacaros.bdi.rules.failure import note_lack_of_memory
 from jacaros.bdi.rules.goal_failure import fail_intention
-from jacaros.bdi.rules.rescue import note_lack_of_memory
 from jacaros.bdi.rules.sel_ev import go_on_later
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import STEP, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.outcomes import FAILED, SUSPENDED, Fail
+from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail
 from jacaros.bdi.state.triggers import Goal
 from jacaros.bdi.state.waiting import OWN_SUSPENSION
 from jacaros.errors import InternalError

@@ -1,23 +1,25 @@
 """Failure: what becomes of a formula that fails or a goal without plan.  The only place where exceptions of internal
-actions become failures of goals."""
+actions become failures of goals.  What no rule of the language foresees, such as a lack of memory, costs an agent one
+message, event or intention; it says so, and lives on.
+"""
 
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
 from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
 from jacaros.bdi.rules.subplans import handles
+from jacaros.bdi.state.budget import SearchLimit
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.outcomes import Fail, Failure
-from jacaros.bdi.state.plan import StepInfo
-from jacaros.bdi.state.search_budget import SearchLimit
+from jacaros.bdi.state.plan import Fail, Failure, StepInfo
 from jacaros.bdi.state.triggers import Goal
 from jacaros.errors import InternalError
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import ATOMIC, resolve
 from jacaros.terms.text import display, text
+from jacaros.terms.unifier import undo
 from jacaros.terms.values import List, String, Term, Var, atom, functor
 
 _ENV_FAILURE_REASON, _BIND_PARAM_ERROR = functor("env_failure_reason", 1), functor("bind_param_error", 2)
@@ -213,3 +215,32 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
             return True
         index -= 1
     return False
+
+
+def told(fault: BaseException) -> str:
+    """An exception in words."""
+    message = str(fault)
+    return f"{type(fault).__name__}: {message}" if message else type(fault).__name__
+
+
+def note_lack_of_memory(agent: Circumstance, fault: BaseException) -> None:
+    """Report a `MemoryError` to the host, before anything else is done that needs memory."""
+    if isinstance(fault, MemoryError):
+        agent.architecture.out_of_memory()
+
+
+def passed_over(agent: Circumstance, what: str, fault: Exception) -> None:
+    """Something cannot be dealt with and is left out."""
+    note_lack_of_memory(agent, fault)
+    undo(agent.trail, 0)
+    agent.architecture.log("error", f"{what} is passed over: {told(fault)}")
+
+
+def give_up(agent: Circumstance, intention: Intention, fault: Exception) -> None:
+    """An intention cannot go on: it ends without failure events."""
+    note_lack_of_memory(agent, fault)
+    undo(agent.trail, 0)
+    agent.current = None
+    if not intention.dropped:
+        agent.architecture.log("error", f"intention {intention.id} is given up: {told(fault)}")
+        agent.finish(intention)

@@ -9,7 +9,7 @@ from typing import Any
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, STEP, Frame, Intention, NextStep
-from jacaros.bdi.state.outcomes import SUSPENDED
+from jacaros.bdi.state.plan import SUSPENDED
 from jacaros.terms.substitution import HOLDERS, rename
 from jacaros.terms.values import Var
 

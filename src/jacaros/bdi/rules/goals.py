@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
 from jacaros.bdi.rules import goal_failure, meta_events, waits
-from jacaros.bdi.rules.clr_int import pop_finished
+from jacaros.bdi.rules.clr_int import achieve, cut, pending_event, pop_finished, remove_event
 from jacaros.bdi.rules.failure import release_bindings
-from jacaros.bdi.rules.stack import achieve, cut, pending_event, remove_event
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import (

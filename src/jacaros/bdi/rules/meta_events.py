@@ -1,4 +1,6 @@
-"""Changes of goal states: events for plans that ask for them (``^!g[state(S)]``), and news for an observer."""
+"""Changes of goal states: events for plans that ask for them (``^!g[state(S)]``), and news for an observer; and events
+about the agent itself: it falls asleep, awakes, is to be shut down.
+"""
 
 from collections.abc import Callable
 from functools import partial
@@ -11,7 +13,7 @@ from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, l
 from jacaros.bdi.state.triggers import Goal, trigger
 from jacaros.terms.order import annotation_set
 from jacaros.terms.text import text
-from jacaros.terms.values import Annotated, String, Term, atom, structure
+from jacaros.terms.values import BY_SELF, Annotated, String, Term, atom, functor, structure
 
 _NO_REASON = String("")
 
@@ -124,3 +126,36 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     agent.goal_observer = observer
     agent.on_finish = partial(observe_rest, agent)
     agent.meta = agent.special = agent.called = True
+
+
+SLEEPING = trigger("+", "", functor("jag_sleeping", 0))
+AWAKING = trigger("+", "", functor("jag_awaking", 0))
+SHUTTING_DOWN = trigger("+", "", functor("jag_shutting_down", 1))
+
+
+def fall_asleep(agent: Circumstance) -> bool:
+    """There is nothing to do: True when a plan for ``+jag_sleeping`` is to be tried before the agent sleeps."""
+    if agent.drowsy or not agent.is_idle():
+        agent.asleep = agent.drowsy
+        return False
+    agent.drowsy = agent.asleep = True
+    if not agent.may_handle(SLEEPING):
+        return False
+    agent.asleep = False
+    agent.post(((SLEEPING,), None, BY_SELF, None))
+    return True
+
+
+def awake(agent: Circumstance) -> None:
+    """Something has come up: ``+jag_awaking``."""
+    if agent.asleep and not agent.is_idle():
+        agent.asleep = agent.drowsy = False
+        if agent.may_handle(AWAKING):
+            agent.post(((AWAKING,), None, BY_SELF, None))
+
+
+def shutting_down(agent: Circumstance, milliseconds: float) -> None:
+    """The agent will be ended after so many milliseconds: ``+jag_shutting_down(Ms)``."""
+    if agent.may_handle(SHUTTING_DOWN):
+        agent.post(((SHUTTING_DOWN, milliseconds), None, BY_SELF, None))
+        agent.architecture.ready()

@@ -1,20 +1,25 @@
-"""Percepts become beliefs: what bodies have noticed is believed or forgotten, and raises events, in its order."""
+"""Percepts become beliefs: what bodies have noticed is believed or forgotten, and raises events, in its order.
 
+A sensor that is faster than its agent asks whether the last percept has been taken up before it tells more.
+"""
+
+from collections.abc import Iterator
 from typing import Any
 
-from jacaros.bdi.rules import rescue
+from jacaros.bdi.rules import failure
 from jacaros.bdi.rules.belief_update import external_change, insert, look_again
 from jacaros.bdi.state import unkeyed_percepts
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import Row, Table, parts, take_away
 from jacaros.bdi.state.belief_base import literal as belief_literal
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import Event
+from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
+from jacaros.bdi.state.intention import GOAL, Intention
 from jacaros.bdi.state.rule import OpenFact
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.errors import InternalError
 from jacaros.terms.substitution import ATOMIC
-from jacaros.terms.values import Functor, Term
+from jacaros.terms.values import Functor, Term, functor_of
 
 Annotations = tuple[Term, ...]
 Holder = tuple[Annotations, Any]
@@ -62,7 +67,7 @@ def take_percepts(agent: Circumstance) -> None:
         except InternalError:
             raise
         except Exception as fault:
-            rescue.passed_over(agent, "what was perceived", fault)
+            failure.passed_over(agent, "what was perceived", fault)
     if waits and waits.want_a_look():
         agent.do_soon(look_again)
 
@@ -226,3 +231,40 @@ def _forget_percept(
         return False
     take_away(table, entry, held, annotations)
     return True
+
+
+def is_untaken(agent: Circumstance, name: str) -> bool:
+    """Whether a change of a belief called *name* has still to be noticed or handled, or its plan has still to run.
+
+    A plan that waits (for an action, a time, a condition) has had its turn.
+    """
+    for percepts in agent.percepts:
+        for each in percepts:
+            symbol = functor_of(each.literal)
+            if symbol is not None and symbol.name == name:
+                return True
+    for event in agent.events:
+        if event[EVENT_INTENTION] is None and _is_change(event[EVENT_GOAL][0], name):
+            return True
+    if agent.current is not None and agent.current.waiting is None and _handles(agent.current, name):
+        return True
+    return any(_handles(each, name) for each in _queued(agent)) if agent.intentions or agent.events else False
+
+
+def _handles(intention: Intention, name: str) -> bool:
+    """Whether an intention's first plan is for a change of a belief called *name*."""
+    return bool(intention.frames) and _is_change(intention.frames[0][GOAL][0], name)
+
+
+def _is_change(kind: Trigger, name: str) -> bool:
+    return kind.kind == "" and kind.functor.name == name
+
+
+def _queued(agent: Circumstance) -> Iterator[Intention]:
+    """The intentions that wait for nothing but their turn."""
+    yield from agent.intentions
+    yield from agent.crowd
+    for event in agent.events:
+        intention = event[EVENT_INTENTION]
+        if intention is not None:
+            yield intention

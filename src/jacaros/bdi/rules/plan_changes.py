@@ -7,12 +7,11 @@ from jacaros.asl.lowering import fresh_names, lower
 from jacaros.asl.reflection import Reflection
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.rules import belief_update, urgency
-from jacaros.bdi.rules.edge_signals import AWAKING, SLEEPING
 from jacaros.bdi.rules.functions import known_names
+from jacaros.bdi.rules.meta_events import AWAKING, SLEEPING
 from jacaros.bdi.state.belief_base import is_source
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.outcomes import Failure
-from jacaros.bdi.state.plan import Plan, label_of, with_subplans
+from jacaros.bdi.state.plan import Failure, Plan, label_of, with_subplans
 from jacaros.bdi.state.rule import Rule
 from jacaros.terms.plans import PLAN, RULE, TRIGGERS, is_body
 from jacaros.terms.substitution import resolve

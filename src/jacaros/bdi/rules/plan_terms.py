@@ -1,28 +1,44 @@
-"""Plans, triggers and frames as terms."""
+"""Plans as terms, ``{ +!g : c <- a; b }``, and plan bodies held by variables.
 
+The steps of a body that a variable holds run in a frame above the plan that holds it.
+"""
+
+from typing import Any
+
+from jacaros.asl import nodes
 from jacaros.asl.loader import parse_trigger
 from jacaros.asl.lowering import fresh_names, lower_plan, lower_trigger
+from jacaros.asl.reflection import Reflection
 from jacaros.bdi.state.belief_base import has_source, parts
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.intention import PLAN, Frame
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.intention import PLAN, Frame, NextStep
+from jacaros.bdi.state.plan import Failure, Plan
 from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.terms.order import annotation_set
-from jacaros.terms.plans import TRIGGERS, body_steps, is_body, step_parts, trigger_parts
+from jacaros.terms.plans import PLAN as PLAN_TERM
+from jacaros.terms.plans import RULE, TRIGGERS, body_steps, is_body, step_parts, trigger_parts
 from jacaros.terms.substitution import resolve
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import (
+    ACTION,
+    BY_SELF,
     SOURCE,
     Annotated,
     String,
     Term,
     Var,
     annotations_of,
+    arguments_of,
     atom,
     bare,
     deref,
+    functor,
+    functor_of,
     make_list,
     structure,
+)
+from jacaros.terms.values import (
+    PLAN as PLAN_KIND,
 )
 
 
@@ -92,3 +108,56 @@ def _fits(plan: Plan, literal: Term) -> bool:
     fits = unify(head, literal, trail)
     undo(trail, 0)
     return fits
+
+
+ERROR = functor("error", 1)
+_BODY = trigger("+", "", functor("body", 0, namespace="jacaros"))
+
+
+def is_body_frame(frame: Frame) -> bool:
+    """Whether a frame runs a body held by a variable, not a plan of its own."""
+    return frame[1][0] is _BODY
+
+
+def run_value(agent: Circumstance, value: Term, frame: Frame, next_step: NextStep) -> Any:
+    """A variable as a body formula: a plan body, or an action."""
+    term = resolve(value)
+    if is_body(term):
+        return _run_body(agent, term, frame, next_step)
+    symbol = functor_of(term)
+    if symbol is None or symbol in TRIGGERS or symbol in (PLAN_TERM, RULE):
+        unknown = bare(term).__class__ is Var
+        raise Failure((ERROR, atom("body_var_without_value" if unknown else "body_var_not_literal")))
+    if symbol.kind in (ACTION, PLAN_KIND):
+        return _run_body(agent, term, frame, next_step)
+    return agent.begin_act(symbol, arguments_of(term), annotations_of(term), next_step)  # type: ignore[attr-defined]
+
+
+def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: NextStep) -> Any:
+    """Run a body held by a variable, on a frame of its own above the plan's."""
+    frame[0] = next_step
+    plan = plan_of_body(agent, term)
+    assert agent.current is not None
+    if plan.first is not None:
+        inner: Frame = [plan.first, (_BODY,), BY_SELF, agent.trail.serial, plan, *([None] * plan.size)]
+        agent.current.frames.append(inner)
+        return plan.first(agent, inner)
+    return None
+
+
+def plan_of_body(agent: Circumstance, term: Term) -> Plan:
+    """A body as a plan; one that is run often is made once."""
+    known = agent.bodies.get(id(term))
+    if known is not None and known[0] is term:
+        plan: Plan = known[1]
+        return plan
+    body = Reflection(shared=True).body(term)
+    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("body")), None, body)
+    plan = Plan(node, atom("body"))
+    plan.body_term = term
+    plan.keep_all_variables()
+    agent.engine.give_steps(plan)
+    if len(agent.bodies) > 256:
+        agent.bodies.clear()
+    agent.bodies[id(term)] = (term, plan)
+    return plan

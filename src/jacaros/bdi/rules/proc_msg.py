@@ -5,7 +5,7 @@ from functools import lru_cache
 
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
-from jacaros.bdi.rules import belief_update, rescue, waits
+from jacaros.bdi.rules import belief_update, failure, waits
 from jacaros.bdi.rules.meta_events import post_new_goal
 from jacaros.bdi.rules.plan_terms import relevant_plans
 from jacaros.bdi.rules.query import solve_formula
@@ -65,7 +65,7 @@ def read_message(agent: Circumstance) -> None:
     except InternalError:
         raise
     except Exception as fault:
-        rescue.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
+        failure.passed_over(agent, f"a message ({message.performative}) from {message.sender}", fault)
         if message.performative.startswith("ask"):
             answer(agent, message, None)
 

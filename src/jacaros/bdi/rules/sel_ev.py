@@ -1,9 +1,9 @@
 """An event is taken up: rule SelEv, and the intention that it begins or goes on with."""
 
-from jacaros.bdi.rules import meta_events, rescue, subplans
+from jacaros.bdi.rules import failure, meta_events, subplans
 from jacaros.bdi.rules.add_im import log_inapplicable, push, select_plan
+from jacaros.bdi.rules.clr_int import remove_event
 from jacaros.bdi.rules.goal_failure import unplanned
-from jacaros.bdi.rules.stack import remove_event
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
@@ -76,10 +76,10 @@ def event_of(agent: Circumstance, intention: Intention) -> Event | None:
 def pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
     """What escapes while an event is handled; the agent goes on with the next one."""
     agent.current = None
-    rescue.passed_over(agent, "an event", fault)
+    failure.passed_over(agent, "an event", fault)
     intention = event[EVENT_INTENTION]
     if intention is not None:
-        rescue.give_up(agent, intention, fault)
+        failure.give_up(agent, intention, fault)
 
 
 def begin_intention(agent: Circumstance, event: Event) -> bool:

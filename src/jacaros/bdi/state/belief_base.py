@@ -4,10 +4,10 @@ import itertools
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from jacaros.bdi.state.budget import SearchBudget
 from jacaros.bdi.state.engine import Engine
 from jacaros.bdi.state.mixed_beliefs import FEW, Late, Mixed, discard, key_of
 from jacaros.bdi.state.rule import OpenFact
-from jacaros.bdi.state.search_budget import SearchBudget
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms import values
 from jacaros.terms.order import annotation_set

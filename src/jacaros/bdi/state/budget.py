@@ -1,14 +1,16 @@
 """Budgets: how much of something an agent may hold at the same time (agent options ``belief_limit``, ``event_limit``,
-``intention_limit`` and ``mailbox_limit``).
+``intention_limit`` and ``mailbox_limit``), and how much it may search in one cycle (``search_limit``).
 
-A program that never stops growing loses some of its goals, with a reason, and not the memory of the whole run.
+A program that never stops growing loses some of its goals, with a reason, and not the memory of the whole run.  A search
+without end would leave nobody a turn; agents without that option count nothing.
 """
 
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final, Protocol
 
 from jacaros.bdi.architecture import Architecture
-from jacaros.bdi.state.outcomes import Failure
-from jacaros.terms.values import String, atom, functor
+from jacaros.bdi.state.plan import Failure
+from jacaros.terms.values import String, Term, atom, functor
 
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 
@@ -86,3 +88,54 @@ class Budget:
 
 def _is_worth_a_line(count: int) -> bool:
     return str(count).strip("0") == "1"
+
+
+class SearchLimit(Exception):
+    """A search has used the budget up."""
+
+
+class SearchBudget:
+    """Counts what searches do: calls of rules, and answers of internal actions.
+
+    Args:
+        limit: how many there may be in one cycle.
+    """
+
+    __slots__ = ("_left", "limit")
+
+    def __init__(self, limit: int) -> None:
+        self.limit = self._left = limit
+
+    def renew(self) -> None:
+        """A cycle begins."""
+        self._left = self.limit
+
+    def spend(self) -> None:
+        """A rule is called, or an internal action gives an answer.
+
+        Raises:
+            SearchLimit: that is one too many.  What deals with the failure may search as much again.
+        """
+        self._left -= 1
+        if self._left < 0:
+            self._left = self.limit
+            raise SearchLimit(
+                f"the search takes more than {self.limit} rules and answers (option search_limit)"
+            )
+
+    def counting_answers(self, values: Iterable[Term]) -> Iterator[Term]:
+        """The answers of an internal action, each at the expense of this budget."""
+        for value in values:
+            self.spend()
+            yield value
+
+    def counting(
+        self, search: Callable[..., Iterator[tuple[Term, ...]]]
+    ) -> Callable[..., Iterator[tuple[Term, ...]]]:
+        """The function of a rule that searches at the expense of this budget."""
+
+        def counted(*arguments: Any) -> Iterator[tuple[Term, ...]]:
+            self.spend()
+            return search(*arguments)
+
+        return counted

@@ -9,18 +9,16 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import SELECT_OPTION, BeliefTables
 from jacaros.bdi.state.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
-from jacaros.bdi.state.budget import budgets
+from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
-from jacaros.bdi.state.event_waits import EventWaits
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.probe import Probe
-from jacaros.bdi.state.search_budget import SearchBudget
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, Waiting
+from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term

@@ -1,4 +1,4 @@
-"""A plan as the mind keeps it: its syntax, and what the compiler made of it."""
+"""A plan: its syntax, its label, the places of its variables in a frame, and the ways in which its steps may end."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -182,3 +182,29 @@ def label_of(node: nodes.Plan, number: int) -> Term:
     if node.label is None or isinstance(node.label, nodes.Variable):
         return atom(f"p__{number}")
     return lower_value(node.label)
+
+
+class Fail(Exception):
+    """A formula does not hold: the step fails with the error that goes with its kind."""
+
+
+class Failure(Fail):
+    """A step fails with given annotations.
+
+    Attributes:
+        annotations: terms for the failure event, ``error(..)`` among them.
+    """
+
+    def __init__(self, *annotations: Term) -> None:
+        super().__init__(*annotations)
+        self.annotations = annotations
+
+
+class NextPlan(Exception):
+    """Among all applicable plans, one answer of a plan's context is enough."""
+
+
+SUSPENDED = object()
+"""What a step returns when its intention has to wait."""
+FAILED = object()
+"""What a step returns when its formula does not hold; the same as raising `Fail`, at a tenth of the price."""

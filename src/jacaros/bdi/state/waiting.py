@@ -1,13 +1,15 @@
 """What an intention waits for, as data.  `jacaros.bdi.rules.waits` says what follows when a wait ends.
 
-A wait for an event or a condition stands with the index that finds it (`event_waits`, `condition_waits`).
+Waits for events (``.wait({+e})``) are found by the kind of event, so that the others that wait cost an event nothing; a
+wait for a condition stands with the index that finds it (`condition_waits`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from jacaros.bdi.architecture import Timer
 from jacaros.bdi.state.intention import Frame, Intention, NextStep
+from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.values import Functor, Term, atom, functor
 
 ACTION = functor("action", 1)
@@ -157,3 +159,55 @@ class CoroutineWait(Waiting):
 
 _ASK: Functor = atom("ask")
 _GOAL_CONDITION: Functor = atom("goal_condition")
+
+
+class EventWait(TimedWait):
+    """Waits for an event.
+
+    Attributes:
+        kind: of the events that may be meant; None for all.
+        pattern: what the literal of the event has to unify with.
+        number: it is the so-many-th wait of the agent.
+    """
+
+    __slots__ = ("kind", "number", "pattern")
+
+    def __init__(
+        self,
+        intention: Intention,
+        reason: Term,
+        elapsed: Term,
+        began: float,
+        kind: Trigger | None,
+        pattern: Term,
+    ) -> None:
+        super().__init__(intention, reason, elapsed, began)
+        self.kind, self.pattern = kind, pattern
+        self.number = 0
+
+
+class EventWaits(dict[Trigger | None, dict[int, EventWait]]):
+    """The waits of one agent: those for a kind of event, by their numbers; a kind without any has no entry."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._count = 0
+
+    def add(self, wait: EventWait, number: int | None = None) -> None:
+        """Begin to wait; *number* is that of a wait that was stored."""
+        self._count = wait.number = self._count + 1 if number is None else number
+        self.setdefault(wait.kind, {})[wait.number] = wait
+
+    def remove(self, wait: EventWait) -> None:
+        """Wait no more; nothing happens if it is over already."""
+        held = self.get(wait.kind)
+        if held is not None and held.pop(wait.number, None) is not None and not held:
+            del self[wait.kind]
+
+    def candidates(self, kind: Trigger) -> Iterator[EventWait]:
+        """The waits that an event of that kind may end, in the order in which they began."""
+        own, all_ = self.get(kind), self.get(None)
+        if all_ is None:
+            return iter(() if own is None else list(own.values()))
+        both = (*(own.values() if own is not None else ()), *all_.values())
+        return iter(sorted(both, key=lambda wait: wait.number))

@@ -43,7 +43,7 @@ from jacaros.bdi.state.literals import (
     positive,
     resolve_all,
 )
-from jacaros.bdi.state.outcomes import FAILED, NextPlan
+from jacaros.bdi.state.plan import FAILED, NextPlan
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import calculated
 from jacaros.terms.negation import qualify
