@@ -66,14 +66,11 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                 intention = select_intention(agent)
             if intention is not None:
                 try:
-                    if (
-                        agent.special
-                        or agent.event_waits
-                        or agent.option_filter.rows
-                        or agent.atomic is not None
-                    ):
+                    if agent.special or agent.event_waits or agent.option_filter.rows:
                         execute(agent, intention)
                         fuel -= 1
+                    elif agent.atomic is not None:
+                        fuel = execute_atomic(agent, intention, fuel)
                     else:
                         fuel = execute_usual(agent, intention, fuel)
                 except InternalError:
@@ -215,6 +212,27 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
             frames.append(made)
         return True
     return add_frame(agent, intention, made) or go_without(agent, intention, goal, annotations, made)
+
+
+def execute_atomic(agent: Circumstance, intention: Intention, fuel: int) -> int:
+    """Steps of an atomic intention while nothing new comes in; gives the fuel left.
+
+    After a step it is the last of those that can run, and the one that `select_intention` would find.
+    """
+    intentions = agent.intentions
+    while True:
+        execute(agent, intention)
+        fuel -= 1
+        if (
+            fuel <= 0
+            or agent.atomic is not intention
+            or agent.called
+            or agent.stopped
+            or not intentions
+            or intentions[-1] is not intention
+        ):
+            return fuel
+        intentions.pop()
 
 
 def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - see below

@@ -177,7 +177,7 @@ def literal_from(content: Term, sender: str) -> tuple[Functor | None, tuple[Term
     return parts(from_sender(content, sender))
 
 
-@lru_cache(4096)
+@lru_cache(20_000)  # fewer than there are agents, and it would miss every time
 def _only_from(sender: str) -> tuple[Term, ...]:
     """Return the annotations of what comes from one agent: one tuple for all its messages."""
     return ((SOURCE, atom(sender)),)
