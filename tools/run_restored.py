@@ -21,7 +21,7 @@ from jacaros.mas.agent_host import AgentHost
 CHANCE = 0.2
 """How likely a mind is exchanged after a few cycles."""
 FEW = 6
-KEPT = ("accepts", "evaluators", "goal_observer", "on_finish", "probe", "project_functions")
+KEPT = ("accepts", "evaluators", "goal_observer", "on_finish", "on_lost", "project_functions")
 """What the host has given to the mind."""
 
 random = Random(os.environ.get("JACAROS_RESTORED_SEED", "1"))

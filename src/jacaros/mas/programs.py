@@ -40,7 +40,7 @@ class Programs:
         folders: where programs and included files are looked for, in order.
         warn: takes the text of a warning about a program.
         code: the project's Python code, which adds internal actions and functions.
-        prepare: what is run of a program that was read; all of it unless given.
+        prepare: gives what is run of a program that was read, and may add actions to the code; all of it unless given.
 
     Attributes:
         folders: where they are looked for.
@@ -51,12 +51,12 @@ class Programs:
         folders: Sequence[Path],
         warn: Callable[[str], None],
         code: PythonCode,
-        prepare: Callable[[nodes.Program], nodes.Program] | None = None,
+        prepare: Callable[[nodes.Program, PythonCode], nodes.Program] | None = None,
     ) -> None:
         self.folders = tuple(folders)
         self._code = code
         self._warn = warn
-        self._prepare = prepare or (lambda program: program)
+        self._prepare = prepare
         self._read: dict[Path, nodes.Program] = {}
 
     def load_all(self, agents: Sequence[AgentSpec]) -> list[nodes.Program]:
@@ -118,7 +118,8 @@ class Programs:
 
     def _checked(self, path: Path, written: str, chooses: bool) -> nodes.Program:
         program, warnings = self._parse(path, written)
-        program = self._prepare(program)
+        if self._prepare is not None:
+            program = self._prepare(program, self._code)
         found = check_for_run(program, KnownActions(self._code.actions, self._code.hint))
         for warning in wanted([*warnings, *found]):
             if _concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):

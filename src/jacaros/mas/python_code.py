@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
 
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.bdi.actions.internal_action import STANDARD, ActionError, InternalAction
@@ -13,6 +14,9 @@ from jacaros.terms.values import Term
 
 if TYPE_CHECKING:
     from jacaros.extension.collecting import Additions, Limits
+
+_ASSERTIONS: Final = "jacaros.testing.assertions"
+"""The module with the internal actions behind the assertion goals."""
 
 
 class PythonCode:
@@ -48,6 +52,8 @@ class PythonCode:
         """A program uses a name with a dot: import the module that it names, if there is one."""
         if name.startswith("cartago."):
             self._add_python_objects()
+        elif name.startswith("jacaros."):
+            self._add_assertions()
         parts = name.split(".")[:-1]
         for length in range(1, len(parts) + 1):
             module = ".".join(parts[:length])
@@ -66,6 +72,11 @@ class PythonCode:
             if self.restricted:
                 found |= _refused(found)
             self.actions.update(found)
+
+    def _add_assertions(self) -> None:
+        # By name, as a project's own modules: a run needs nothing of the tests unless a program does.
+        for name, action in import_module(_ASSERTIONS).UNTESTED.items():
+            self.actions.setdefault(name, action)
 
     def _read_module(self, module: str) -> None:
         # Imported here: most projects have no Python code.

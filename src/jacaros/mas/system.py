@@ -74,7 +74,7 @@ class System:
         clock: Clock,
         console: Console,
         options: RunOptions | None = None,
-        prepare: Callable[[Program], Program] | None = None,
+        prepare: Callable[[Program, PythonCode], Program] | None = None,
         when_made: Callable[[AgentHost], None] | None = None,
         when_idle: Callable[[], None] | None = None,
     ) -> None:
@@ -121,7 +121,9 @@ class System:
         )
 
     def _found(
-        self, prepare: Callable[[Program], Program] | None, when_made: Callable[[AgentHost], None] | None
+        self,
+        prepare: Callable[[Program, PythonCode], Program] | None,
+        when_made: Callable[[AgentHost], None] | None,
     ) -> Population:
         def warn(text: str) -> None:
             self.console.log(text, "warning")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from jacaros.asl.diagnostics import excerpt
 from jacaros.asl.source import Span
-from jacaros.bdi.state.probe import Assertion
+from jacaros.testing.probe import Assertion
 from jacaros.testing.suites import AgentTest, Suite
 
 

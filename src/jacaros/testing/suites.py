@@ -32,6 +32,7 @@ from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import Programs, library_file
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ProjectModules
+from jacaros.testing.assertions import UNTESTED
 from jacaros.text_files import file_text, is_file
 
 LIBRARY: Final = "tester_agent.asl"
@@ -243,7 +244,12 @@ def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes
         AslError: with the errors of all of them.
     """
     code = PythonCode(ProjectModules(deployment.base_path, *deployment.source_paths))
-    return Programs(deployment.source_paths, warn, code, with_assertions).load_all(deployment.agents)
+    code.actions.update(UNTESTED)
+
+    def prepare(program: nodes.Program, code: PythonCode) -> nodes.Program:
+        return with_assertions(program)
+
+    return Programs(deployment.source_paths, warn, code, prepare).load_all(deployment.agents)
 
 
 def _lone(path: Path) -> Deployment:

@@ -8,10 +8,12 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from jacaros.asl import nodes
 from jacaros.asl.lowering import lower_value
 from jacaros.asl.source import Span
 from jacaros.bdi.explaining.failure_reason import FailureReason
@@ -20,7 +22,6 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.goals import describe
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.intention import PLAN, STEP, Intention
-from jacaros.bdi.state.probe import Assertion
 from jacaros.bdi.state.waiting import is_action
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import InternalError, JacarosError
@@ -28,12 +29,14 @@ from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment, ProjectError
 from jacaros.mas.loading import mapped
 from jacaros.mas.options import RunOptions
+from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.terms.text import text
-from jacaros.terms.values import Term
+from jacaros.testing.assertions import actions
 from jacaros.testing.fakes import Fakes
 from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
+from jacaros.testing.probe import Assertion, Probe
 from jacaros.testing.suites import AgentTest, Suite, with_assertions
 
 if TYPE_CHECKING:
@@ -130,6 +133,8 @@ class Trial:
         self._cycles = 0
         self._began = self._began_run = 0.0
         self._timers: list[Any] = []
+        self._probes: dict[str, Probe] = {}
+        self._actions = actions(self._probes)
         clock_class = _MeteredVirtualClock if options.fast else _MeteredWallClock
         self._clock: Clock = clock_class(self._busy)
         self._others: FakeGraph | None = None
@@ -148,10 +153,15 @@ class Trial:
             self._clock,
             self,
             RunOptions(fast=options.fast, seed=options.seed, world=world),
-            with_assertions,
+            self._prepare,
             self._observe,
             self._idle,
         )
+
+    def _prepare(self, program: nodes.Program, code: PythonCode) -> nodes.Program:
+        """Add the assertion goals to a program, and the actions behind them, which report to this test."""
+        code.actions.update(self._actions)
+        return with_assertions(program)
 
     def run(self) -> list[Outcome]:
         """Make the tests; their outcomes, in order.
@@ -174,11 +184,6 @@ class Trial:
     async def _main(self) -> None:
         asyncio.get_running_loop().set_exception_handler(self._escaped)
         await self._mas.run(self._next)
-
-    @property
-    def output(self) -> Sequence[str]:
-        """What was printed and logged in the present test."""
-        return self._outcome.output
 
     # ---- one test after the other
 
@@ -215,9 +220,9 @@ class Trial:
         if self._others is not None:
             self._others.forget()
         elif self._mappings:
-            self.others()
+            self._others_in_graph()
 
-    def others(self) -> "FakeGraph":
+    def _others_in_graph(self) -> "FakeGraph":
         """The rest of the ROS graph, which comes into being when a test first plays it."""
         if self._others is None:
             from jacaros.testing.fake_graph import FakeGraph  # here: most tests have no ROS graph
@@ -324,18 +329,20 @@ class Trial:
         """Look on at an agent, from its making on."""
         mind = host.mind
         if isinstance(mind, Mind):
-            probe = _AgentProbe(self, host)
-            mind.probe = probe
-            host.intercept = probe.fakes.begin
-            host.intercept_stop = probe.fakes.stop
+            fakes = Fakes(mind.complete, host.set_timer)
+            printed = partial(self._printed_by, host.name)
+            self._probes[host.name] = Probe(fakes, self._asserted, printed, self._others_in_graph)
+            mind.on_lost = partial(self._lost, host.name)
+            host.intercept = fakes.begin
+            host.intercept_stop = fakes.stop
 
-    def asserted(self, assertion: Assertion) -> None:
+    def _asserted(self, assertion: Assertion) -> None:
         """An agent made an assertion."""
         self._outcome.assertions += 1
         if not assertion.passed:
             self._outcome.problems.append(Problem.of(assertion))
 
-    def lost(self, agent: str, told: str, details: Sequence[str], span: Span | None) -> None:
+    def _lost(self, agent: str, told: str, details: Sequence[str], span: Span | None) -> None:
         """An intention of an agent failed, and nobody took care of that."""
         outcome = self._outcome
         if outcome.output and outcome.output[-1].startswith(f"[{agent}] ") and told in outcome.output[-1]:
@@ -344,6 +351,10 @@ class Trial:
         first, _, rest = told.partition(": ")
         told_further = (rest, *details) if rest else tuple(details)
         outcome.problems.append(Problem(f"agent {agent}: {first}", told_further, span))
+
+    def _printed_by(self, agent: str) -> Sequence[str]:
+        prefix = f"[{agent}] "
+        return [line.removeprefix(prefix) for line in self._outcome.output if line.startswith(prefix)]
 
     def print(self, agent: str, text: str) -> None:
         """Keep a line that an agent prints."""
@@ -354,34 +365,6 @@ class Trial:
         del level
         if text not in self._warnings:
             self._outcome.output.append(text)
-
-
-class _AgentProbe:
-    """Looks on at one agent of a trial."""
-
-    def __init__(self, trial: Trial, host: AgentHost) -> None:
-        self._trial = trial
-        self._name = host.name
-        self.fakes = Fakes(host.mind.complete, host.set_timer)
-
-    def asserted(self, assertion: Assertion) -> None:
-        self._trial.asserted(assertion)
-
-    def lost(self, text: str, details: Sequence[str], span: Span | None) -> None:
-        self._trial.lost(self._name, text, details, span)
-
-    def fake(self, action: Term, outcome: Term) -> None:
-        self.fakes.add(action, outcome)
-
-    def acts(self) -> Sequence[Term]:
-        return self.fakes.acts
-
-    def others(self) -> "FakeGraph":
-        return self._trial.others()
-
-    def prints(self) -> Sequence[str]:
-        prefix = f"[{self._name}] "
-        return [line.removeprefix(prefix) for line in self._trial.output if line.startswith(prefix)]
 
 
 def _failure(test: AgentTest, reason: FailureReason | None) -> Problem:

@@ -2,12 +2,10 @@
 
 from jacaros.bdi.actions import (  # noqa: F401 - each registers its actions
     agents,
-    assertions,
     beliefs,
     collections,
     files,
     goals,
-    graph_assertions,
     lists,
     messages,
     output,

@@ -173,8 +173,8 @@ def _tell_people(agent: Circumstance, loss: lost_goals.Loss, count: int = 1) -> 
     """Warn of a lost goal, the *count*-th of its kind."""
     note = f"\n  {count} goals have failed for this reason" if count > 1 else ""
     agent.architecture.log("warning", loss.text() + note)
-    if agent.probe is not None:
-        agent.probe.lost(loss.told, loss.details, loss.span)
+    if agent.on_lost is not None:
+        agent.on_lost(loss.told, loss.details, loss.span)
 
 
 def _lost_in_handler(

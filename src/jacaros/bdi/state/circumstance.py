@@ -1,9 +1,10 @@
 """The state of a mind: beliefs, plans, events, intentions, and what waits.  No behaviour beyond keeping it in order."""
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from jacaros.asl.source import Span
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
@@ -15,7 +16,6 @@ from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
-from jacaros.bdi.state.probe import Probe
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, Waiting
@@ -68,7 +68,7 @@ class Circumstance:
         goal_observer: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
         parsed: texts that were read lately (`jacaros.bdi.rules.context.Parsed`), by text and number of functions.
         on_finish: called with each intention that ends with goals on its stack, or None.
-        probe: the test that looks on, or None.
+        on_lost: called with what people are told of each lost goal (first line, further lines, place), or None.
         intentions_made: number of intentions so far.
         plans_made: number of plans so far, for the labels of those that have none.
         bodies: compiled forms of plan bodies held by variables.
@@ -146,6 +146,7 @@ class Circumstance:
         "next_count",
         "next_look",
         "on_finish",
+        "on_lost",
         "option_filter",
         "options",
         "outer_frame",
@@ -154,7 +155,6 @@ class Circumstance:
         "pending_asks",
         "percepts",
         "plans_made",
-        "probe",
         "project_functions",
         "refused_options",
         "requeued",
@@ -230,7 +230,7 @@ class Circumstance:
         self.goal_observer: Callable[[str, str, int, int, str], None] | None = None
         self.on_finish: Callable[[Intention], None] | None = None
         self.parsed: dict[tuple[str, int], Any] = {}
-        self.probe: Probe | None = None
+        self.on_lost: Callable[[str, Sequence[str], Span | None], None] | None = None
         self.goal_conditions = False
         self.subplans = False
         self.special = False

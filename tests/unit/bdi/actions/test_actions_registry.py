@@ -41,3 +41,7 @@ def test_each_action_is_explained_by_its_call(name: str) -> None:
 def test_actions_can_be_called_with_the_fewest_arguments(mind: FakeContext) -> None:
     assert mind.succeeds(".print")
     assert mind.succeeds(".stopMAS")
+
+
+def test_the_mind_declares_no_actions_but_those_of_the_language() -> None:
+    assert [name for name in STANDARD if not name.startswith(".")] == []

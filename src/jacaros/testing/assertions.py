@@ -1,0 +1,345 @@
+"""The internal actions behind ``$jacaros/test_assert.asl``: what the assertion goals of tests do.
+
+An assertion that fails is told to whoever tests the agent, else to people, and the plan goes on: as on Jason, one test may
+tell several failures.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from itertools import groupby
+from types import MappingProxyType
+from typing import Final
+
+from jacaros.bdi.actions.internal_action import ActionError, InternalAction
+from jacaros.bdi.rules.context import Context
+from jacaros.errors import InternalError
+from jacaros.terms.collections import QueueValue, SetValue
+from jacaros.terms.substitution import equal
+from jacaros.terms.text import display, text
+from jacaros.terms.unifier import Trail, undo, unify
+from jacaros.terms.values import FALSE, TRUE, Term, functor_of, is_list, list_items
+from jacaros.testing.probe import Asserting, Probe
+
+_SHOWN = 8
+"""Number of beliefs, or lines, that are shown beside an assertion that does not hold."""
+_SHOWN_MESSAGES = 5
+"""Number of different messages that are shown."""
+
+_Function = Callable[..., None]
+_declared: dict[str, tuple[_Function, int | tuple[int, int]]] = {}
+
+
+def _action(arity: int | tuple[int, int]) -> Callable[[_Function], _Function]:
+    """Declare a function as the internal action ``jacaros.`` and its name."""
+
+    def declare(function: _Function) -> _Function:
+        _declared[f"jacaros.{function.__name__}"] = (function, arity)
+        return function
+
+    return declare
+
+
+def actions(probes: Mapping[str, Probe]) -> dict[str, InternalAction]:
+    """Return the internal actions of tests for the agents of one run.
+
+    Args:
+        probes: the test that looks on, by the name of the agent; looked up at each call.
+    """
+
+    def bound(function: _Function) -> Callable[..., None]:
+        def run(ctx: Context, *arguments: Term) -> None:
+            function(Asserting(ctx, probes.get(ctx.agent.name)), *arguments)
+
+        return run
+
+    return {
+        name: InternalAction(name, bound(function), arity=arity)
+        for name, (function, arity) in _declared.items()
+    }
+
+
+def _holds(ctx: Context, formula: Term) -> bool:
+    """Whether a formula holds; nothing stays bound."""
+    mark = len(ctx.trail)
+    try:
+        return ctx.succeeds(formula)
+    finally:
+        undo(ctx.trail, mark)
+
+
+def _is_in(item: Term, items: Iterable[Term]) -> bool:
+    trail = Trail()
+    for candidate in items:
+        if unify(item, candidate, trail):
+            undo(trail, 0)
+            return True
+        undo(trail, 0)
+    return False
+
+
+def _same(expected: Term, actual: Term) -> bool:
+    """Equality of assertions: as ``==``, but lists need only have the same elements, in any order, as on Jason."""
+    if is_list(expected) and is_list(actual):
+        left, right = list(list_items(expected)), list(list_items(actual))
+        return all(_is_in(item, right) for item in left) and all(_is_in(item, left) for item in right)
+    return equal(expected, actual)
+
+
+def _items(collection: Term) -> list[Term] | None:
+    """The elements of a list, set or queue; None for other terms."""
+    if is_list(collection):
+        return list(list_items(collection))
+    if isinstance(collection, (SetValue, QueueValue)):
+        return list(collection)
+    return None
+
+
+def _believed(ctx: Context, formula: Term) -> str:
+    """What is believed of the predicate of a formula, for people."""
+    symbol = functor_of(formula)
+    if symbol is None or symbol.kind or symbol in (TRUE, FALSE):
+        return "it does not hold"
+    held = [text(literal) for literal in ctx.agent.beliefs.literals() if _alike(functor_of(literal), symbol)]
+    if not held:
+        return f"there is no belief {symbol!r}"
+    more = f" and {len(held) - _SHOWN} more" if len(held) > _SHOWN else ""
+    return f"believed is {', '.join(held[:_SHOWN])}{more}"
+
+
+def _alike(one: Term, other: Term) -> bool:
+    return one is not None and (one.name, one.arity) == (other.name, other.arity)
+
+
+@_action((2, 3))
+def assert_equals(call: Asserting, expected: Term, actual: Term, tolerance: Term = None) -> None:
+    """``jacaros.assert_equals(Expected, Actual [,Tolerance])``; see `_same` for what is equal."""
+    if tolerance is None:
+        call.tell(_same(expected, actual), text(expected), f"was {text(actual)}")
+        return
+    numbers = (expected, actual, tolerance)
+    passed = (
+        all(isinstance(n, float) for n in numbers) and expected - tolerance <= actual <= expected + tolerance
+    )
+    call.tell(passed, f"{text(expected)} +/- {text(tolerance)}", f"was {text(actual)}")
+
+
+@_action(2)
+def assert_not_equals(call: Asserting, unwanted: Term, actual: Term) -> None:
+    """``jacaros.assert_not_equals(Unwanted, Actual)``."""
+    call.tell(not _same(unwanted, actual), f"anything but {text(unwanted)}", f"was {text(actual)}")
+
+
+@_action(1)
+def assert_true(call: Asserting, formula: Term) -> None:
+    """``jacaros.assert_true(Formula)``: it holds now."""
+    _assert_that(call, formula, True)
+
+
+@_action(1)
+def assert_false(call: Asserting, formula: Term) -> None:
+    """``jacaros.assert_false(Formula)``: it does not hold now."""
+    _assert_that(call, formula, False)
+
+
+def _assert_that(call: Asserting, formula: Term, wanted: bool) -> None:
+    expected = text(formula) if wanted else f"not {text(formula)}"
+    try:
+        passed = _holds(call.ctx, formula) is wanted
+    except InternalError:
+        raise
+    except Exception as fault:
+        # The assertion fails where the test makes it.
+        call.tell(False, expected, f"it cannot be evaluated: {fault or type(fault).__name__}")
+        return
+    found = "" if passed else _believed(call.ctx, formula) if wanted else "it holds"
+    call.tell(passed, expected, found)
+
+
+@_action(2)
+def assert_contains(call: Asserting, collection: Term, item: Term) -> None:
+    """``jacaros.assert_contains(Collection, Item)``: an element of the list or set unifies with *item*."""
+    _assert_contents(call, collection, item, True)
+
+
+@_action(2)
+def assert_not_contains(call: Asserting, collection: Term, item: Term) -> None:
+    """``jacaros.assert_not_contains(Collection, Item)``: no element of the list or set unifies with *item*."""
+    _assert_contents(call, collection, item, False)
+
+
+def _assert_contents(call: Asserting, collection: Term, item: Term, wanted: bool) -> None:
+    items = _items(collection)
+    passed = items is not None and _is_in(item, items) is wanted
+    told = "is no list or set" if items is None else "does not contain it" if wanted else "contains it"
+    expected = text(item) if wanted else f"no {text(item)}"
+    call.tell(passed, expected, f"{text(collection)} {told}")
+
+
+@_action(2)
+def assert_greater_than(call: Asserting, left: Term, right: Term) -> None:
+    """``jacaros.assert_greater_than(A, B)``: numbers, A > B."""
+    passed = isinstance(left, float) and isinstance(right, float) and left > right
+    call.tell(passed, f"more than {text(right)}", f"was {text(left)}")
+
+
+@_action(2)
+def assert_greater_than_equals(call: Asserting, left: Term, right: Term) -> None:
+    """``jacaros.assert_greater_than_equals(A, B)``: numbers, A >= B."""
+    passed = isinstance(left, float) and isinstance(right, float) and left >= right
+    call.tell(passed, f"{text(right)} or more", f"was {text(left)}")
+
+
+@_action(3)
+def assert_between(call: Asserting, value: Term, least: Term, most: Term) -> None:
+    """``jacaros.assert_between(X, Least, Most)``: numbers, both bounds included."""
+    passed = all(isinstance(n, float) for n in (value, least, most)) and least <= value <= most
+    call.tell(passed, f"{text(least)} to {text(most)}", f"was {text(value)}")
+
+
+@_action(0)
+def force_pass(call: Asserting) -> None:
+    """``jacaros.force_pass``: an assertion that holds."""
+    call.tell(True, "")
+
+
+@_action(1)
+def force_failure(call: Asserting, message: Term) -> None:
+    """``jacaros.force_failure(Message)``: an assertion that fails."""
+    shown = str(message) if isinstance(message, str) else text(message)
+    call.tell(False, "", shown)
+
+
+@_action(2)
+def assert_fail(call: Asserting, goal: Term, failed: Term) -> None:
+    """``jacaros.assert_fail(Goal, failed|achieved)``: how a goal that ought to fail has ended."""
+    passed = text(failed) == "failed"
+    call.tell(passed, f"!{text(goal)} to fail", "" if passed else "it was achieved")
+
+
+@_action((1, 2))
+def fake(call: Asserting, action: Term, outcome: Term = None) -> None:
+    """``jacaros.fake(Action [,Outcome])``: the test answers this external action in place of the environment.
+
+    Raises:
+        ActionError: nobody tests this agent, or the outcome is none.
+    """
+    try:
+        call.probe("fake_action").fakes.add(action, outcome)
+    except ValueError as wrong:
+        raise ActionError(str(wrong)) from None
+
+
+@_action((1, 2))
+def assert_did(call: Asserting, action: Term, times: Term = None) -> None:
+    """``jacaros.assert_did(Action [,Times])``: the agent has begun an external action that matches (so many times)."""
+    acts = call.probe("assert_did").fakes.acts
+    told = f"it did {', '.join(map(text, acts))}" if acts else "it did nothing"
+    if times is None:
+        call.tell(_is_in(action, acts), text(action), told)
+    else:
+        count = sum(_is_in(action, [act]) for act in acts)
+        call.tell(float(count) == times, f"{text(times)} times {text(action)}", told)
+
+
+@_action(1)
+def assert_printed(call: Asserting, part: Term) -> None:
+    """``jacaros.assert_printed(Text)``: a line that the agent has printed has this in it."""
+    shown = display(part)
+    prints = call.probe("assert_printed").prints()
+    told = (
+        f"it printed {', '.join(repr(line) for line in prints[-_SHOWN:])}" if prints else "it printed nothing"
+    )
+    call.tell(any(shown in line for line in prints), f"the print {shown!r}", told)
+
+
+@_action(1)
+def assert_not_did(call: Asserting, action: Term) -> None:
+    """``jacaros.assert_not_did(Action)``: the agent has begun no external action that matches."""
+    acts = call.probe("assert_not_did").fakes.acts
+    call.tell(not _is_in(action, acts), f"no {text(action)}", f"it did {', '.join(map(text, acts))}")
+
+
+# ---- the rest of the ROS graph
+
+
+@_action((2, 3))
+def fake_message(call: Asserting, topic: Term, first: Term, second: Term = None) -> None:
+    """``jacaros.fake_message(Topic [,Type], Fields)``: somebody publishes a message.
+
+    Raises:
+        ActionError: nobody tests this agent.
+    """
+    type_name, fields = ("", first) if second is None else (display(first), second)
+    with call.others("fake_message") as others:
+        others.publish(display(topic), display(fields), type_name)
+
+
+@_action(2)
+def fake_subscriber(call: Asserting, topic: Term, type_name: Term) -> None:
+    """``jacaros.fake_subscriber(Topic, Type)``: somebody listens to a topic.
+
+    Raises:
+        ActionError: nobody tests this agent.
+    """
+    with call.others("fake_subscriber") as others:
+        others.hear(display(topic), display(type_name))
+
+
+@_action(3)
+def fake_service(call: Asserting, service: Term, type_name: Term, fields: Term) -> None:
+    """``jacaros.fake_service(Name, Type, Fields)``: somebody offers a service, and gives this response.
+
+    Raises:
+        ActionError: nobody tests this agent.
+    """
+    with call.others("fake_service") as others:
+        others.answer(display(service), display(type_name), display(fields))
+
+
+@_action((2, 3))
+def assert_published(call: Asserting, topic: Term, fields: Term, times: Term = None) -> None:
+    """``jacaros.assert_published(Topic, Fields [,Times])``: the run has published such a message (so many times)."""
+    with call.others("assert_published") as others:
+        _tell_count(call, others.count_published, "a message on", topic, fields, times)
+
+
+@_action(1)
+def assert_not_published(call: Asserting, topic: Term) -> None:
+    """``jacaros.assert_not_published(Topic)``: the run has published nothing on a topic."""
+    with call.others("assert_not_published") as others:
+        count, found = others.count_published(display(topic), "")
+        call.tell(not count, f"no message on {display(topic)}", f"there were {_listed(found)}")
+
+
+@_action((2, 3))
+def assert_called(call: Asserting, service: Term, fields: Term, times: Term = None) -> None:
+    """``jacaros.assert_called(Service, Fields [,Times])``: a faked service was asked this (so many times)."""
+    with call.others("assert_called") as others:
+        _tell_count(call, others.count_asked, "a request to", service, fields, times)
+
+
+def _tell_count(
+    call: Asserting,
+    counted: Callable[[str, str], tuple[int, list[str]]],
+    what: str,
+    name: Term,
+    fields: Term,
+    times: Term,
+) -> None:
+    count, found = counted(display(name), display(fields))
+    passed = count > 0 if times is None else float(count) == times
+    often = "" if times is None else f"{display(times)} times "
+    wanted = f" with {display(fields)}" if display(fields) else ""
+    told = f"there were {_listed(found)}" if found else "there was none"
+    call.tell(passed, f"{often}{what} {display(name)}{wanted}", told)
+
+
+def _listed(found: list[str]) -> str:
+    """Messages for people, the newest last; of those that are alike in a row one, with their number."""
+    rows = [(text, len(list(alike))) for text, alike in groupby(found)]
+    shown = [text if count == 1 else f"{count} times {text}" for text, count in rows[-_SHOWN_MESSAGES:]]
+    more = f", and {len(rows) - _SHOWN_MESSAGES} before" if len(rows) > _SHOWN_MESSAGES else ""
+    return f"{', '.join(shown)}{more}"
+
+
+UNTESTED: Final = actions(MappingProxyType({}))
+"""The internal actions for programs that run outside of a test: their assertions are told to people."""
