@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded
     from jacaros.mas.embedding.main import run
     from jacaros.mas.embedding.mas import Mas
+    from jacaros.mas.options import RunOptions
 
 __version__ = VERSION
 
@@ -64,6 +65,7 @@ __all__ = [
     "PythonAgent",
     "ReceivedMessage",
     "RunEnded",
+    "RunOptions",
     "Structure",
     "UnknownAgent",
     "UsageError",
@@ -92,6 +94,7 @@ _MODULES = {
     "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded",
     "jacaros.mas.embedding.main": "run",
     "jacaros.mas.embedding.mas": "Mas",
+    "jacaros.mas.options": "RunOptions",
 }
 """Where the names are; a view of a thing of the mind is called otherwise there."""
 _PLACES = {

@@ -3,6 +3,7 @@
 import os
 import sys
 from contextlib import suppress
+from typing import Any
 
 import click
 
@@ -41,14 +42,9 @@ LEAST_TIMEOUT = 0.15
 )
 def command(
     name: str,
-    ros: str,
-    domain_id: int | None,
-    master: str | None,
-    bridge: str | None,
-    namespace: str,
-    node_name: str | None,
     timeout: float,
     once: bool,
+    **graph: Any,
 ) -> None:
     """Guard the robot of the agents whose node is called NAME, until Ctrl+C.
 
@@ -60,13 +56,13 @@ def command(
     from jacaros.ros.guard import Guard
     from jacaros.ros.heartbeat import socket_path
 
-    address = GraphAddress(ros, domain_id, master, bridge, namespace, node_name)
+    address = GraphAddress(**graph)
     address.check()
 
     async def main() -> None:
         backend = address.open(WallClock(), f"{name}_guard", _log)
         agents = f"{backend.node_name.rpartition('/')[0]}/{name}"
-        path = socket_path(ros, address.identity, agents)
+        path = socket_path(address.ros, address.identity, agents)
         await Guard(backend, path, timeout, once, _log, _leave_output if once else lambda: None).run()
 
     run(main, WallClock())

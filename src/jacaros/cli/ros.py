@@ -8,8 +8,10 @@ from typing import Any, TypeVar
 
 import click
 
+from jacaros.cli.graph_options import address_options
 from jacaros.errors import UsageError
-from jacaros.mas.options import ROS_KINDS, RunOptions
+from jacaros.mas.options import RunOptions
+from jacaros.ros.address import ROS_KINDS
 
 F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
@@ -31,18 +33,7 @@ _OPTIONS = (
         show_envvar=True,
         help="World file or name, with --ros memory.",
     ),
-    click.option(
-        "--domain-id", type=int, metavar="N", help="Domain of the ROS 2 graph, in place of ROS_DOMAIN_ID."
-    ),
-    click.option("--master", metavar="URI", help="Master of the ROS 1 graph, in place of ROS_MASTER_URI."),
-    click.option(
-        "--bridge",
-        metavar="URL",
-        help="Address of the rosbridge server, such as ws://robot.lab.example:9090.",
-    ),
-    click.option(
-        "--namespace", default="", metavar="NAME", help="Put before names without a slash in front."
-    ),
+    address_options,
     click.option(
         "--timeout",
         type=click.FloatRange(min=0.0, min_open=True),
@@ -223,22 +214,15 @@ def check_command(file: Path, **graph: Any) -> int:
 
 def _in_graph(
     look: Callable[[Any], Awaitable[T]],
-    ros: str,
-    world: str | None,
-    domain_id: int | None,
-    master: str | None,
-    bridge: str | None,
-    namespace: str,
     timeout: float,
     interfaces: tuple[Path, ...] = (),
+    **graph: Any,
 ) -> T:
     """Join the graph that the options say, and look at it."""
     from jacaros.cli.graph.joining import clock_for, joined
     from jacaros.clock import run
 
-    options = RunOptions(
-        ros=ros, world=world, domain_id=domain_id, master=master, bridge=bridge, namespace=namespace
-    )
+    options = RunOptions(**graph)
     clock = clock_for(options)
 
     async def main() -> T:

@@ -3,6 +3,7 @@
 import asyncio
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,9 +25,10 @@ from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
 from jacaros.mas.loading import load_deployment
-from jacaros.mas.options import ROS_KINDS, RunOptions
+from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.output import CLOSING, PATIENCE
+from jacaros.ros.address import ROS_KINDS
 from jacaros.text_files import is_file
 
 FAST_PATIENCE = 1.0
@@ -133,32 +135,17 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 def command(
     file: Path,
     clock: str | None,
-    seed: int | None,
-    ros: str,
-    world: str | None,
-    mappings: tuple[str, ...],
-    until_idle: bool,
-    fail_on_lost_goal: bool,
-    seconds: float | None,
-    guard: bool,
-    domain_id: int | None,
-    master: str | None,
-    bridge: str | None,
-    namespace: str,
-    node_name: str | None,
     remap: tuple[str, ...],
     orphans: str,
     param: tuple[str, ...],
     params_file: tuple[Path, ...],
-    rosout: bool | None,
-    diagnostics: bool | None,
     record: Path | None,
     record_limit: int,
     replay: Path | None,
     ground_truth: Path | None,
-    restricted: bool,
     view: bool,
     quiet: bool,
+    **given: Any,
 ) -> int:
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
 
@@ -168,40 +155,23 @@ def command(
     check_file(file)
     outputs = Outputs(record, replay, ground_truth, view, record_limit * 1_000_000)
     outputs.check()
+    options = RunOptions(
+        remap=read_remaps(remap) if remap else {},
+        orphans=orphan_policy(orphans),
+        show_world=outputs.any,
+        **given,
+    )
     project: Path | Deployment = file
-    parameters: dict[str, Any] = {}
     if param or params_file:
         project = load_deployment(file)
-        parameters = _parameters(project, param, params_file, ros, f"{namespace}/{node_name or ''}")
+        parameters = _parameters(project, param, params_file, options)
         simulated = parameters.pop("use_sim_time", False)
         if not isinstance(simulated, bool):
             raise UsageError(f"the parameter use_sim_time is true or false, not {simulated!r}")
-        if simulated and clock is None and ros != "memory":
+        if simulated and clock is None and options.real_graph:
             clock = "ros"
-    options = RunOptions(
-        fast=clock == "fast",
-        restricted=restricted,
-        seed=seed,
-        ros=ros,
-        world=world,
-        show_world=outputs.any,
-        namespace=namespace,
-        until_idle=until_idle,
-        fail_on_lost_goal=fail_on_lost_goal,
-        seconds=seconds,
-        ros_clock=clock == "ros",
-        domain_id=domain_id,
-        master=master,
-        bridge=bridge,
-        node_name=node_name,
-        remap=read_remaps(remap) if remap else {},
-        parameters=parameters,
-        orphans=orphan_policy(orphans),
-        rosout=rosout,
-        diagnostics=diagnostics,
-        mappings=mappings,
-        guard=guard,
-    )
+        options = replace(options, parameters=parameters)
+    options = replace(options, fast=clock == "fast", ros_clock=clock == "ros")
     console = StandardConsole(
         "warning" if quiet else "info", patience=FAST_PATIENCE if options.fast else PATIENCE
     )
@@ -214,13 +184,13 @@ def command(
 
 
 def _parameters(
-    project: Deployment, written: Sequence[str], files: Sequence[Path], ros: str, node: str
+    project: Deployment, written: Sequence[str], files: Sequence[Path], options: RunOptions
 ) -> dict[str, Any]:
     from jacaros.cli.given_parameters import read_parameters  # here: few runs are given any
     from jacaros.mas.ros_graph import node_name
 
-    name = node + node_name(project.name) if node.endswith("/") else node
-    return read_parameters(written, files, name, "/" if ros == "ros1" else ".")
+    name = f"{options.namespace}/{options.node_name or node_name(project.name)}"
+    return read_parameters(written, files, name, "/" if options.ros == "ros1" else ".")
 
 
 def _launch(file: Path | Deployment, options: RunOptions, console: StandardConsole, outputs: Outputs) -> int:

@@ -1,6 +1,7 @@
 """``jacaros sim WORLD``."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -8,7 +9,7 @@ from jacaros.cli.graph_options import read_remaps, world_options
 from jacaros.cli.outputs import check_output
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import UsageError
-from jacaros.mas.options import ROS_KINDS
+from jacaros.ros.address import ROS_KINDS, GraphAddress
 from jacaros.text_files import is_file
 
 
@@ -53,10 +54,6 @@ from jacaros.text_files import is_file
 def command(
     world: str,
     ros: str,
-    domain_id: int | None,
-    master: str | None,
-    bridge: str | None,
-    node_name: str | None,
     remap: tuple[str, ...],
     seconds: float | None,
     ground_truth: Path | None,
@@ -65,10 +62,10 @@ def command(
     clock: str,
     publish_clock: bool,
     speed: float | None,
+    **graph: Any,
 ) -> None:
     """Run WORLD (a world file, or the name of a world that comes with jacaros) until Ctrl-C."""  # fmt: skip
     from jacaros.cli.batteries import told, with_full_batteries
-    from jacaros.ros.address import GraphAddress
     from jacaros.ros.node import to_stderr
     from jacaros.sim import World, serve
     from jacaros.sim.scaled_clock import ScaledClock
@@ -80,7 +77,7 @@ def command(
     if clock == "fast" and speed is not None:
         raise UsageError("--speed goes with --clock real; --clock fast is as fast as the machine can")
     time: Clock = VirtualClock() if clock == "fast" else WallClock() if speed is None else ScaledClock(speed)
-    address = GraphAddress(ros, domain_id, master, bridge, "", node_name, read_remaps(remap))
+    address = GraphAddress(ros, remap=read_remaps(remap), **graph)
     address.check()
     if ground_truth is not None:
         check_output(ground_truth, "ground truth")

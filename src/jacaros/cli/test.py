@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -94,18 +94,12 @@ def command(
     paths: tuple[Path, ...],
     pattern: str | None,
     first: bool,
-    timeout: float,
-    cycles: int,
-    patience: float,
     clock: str,
-    seed: int,
-    world: str | None,
-    mappings: tuple[str, ...],
-    shared: bool,
     junit: Path | None,
     slow: int,
     color: str,
     verbose: bool,
+    **given: Any,
 ) -> int:
     """Run the tests in files and folders (by default, in this folder).
 
@@ -122,9 +116,14 @@ def command(
         check_output(junit, "JUnit report", make_folder=True)
     paint = _Paint(color)
     suites = _chosen(collect(paths or (Path(),)), paths, pattern)
-    options = TrialOptions(clock == "fast", seed, timeout, cycles, patience, world, shared, mappings)
+    options = TrialOptions(fast=clock == "fast", **given)
     outcomes = _Progress(options, paint, pattern, first, verbose).run(suites)
-    for line in (*failures(outcomes, paint), *slowest(outcomes, slow), "", summary(outcomes, seed, paint)):
+    for line in (
+        *failures(outcomes, paint),
+        *slowest(outcomes, slow),
+        "",
+        summary(outcomes, options.seed, paint),
+    ):
         click.echo(line, color=True)
     if junit is not None:
         try:

@@ -35,7 +35,7 @@ class RunGuard:
         self, address: GraphAddress, backend: Backend, simulated_time: bool, log: Callable[[str], None]
     ) -> None:
         self._address, self._backend, self._simulated_time, self._log = address, backend, simulated_time, log
-        self._path = socket_path(address.kind, address.identity, backend.node_name)
+        self._path = socket_path(address.ros, address.identity, backend.node_name)
         self._heartbeat: Heartbeat | None = None
         self._returning: asyncio.Task[None] | None = None
         self._process: subprocess.Popen[bytes] | None = None

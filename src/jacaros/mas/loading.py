@@ -30,7 +30,7 @@ def load_deployment(path: str | Path) -> Deployment:
     return deployment
 
 
-def mapped(deployment: Deployment, names: Sequence[str]) -> Deployment:
+def mapped(deployment: Deployment, names: Sequence[str | Path]) -> Deployment:
     """The same with the artifacts of mapping files; a lone program focuses all of them.
 
     Raises:
@@ -40,7 +40,7 @@ def mapped(deployment: Deployment, names: Sequence[str]) -> Deployment:
         return deployment
     from jacaros.mas.mappings import with_mappings  # here: most runs have none
 
-    return with_mappings(deployment, names)
+    return with_mappings(deployment, tuple(map(str, names)))
 
 
 def _lone_agent(path: Path) -> Deployment:

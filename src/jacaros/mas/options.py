@@ -1,37 +1,31 @@
 """How a project is run: what the command line or a Python program decides."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.errors import UsageError
+from jacaros.ros.address import ROS_KINDS, GraphAddress
 
 if TYPE_CHECKING:
-    from jacaros.ros.address import GraphAddress
     from jacaros.ros.orphans import OrphanPolicy
-    from jacaros.ros.parameter import ParameterValue
-
-ROS_KINDS = ("memory", "ros1", "ros2", "rosbridge")
 
 
 @dataclass(frozen=True, slots=True)
-class RunOptions:
-    """How to run a project.
+class RunOptions(GraphAddress):
+    """How to run a project, and in which ROS graph: the attributes of `GraphAddress`, and these.
 
     Attributes:
         fast: on the virtual clock, as fast as the machine can; else in real time.
         seed: of all random numbers, the world's too; None for other numbers in each run.
-        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
         world: world file, or name of a world of JaCaROS, in place of the project's own.
         keep_ground_truth: keep in memory all that happens in the embedded world, not only the last minutes.
         show_world: make the world at the start, even when nobody asks for a robot yet.
-        namespace: put before relative ROS names.
         until_idle: end when no agent has anything to do and no operation is under way.
         fail_on_lost_goal: the exit code is 1 instead of 0 if a goal failed and no plan took over.
         seconds: end after so many seconds of the run's clock.
         ros_clock: time is that of the graph's ``/clock``, as a simulator publishes it.
-        domain_id, master, bridge, node_name, remap, parameters, orphans: see `jacaros.ros.address.GraphAddress`.
         rosout: write what agents print, and logs, to the graph's ``/rosout``; None: on real graphs.
         mappings: mapping files whose artifacts are made at the start.
         guard: have a process of its own stop the robot when this one no longer can.
@@ -42,25 +36,17 @@ class RunOptions:
 
     fast: bool = False
     seed: int | None = None
-    ros: str = "memory"
     world: str | Path | None = None
     show_world: bool = False
     keep_ground_truth: bool = False
-    namespace: str = ""
     until_idle: bool = False
     fail_on_lost_goal: bool = False
     seconds: float | None = None
     ros_clock: bool = False
-    domain_id: int | None = None
-    master: str | None = None
-    bridge: str | None = None
-    node_name: str | None = None
-    remap: Mapping[str, str] = field(default_factory=dict)
-    parameters: "Mapping[str, ParameterValue]" = field(default_factory=dict)
     orphans: "OrphanPolicy" = "cancel"
     rosout: bool | None = None
     diagnostics: bool | None = None
-    mappings: tuple[str, ...] = ()
+    mappings: Sequence[str | Path] = ()
     guard: bool = False
     restricted: bool = False
 
@@ -78,23 +64,6 @@ class RunOptions:
     def wants_diagnostics(self) -> bool:
         """Whether ``/diagnostics`` is published."""
         return self.real_graph if self.diagnostics is None else self.diagnostics
-
-    @property
-    def address(self) -> "GraphAddress":
-        """The graph, and our names in it."""
-        from jacaros.ros.address import GraphAddress  # here: a program without robots needs none of it
-
-        return GraphAddress(
-            self.ros,
-            self.domain_id,
-            self.master,
-            self.bridge,
-            self.namespace,
-            self.node_name,
-            self.remap,
-            self.parameters,
-            self.orphans,
-        )
 
     def check(self) -> None:
         """Refuse what cannot go together.
@@ -120,7 +89,7 @@ class RunOptions:
                 "and robot end together"
             )
         if self.real_graph or self._names_the_graph():
-            self.address.check()
+            GraphAddress.check(self)  # with slots, super() knows an older class
         if self.seconds is not None and self.seconds < 0:
             raise UsageError("--for wants a number of seconds that is not negative")
 

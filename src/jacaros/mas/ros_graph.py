@@ -113,7 +113,7 @@ class RosGraph:
             from jacaros.mas.guarding import RunGuard  # here: only for runs with a guard
 
             options = self._options
-            self._guard = RunGuard(options.address, self.backend(), options.ros_clock, self._log_ros)
+            self._guard = RunGuard(options, self.backend(), options.ros_clock, self._log_ros)
             await self._guard.start()
 
     def backend(self) -> "Backend":
@@ -177,7 +177,7 @@ class RosGraph:
                 steps.callback(self._undeclared.close)
 
     def _open(self) -> "Backend":
-        return self._options.address.open(self._clock, self._name, self._log_ros)
+        return self._options.open(self._clock, self._name, self._log_ros)
 
     def _follow_clock(self, backend: "Backend") -> None:
         from jacaros.ros.ros_clock import RosClock

@@ -4,18 +4,15 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
-from urllib.parse import urlsplit
 
-from jacaros.clock import Clock
 from jacaros.errors import UsageError
-from jacaros.ros.errors import NameInvalid, ParameterRefused
-from jacaros.ros.names import NodeNames
-from jacaros.ros.orphans import OrphanPolicy
-from jacaros.ros.parameter import ParameterValue
-from jacaros.ros.parameter_store import checked_value
 
+# What only a program with robots needs is imported in functions: the options of every run are an address, too.
 if TYPE_CHECKING:
+    from jacaros.clock import Clock
     from jacaros.ros.backend import Backend
+    from jacaros.ros.orphans import OrphanPolicy
+    from jacaros.ros.parameter import ParameterValue
 
 _VARIABLES = {
     "memory": ("", ""),
@@ -25,6 +22,7 @@ _VARIABLES = {
 }
 """By kind: the variable that names the graph where no option does, and what it is without both."""
 
+ROS_KINDS = tuple(_VARIABLES)
 LAST_DOMAIN = 232
 """The highest domain id whose ports all exist (ROS 2 documentation, "The ROS_DOMAIN_ID")."""
 
@@ -34,31 +32,32 @@ class GraphAddress:
     """A graph and the names of our node in it; what is None comes from the environment, as in other ROS nodes.
 
     Attributes:
-        kind: of the graph: ``memory``, ``ros1``, ``ros2`` or ``rosbridge``.
+        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
         domain_id: of ROS 2; else ``ROS_DOMAIN_ID``.
         master: address of the ROS 1 master, such as ``http://robot.lab.example:11311``; else ``ROS_MASTER_URI``.
         bridge: address of a rosbridge server, such as ``ws://robot.lab.example:9090``.
         namespace: put before relative names; on ROS 1 ``ROS_NAMESPACE`` when it is empty.
         node_name: of our node, in place of the name that the program would give it.
-        remap: names to use in place of others.
-        parameters: values of parameters of our node, in place of those that are declared.
-        orphans: what becomes of action goals that an earlier run of the node left behind.
+        remap: ROS names to use in place of others, ``{"/cmd_vel": "/robot_1/cmd_vel"}``.
+        parameters: values of declared parameters of our node, in place of the defaults, ``{"speed": 0.3}``.
+        orphans: what becomes of action goals that an earlier run of this node left behind on a real graph: ``"cancel"``,
+            ``"keep"``, or a coroutine function that takes a question and returns True to cancel.
     """
 
-    kind: str = "memory"
+    ros: str = "memory"
     domain_id: int | None = None
     master: str | None = None
     bridge: str | None = None
     namespace: str = ""
     node_name: str | None = None
     remap: Mapping[str, str] = field(default_factory=dict)
-    parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
-    orphans: OrphanPolicy = "keep"
+    parameters: "Mapping[str, ParameterValue]" = field(default_factory=dict)
+    orphans: "OrphanPolicy" = "keep"
 
     @property
     def identity(self) -> str:
         """The domain or address of the graph, wherever it is given."""
-        variable, default = _VARIABLES[self.kind]
+        variable, default = _VARIABLES[self.ros]
         given = self.domain_id if self.domain_id is not None else self.master or self.bridge
         return str(given if given is not None else os.environ.get(variable) or default)
 
@@ -66,7 +65,7 @@ class GraphAddress:
     def arguments(self) -> list[str]:
         """The graph and the namespace, as options of a command line."""
         options = {
-            "--ros": self.kind,
+            "--ros": self.ros,
             "--domain-id": self.domain_id,
             "--master": self.master,
             "--bridge": self.bridge,
@@ -80,13 +79,16 @@ class GraphAddress:
         Raises:
             UsageError: with what to write instead.
         """
+        from jacaros.ros.errors import NameInvalid
+        from jacaros.ros.names import NodeNames
+
         for option, value, kind in (
             ("--domain-id", self.domain_id, "ros2"),
             ("--master", self.master, "ros1"),
             ("--bridge", self.bridge, "rosbridge"),
         ):
-            if value is not None and self.kind != kind:
-                raise UsageError(f"{option} goes with --ros {kind}, not with --ros {self.kind}")
+            if value is not None and self.ros != kind:
+                raise UsageError(f"{option} goes with --ros {kind}, not with --ros {self.ros}")
         if self.domain_id is not None and not 0 <= self.domain_id <= LAST_DOMAIN:
             raise UsageError(f"--domain-id is a whole number from 0 to {LAST_DOMAIN}, not {self.domain_id}")
         if self.master is not None:
@@ -100,18 +102,21 @@ class GraphAddress:
             raise UsageError(str(wrong)) from None
 
     def _check_parameters(self) -> None:
-        if self.parameters and self.kind == "rosbridge":
+        if self.parameters and self.ros == "rosbridge":
             raise UsageError(
                 f"--param {next(iter(self.parameters))}: over rosbridge we are no node of the graph and have no "
                 "parameters; run on the robot itself, with --ros ros2 or --ros ros1"
             )
+        from jacaros.ros.errors import ParameterRefused
+        from jacaros.ros.parameter_store import checked_value
+
         for name, value in self.parameters.items():
             try:
                 checked_value(value)
             except ParameterRefused as wrong:
                 raise UsageError(f"--param {name}: {wrong}") from None
 
-    def open(self, clock: Clock, node_name: str, log: Callable[[str], None], **options: Any) -> "Backend":
+    def open(self, clock: "Clock", node_name: str, log: Callable[[str], None], **options: Any) -> "Backend":
         """Make our node; see `jacaros.ros.open.open_backend` for the errors.
 
         Args:
@@ -122,18 +127,18 @@ class GraphAddress:
         """
         from jacaros.ros import open as opening
 
-        if self.kind == "ros2":
+        if self.ros == "ros2":
             options["domain_id"] = self.domain_id
-        if self.kind == "ros1" and self.master is not None:
+        if self.ros == "ros1" and self.master is not None:
             # rospy reads it there and nowhere else, and has one node in a process anyway.
             os.environ["ROS_MASTER_URI"] = self.master
-        if self.kind == "rosbridge":
+        if self.ros == "rosbridge":
             options["url"] = self.bridge
         namespace = self.namespace
-        if not namespace and self.kind == "ros1":
+        if not namespace and self.ros == "ros1":
             namespace = os.environ.get("ROS_NAMESPACE", "")
         return opening.open_backend(
-            self.kind,
+            self.ros,
             clock,
             self.node_name or node_name,
             namespace,
@@ -146,6 +151,8 @@ class GraphAddress:
 
 
 def _check_address(option: str, written: str, schemes: tuple[str, ...], example: str) -> None:
+    from urllib.parse import urlsplit
+
     try:
         parts = urlsplit(written)
         complete = parts.scheme in schemes and parts.hostname and parts.port

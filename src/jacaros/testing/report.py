@@ -47,7 +47,7 @@ def slowest(suites: Sequence[SuiteOutcome], number: int) -> Iterator[str]:
         yield f"  {outcome.seconds:6.2f} s  {suite.path}::{outcome.test.name}{simulated}"
 
 
-def summary(suites: Sequence[SuiteOutcome], seed: int, paint: Paint = plain) -> str:
+def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint = plain) -> str:
     """The last line: the counts."""
     outcomes = [outcome for suite in suites for outcome in suite.outcomes]
     failed = sum(not outcome.passed for outcome in outcomes)

@@ -1,9 +1,9 @@
 """Running a whole project inside a test, on virtual time."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Final
 
 from jacaros.errors import JacarosError
 from jacaros.mas.deployment import Deployment
@@ -11,8 +11,8 @@ from jacaros.mas.launch import launch
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 
-if TYPE_CHECKING:
-    from jacaros.ros.parameter import ParameterValue
+TEST_RUN: Final = RunOptions(fast=True, seed=0, keep_ground_truth=True)
+"""The options of a run in a test."""
 
 
 @dataclass(slots=True)
@@ -51,57 +51,27 @@ class RunResult:
 
 def run_project(
     project: str | Path | Deployment,
+    options: RunOptions = TEST_RUN,
     *,
-    seed: int | None = 0,
-    world: str | Path | None = None,
-    seconds: float | None = None,
-    until_idle: bool = False,
-    fail_on_lost_goal: bool = False,
-    fast: bool = True,
-    ros: str = "memory",
-    mappings: Iterable[str | Path] = (),
-    remap: Mapping[str, str] | None = None,
-    parameters: "Mapping[str, ParameterValue] | None" = None,
-    namespace: str = "",
     when_started: Callable[[System], None] | None = None,
+    **changes: Any,
 ) -> RunResult:
-    """Run a project as ``jacaros run`` does, on the virtual clock unless told otherwise.
+    """Run a project as ``jacaros run`` does.
 
     Mistakes of programs and projects do not raise: they are among the `RunResult.errors`, with exit code 1.
 
     Args:
         project: a project file, a lone program, or a deployment.
-        seed: of all random numbers.
-        world: world file or name in place of the project's own.
-        seconds: end after so many seconds of the run's clock.
-        until_idle: end when no agent has anything to do.
-        fail_on_lost_goal: the exit code is 1 instead of 0 if a goal failed and no plan took over.
-        fast: on the virtual clock.
-        ros: kind of the ROS graph.
-        mappings: mapping files whose artifacts are made at the start.
-        remap: ROS names to use in place of others.
-        parameters: values of parameters of our node, in place of the defaults.
-        namespace: put before relative ROS names.
+        options: how; on the virtual clock with seed 0 unless given.
         when_started: called with the run before its first agent has its turn.
+        changes: single fields of `RunOptions` in place of those of *options*, such as ``until_idle=True, seconds=60``.
 
     Raises:
+        TypeError: `RunOptions` has no such field.
         InternalError: a defect of JaCaROS showed itself.
     """
     result = RunResult()
-    options = RunOptions(
-        fast=fast,
-        seed=seed,
-        ros=ros,
-        world=world,
-        keep_ground_truth=True,
-        until_idle=until_idle,
-        fail_on_lost_goal=fail_on_lost_goal,
-        seconds=seconds,
-        mappings=tuple(map(str, mappings)),
-        remap=dict(remap or {}),
-        parameters=dict(parameters or {}),
-        namespace=namespace,
-    )
+    options = replace(options, **changes)
     held: list[tuple[System, float]] = []
 
     def started(mas: System) -> None:

@@ -7,9 +7,8 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -49,29 +48,23 @@ that it posted with ``!!``, whose assertions count too."""
 
 
 @dataclass(frozen=True, slots=True)
-class TrialOptions:
-    """How tests are run.
+class TrialOptions(RunOptions):
+    """How tests are run: the attributes of `RunOptions` (on the virtual clock with seed 0 unless given), and these.
 
     Attributes:
-        fast: on the virtual clock; else in real time.
-        seed: of all random numbers.
         timeout: seconds of the run's clock after which a test has failed, unless its label says otherwise.
         cycles: reasoning cycles of all agents together after which a test has failed.
         patience: seconds of the wall clock after which a test has failed, whatever it does; 0 for no such limit.  It works
             in the main thread of a process on POSIX systems.
-        world: world file or name in place of the project's own.
         shared: the tests of a file run one after the other in one system, as on Jason.
-        mappings: mapping files whose artifacts every run has, beside those that a label names.
     """
 
     fast: bool = True
-    seed: int = 0
+    seed: int | None = 0
     timeout: float = 60.0
     cycles: int = 1_000_000
     patience: float = 300.0
-    world: str | Path | None = None
     shared: bool = False
-    mappings: tuple[str, ...] = ()
 
 
 def run_suite(
@@ -82,9 +75,11 @@ def run_suite(
     """Run the tests of a file; each outcome comes when it is there.
 
     Raises:
+        UsageError: options that cannot go together.
         InternalError: a defect of JaCaROS showed itself.
     """
     options = options or TrialOptions()
+    options.check()
     tests = [test for test in suite.tests if chosen(test)]
     if suite.error is not None or not tests:
         return
@@ -152,7 +147,7 @@ class Trial:
             mapped(deployment, self._mappings),
             self._clock,
             self,
-            RunOptions(fast=options.fast, seed=options.seed, world=world),
+            replace(options, world=world),
             self._prepare,
             self._observe,
             self._idle,

@@ -1,9 +1,15 @@
 """Options of a run."""
 
+from dataclasses import fields
+
+import click
 import pytest
 
+from jacaros import Mas
+from jacaros.cli.run import command
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
+from jacaros.testing import TrialOptions, run_project
 
 
 def test_the_defaults_go_together() -> None:
@@ -50,3 +56,29 @@ def test_lines_and_diagnostics_go_to_real_graphs_unless_told_otherwise() -> None
     assert RunOptions(ros="ros1").wants_diagnostics
     assert not RunOptions(ros="ros1", rosout=False).wants_rosout
     assert RunOptions(diagnostics=True).wants_diagnostics
+
+
+def test_a_keyword_replaces_a_field_of_the_options() -> None:
+    with pytest.raises(UsageError, match="there is no ROS backend 'ros3'"):
+        Mas(options=RunOptions(ros="memory"), ros="ros3")
+    with pytest.raises(UsageError, match="there is no ROS backend 'ros4'"):
+        Mas(options=RunOptions(ros="ros4"))
+
+
+def test_an_option_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(TypeError, match="unexpected keyword argument 'sed'"):
+        Mas(sed=1)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'sed'"):
+        run_project("nothing.asl", sed=1)
+
+
+def test_tests_run_on_the_virtual_clock_with_a_seed_unless_told_otherwise() -> None:
+    assert (TrialOptions().fast, TrialOptions().seed) == (True, 0)
+    assert (TrialOptions(fast=False).fast, TrialOptions(world="empty").world) == (False, "empty")
+
+
+def test_the_command_has_no_option_of_a_run_under_another_name() -> None:
+    outputs = {"record", "record_limit", "replay", "ground_truth", "view", "quiet"}
+    combined = {"file", "clock", "param", "params_file"}
+    given = {each.name for each in command.params if isinstance(each, click.Parameter)}
+    assert given - outputs - combined <= {field.name for field in fields(RunOptions)}

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
     from jacaros.mas.surroundings import Surroundings
     from jacaros.ros.backend import Backend
-    from jacaros.ros.orphans import OrphanPolicy
-    from jacaros.ros.parameter import ParameterValue
     from jacaros.sim import World
 
 _PYTHON = "python"
@@ -54,69 +52,33 @@ class Mas(EmbeddedRun):
     Args:
         project: a project file (``.mas2j``, ``.jcm``) or a program (``.asl``), or what one declares; an empty system
             without.
+        options: how to run it; the clock is that of the event loop, or with ``ros_clock`` that of the ROS graph.
         name: of an empty system.
         folder: of an empty system: where programs, included files and Python modules are looked for; the current folder
             unless given.
-        seed: of all random numbers, the world's too; None for other numbers in each run.
-        ros: kind of the ROS graph: ``memory`` (inside the process), ``ros1``, ``ros2`` or ``rosbridge``.
-        world: world file, or name of a world of JaCaROS, in place of the project's own.
-        namespace: put before relative ROS names.
-        node_name: of our node in a real graph; that of the system unless given.
-        remap: ROS names to use in place of others, ``{"/cmd_vel": "/robot_1/cmd_vel"}``.
-        parameters: values of parameters of our node that are declared, in place of the defaults: ``{"speed": 0.3}``.
-        domain_id: of a ROS 2 graph; ``ROS_DOMAIN_ID`` unless given.
-        master: address of the ROS 1 master; ``ROS_MASTER_URI`` unless given.
-        bridge: address of the rosbridge server.
-        ros_clock: the run's time is that of the graph's ``/clock``, as a simulator publishes it.
-        orphans: what becomes of action goals that an earlier run of this node left behind on a real graph: ``"cancel"``,
-            ``"keep"``, or a coroutine function that takes a question and returns True to cancel.
-        mappings: mapping files whose artifacts are made at the start.
         on_print: called with agent and text whenever an agent prints; the standard output gets ``[agent] text`` without.
         on_log: called with a line for people and its level; the standard error output gets it without.
+        changes: single fields of `RunOptions` in place of those of *options*, such as ``seed=1, world="patrol"``.
 
     Raises:
         ProjectError: the project file or a mapping file is wrong.
+        TypeError: `RunOptions` has no such field.
         UsageError: options that cannot go together.
     """
 
     def __init__(
         self,
         project: str | Path | Deployment | None = None,
+        options: RunOptions | None = None,
         *,
         name: str = "mas",
         folder: str | Path | None = None,
-        seed: int | None = None,
-        ros: str = "memory",
-        world: str | Path | None = None,
-        namespace: str = "",
-        node_name: str | None = None,
-        remap: Mapping[str, str] | None = None,
-        parameters: "Mapping[str, ParameterValue] | None" = None,
-        domain_id: int | None = None,
-        master: str | None = None,
-        bridge: str | None = None,
-        ros_clock: bool = False,
-        orphans: "OrphanPolicy" = "cancel",
-        mappings: Iterable[str | Path] = (),
         on_print: OnPrint | None = None,
         on_log: OnLog | None = None,
+        **changes: Any,
     ) -> None:
+        options = replace(options or RunOptions(), **changes)
         base = Path(folder) if folder is not None else Path.cwd()
-        options = RunOptions(
-            seed=seed,
-            ros=ros,
-            world=world,
-            namespace=namespace,
-            ros_clock=ros_clock,
-            domain_id=domain_id,
-            master=master,
-            bridge=bridge,
-            node_name=node_name,
-            remap=dict(remap or {}),
-            orphans=orphans,
-            parameters=dict(parameters or {}),
-            mappings=tuple(map(str, mappings)),
-        )
         super().__init__(_deployment(project, name, base, options.mappings), options, on_print, on_log)
         self._agents: dict[str, RunningAgent] = {}
         self._mailboxes: PythonMailboxes | None = None
@@ -377,7 +339,7 @@ class Mas(EmbeddedRun):
 
 
 def _deployment(
-    project: str | Path | Deployment | None, name: str, folder: Path, mappings: Sequence[str]
+    project: str | Path | Deployment | None, name: str, folder: Path, mappings: Sequence[str | Path]
 ) -> Deployment:
     if isinstance(project, Deployment):
         declared = project
