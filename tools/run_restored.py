@@ -59,7 +59,7 @@ def exchange(host: AgentHost, old: Mind) -> None:
     for name in KEPT:
         setattr(new, name, getattr(old, name))
     host.mind = new
-    restore(new, json.loads(text))
+    restore(new, json.loads(text), same_host=True)
 
 
 def host_mind(host: AgentHost, mind: object) -> None:

@@ -12,7 +12,6 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.engines import new_engine
 from jacaros.bdi.rules import (
     belief_update,
-    cloning,
     forks,
     functions,
     goals,
@@ -269,11 +268,6 @@ class Mind(Circumstance):
     def shut_down_in(self, milliseconds: float) -> None:
         """The agent will be ended after so many milliseconds; its plans may prepare for it."""
         meta_events.shutting_down(self, milliseconds)
-
-    def copy_mind_of(self, original: "Mind") -> None:
-        """Begin with what another agent believes, wants and knows how to do; this one must be new."""
-        cloning.copy_mind(original, self)
-        self.architecture.ready()
 
     drop_wait = waits.drop
     notify_event_waits = waits.notify_event_waits

@@ -9,6 +9,7 @@ from typing import Protocol
 from jacaros.asl.nodes import Program
 from jacaros.bdi.engines import new_engine
 from jacaros.bdi.mind import Mind
+from jacaros.bdi.snapshot import copy_mind
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.errors import JacarosError
 from jacaros.mas.activity import AgentTimer
@@ -141,10 +142,9 @@ class Population:
             told = f"error: agent {name}: there is no agent {original} to be cloned"
             self._run.console.log(told, "error")
             return None
-        empty = replace(host.mind.program, beliefs=(), goals=())
-        copy = self.add(replace(spec, name=self._directory.free_name(name)), empty)
+        copy = self.add(replace(spec, name=self._directory.free_name(name)), host.mind.program)
         assert isinstance(copy.mind, Mind)
-        copy.mind.copy_mind_of(host.mind)
+        copy_mind(host.mind, copy.mind)
         return copy.name
 
     def kill(self, name: str, delay: float, killer: str) -> bool:

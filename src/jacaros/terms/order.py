@@ -186,10 +186,10 @@ def _compare_numbers(left: float, right: float) -> int:
 def _compare_variables(left: Var, right: Var) -> int:
     if left.name != right.name:
         return -1 if left.name < right.name else 1
-    return _number_of(left) - _number_of(right)
+    return number_of(left) - number_of(right)
 
 
-def _number_of(variable: Var) -> int:
+def number_of(variable: Var) -> int:
     """The variable's place among those of its name, given out at the first comparison."""
     try:
         return variable.number

@@ -48,7 +48,7 @@ def restored(host: RecordingHost) -> Mind:
     for alarm in old.alarms.values():
         alarm.timer.cancel()
     host.agent = Mind(old.name, old.program, host, old.options, old.actions)
-    restore(host.agent, json.loads(text))
+    restore(host.agent, json.loads(text), same_host=True)
     return host.agent
 
 

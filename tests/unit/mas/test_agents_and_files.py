@@ -127,6 +127,15 @@ def test_a_clone_has_the_mind_of_its_original(tmp_path: Path) -> None:
     assert sorted(result.of("b")) == ["b[2,1]", "counted", "new"]
 
 
+def test_a_goal_of_a_clone_gives_its_value_to_the_plan_that_posted_it(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        a_asl="""!s. !t. !c. +!a(3). +!c <- .clone("b").
+            +!s <- !a(X); .print(X). +!t <- Y = f(Z); !a(Z); .print(Y).""",
+    )
+    assert sorted(result.of("b")) == sorted(result.of("a")) == ["3", "f(3)"]
+
+
 def test_the_name_of_a_clone_is_made_unique(tmp_path: Path) -> None:
     program = "!go. +!go <- .clone(a); .clone(Other); .print(Other); .all_names(N); .print(N)."
     assert run(tmp_path, a_asl=program).of("a") == ["other", "[a,a_1,other]"]

@@ -1,5 +1,8 @@
 """Internal actions on files: programs that are included, saved, and looked for."""
 
+from typing import Any
+
+from jacaros.asl.formatter import format_plan, format_term
 from jacaros.bdi.actions.internal_action import (
     ActionError,
     WrongArguments,
@@ -9,11 +12,24 @@ from jacaros.bdi.actions.internal_action import (
     string,
 )
 from jacaros.bdi.actions.java_regex import matches_whole
-from jacaros.bdi.rules.agent_text import agent_text
 from jacaros.bdi.rules.context import Context
+from jacaros.bdi.snapshot import knowledge
+from jacaros.bdi.state.belief_base import literal
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.rule import Rule
 from jacaros.errors import JacarosError
 from jacaros.terms.text import text
-from jacaros.terms.values import Functor, String, Term, Var, atom, make_list
+from jacaros.terms.values import (
+    SOURCE_SELF,
+    Annotated,
+    Functor,
+    String,
+    Term,
+    Var,
+    atom,
+    bare,
+    make_list,
+)
 
 
 @internal_action(".list_files", arity=(2, 3), restricted=0)
@@ -54,9 +70,44 @@ def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
     wanted = [] if goals is None else elements(goals, "the second argument of .save_agent")
     path = characters(file)
     try:
-        ctx.architecture.write_file(path, agent_text(ctx.agent, wanted))
+        ctx.architecture.write_file(path, _program_text(ctx.agent, wanted))
     except OSError as fault:
         raise ActionError(f".save_agent: {path} cannot be written: {fault.strerror or fault}") from fault
+
+
+def _program_text(agent: Circumstance, goals: list[Term]) -> str:
+    """What an agent knows, with initial goals."""
+    known = knowledge(agent)
+    parts = [
+        "// beliefs and rules",
+        *(
+            _belief_text(symbol, entry, annotations)
+            for symbol, rows, late in known["beliefs"]
+            for entry, annotations in (*reversed(rows), *late)
+        ),
+        "",
+        "// initial goals",
+        *(f"!{text(goal)}." for goal in goals),
+        "",
+        "// functions",
+        *(
+            f'{{ register_function("{name}", {function.arity}, "{function.implementation}") }}'
+            for name, function in known["functions"].items()
+        ),
+        "",
+        "// plans",
+        *(format_plan(plan.node) for plan in agent.library.plans),
+    ]
+    return "\n".join(parts) + "\n"
+
+
+def _belief_text(symbol: Functor, entry: Any, annotations: tuple[Term, ...]) -> str:
+    """A rule; or a belief without its own source, which a program's beliefs get anyway."""
+    if isinstance(entry, Rule):
+        return f"{format_term(entry.node)}."
+    belief = literal(symbol, entry, annotations) if isinstance(entry, tuple) else entry.head()
+    kept = tuple(each for each in annotations if each != SOURCE_SELF)
+    return f"{text(Annotated(bare(belief), kept) if kept else bare(belief))}."
 
 
 @internal_action(".include", arity=(1, 2), brings_in=True, changes_plans=True, restricted=0)

@@ -190,10 +190,6 @@ class PlanLibrary:
         if isinstance(self.selects, OwnSelects):
             self.selects.forget(plan)
 
-    def take_over(self, other: "PlanLibrary") -> None:
-        """Have the plans of the library of another agent that runs the same program."""
-        self.take_parts(other.plans, other.own, other.removed, other._sources)
-
     def parts(self) -> tuple[Any, ...] | None:
         """What makes it differ from the plans of the program, for `take_parts`; None when it does not."""
         if self.plans is self.program.plans and not self._sources:
