@@ -54,6 +54,7 @@ class CustomMind(Mind):
         if (accepts := overridden(face, "soc_acc")) is not None:
             self.accepts = lambda message: ask(self, accepts, bool, True, Message(message))
         self._revises = overridden(face, "brf")
+        self.usual_events = self.usual_events and self._revises is None
         self._notices = overridden(face, "buf")
 
     def perceive(self, percepts: list[Percept]) -> None:

@@ -3,7 +3,7 @@
 import pytest
 from recording_host import RecordingHost, believed, mind
 
-from jacaros.bdi.state import circumstance
+from jacaros.bdi.fast import beliefs
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs
@@ -39,7 +39,7 @@ def test_the_step_that_adds_one_too_many_fails_with_the_reason() -> None:
 def test_a_large_limit_is_kept_though_beliefs_are_counted_now_and_then(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(circumstance, "SMALL", 10)
+    monkeypatch.setattr(beliefs, "SMALL", 10)
     host = limited(GROW, 30_000)
     assert host.printed == [
         "29999 belief_limit in line 5",

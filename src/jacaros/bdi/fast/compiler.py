@@ -11,7 +11,7 @@ from typing import Any, cast
 from jacaros.asl import nodes
 from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.fast import loop
+from jacaros.bdi.fast import beliefs, loop
 from jacaros.bdi.fast.generated.bodies import body_compiler
 from jacaros.bdi.fast.generated.function import FrameLayout
 from jacaros.bdi.fast.generated.unit import (
@@ -24,6 +24,7 @@ from jacaros.bdi.fast.generated.unit import (
 from jacaros.bdi.fast.plan_by_plan import PlanByPlan
 from jacaros.bdi.fast.searches import Searches
 from jacaros.bdi.rules.interpreter import Interpreter
+from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Every, Select
 from jacaros.bdi.state.plan import Plan
@@ -50,6 +51,10 @@ class Compiler(Interpreter):
         self._one_by_one: dict[Trigger, PlanByPlan] = {}
 
     run = staticmethod(loop.run)
+
+    def belief_base(self, agent: Circumstance, limit: int) -> BeliefTables:
+        """A belief base that counts its beliefs only when there are many."""
+        return beliefs.belief_base(self, agent, limit)
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
         """What chooses among plans for one kind of event."""

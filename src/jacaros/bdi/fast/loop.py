@@ -7,6 +7,7 @@ intention goes on as long as nothing else wants a cycle.  What an agent has that
 
 from typing import Any
 
+from jacaros.bdi.fast.beliefs import take_percepts, watch
 from jacaros.bdi.rules import add_im, failure, meta_events
 from jacaros.bdi.rules import cycle as plain_cycle
 from jacaros.bdi.rules.add_im import add_frame, go_without, log_inapplicable
@@ -14,7 +15,6 @@ from jacaros.bdi.rules.clr_int import end_achieved_goals, pop_finished
 from jacaros.bdi.rules.cycle import begin_turn, has_work, look_at_names
 from jacaros.bdi.rules.exec_int import announce, execute, step_failed, tell_waiting
 from jacaros.bdi.rules.goal_failure import fail_intention, has_room
-from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.sel_ev import begin_intention, begin_with, handle_atomic_event, pass_over
 from jacaros.bdi.rules.sel_int import select_intention
@@ -100,6 +100,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         RUNNING.reset(before)
         if agent.cycles >= agent.next_count:
             look_at_names(agent)
+            watch(agent)
 
 
 def look_around(agent: Circumstance, cycle: int) -> None:

@@ -9,12 +9,23 @@ from jacaros.bdi.rules.searching import unify_rows
 from jacaros.bdi.state.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted, Raised
+from jacaros.bdi.state.literals import resolve_all
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.terms.order import merge_annotations
 from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
 from jacaros.terms.unifier import undo, unify_annotations
-from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Functor, Term, Var, atom, bare, functor
+from jacaros.terms.values import (
+    BY_SELF,
+    SOURCE_PERCEPT,
+    Functor,
+    Term,
+    Var,
+    arguments_of,
+    atom,
+    bare,
+    functor,
+)
 from jacaros.trace import Cause
 
 Annotations = tuple[Term, ...]
@@ -24,19 +35,7 @@ _OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
 
 def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+b``: the event belongs to the intention that made it."""
-    # What is usual is written out: a fact that is not held yet.
-    table = agent.beliefs[symbol]
-    if not (table.plain and _is_flat(row)) or row in table.rows:
-        return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), False)
-    new = table.add(row, annotations)
-    if new is not BY_SELF or not agent.usual_events or agent.condition_waits:
-        return _own_event(agent, symbol, row, new, False)
-    kind = table.added
-    if agent.selects[kind] is None and not (
-        agent.events or agent.intentions or agent.event_waits or agent.subplans
-    ):
-        return None
-    return (kind, *row)
+    return own_event(agent, symbol, row, insert(agent, symbol, row, annotations))
 
 
 def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
@@ -44,37 +43,24 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
 
     The event of the first half is external.
     """
-    table = agent.beliefs[symbol]
-    if annotations is BY_SELF and table.plain and table.rows:
-        # What is usual: the newest is a belief of the agent's own.
-        newest = next(reversed(table.rows))
-        if table.rows[newest] is BY_SELF:
-            if table.remove(newest) and (
-                agent.selects[table.deleted] is not None
-                or not agent.usual_events
-                or agent.event_waits
-                or agent.condition_waits
-                or agent.subplans
-            ):
-                external_change(agent, "-", symbol, newest, BY_SELF)
-            return add_belief(agent, symbol, row, annotations)
     delete_any(agent, symbol, annotations)
     return add_belief(agent, symbol, row, annotations)
 
 
 def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+>b``: the belief answers after all others."""
-    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True), False)
+    return own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True))
 
 
 def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``++b``: the event is an external one."""
-    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), True)
+    return own_event(agent, symbol, row, insert(agent, symbol, row, annotations), apart=True)
 
 
-def _own_event(
-    agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool
+def own_event(
+    agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool = False
 ) -> Raised:
+    """Raise the event of a belief that a step has added; *new* are the annotations that it did not have before."""
     if new is None:
         return None
     note_change(agent, symbol, row)
@@ -121,18 +107,10 @@ def insert(
 ) -> Annotations | None:
     """Add a belief; gives the annotations that are new, None when there are none (then there is no event)."""
     table = agent.beliefs[symbol]
-    for argument in row:
-        if argument.__class__ not in ATOMIC and not is_key(argument):
-            return _insert_aside(table, symbol, row, annotations, last)
-    try:
-        held = table.rows.get(row) if table.plain else table.get(row)
-    except TypeError:
+    if not all(map(is_key, row)):
         return _insert_aside(table, symbol, row, annotations, last)
-    if held is None:
-        return table.add(row, annotations, last)
-    if held is annotations:
-        return None
-    return _merge(table, row, held, annotations)
+    held = table.get(row)
+    return table.add(row, annotations, last) if held is None else _merge(table, row, held, annotations)
 
 
 def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
@@ -156,13 +134,16 @@ def delete_belief(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
 ) -> Raised:
     """``-b`` and ``--b``: the named annotations (at least the own source) of the first match are taken away."""
-    if annotations is not BY_SELF and _is_property(agent, symbol, arguments, annotations):
+    if _is_property(agent, symbol, arguments, annotations):
         return None
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
-    if removed is None:
-        return None
-    note_change(agent, symbol, removed)
-    return _raise(agent, (agent.beliefs[symbol].deleted, *removed), annotations, apart)
+    return None if removed is None else deleted(agent, symbol, removed, annotations, apart)
+
+
+def deleted(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, apart: bool) -> Raised:
+    """Raise the event of a belief that a step has deleted."""
+    note_change(agent, symbol, row)
+    return _raise(agent, (agent.beliefs[symbol].deleted, *row), annotations, apart)
 
 
 def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
@@ -185,38 +166,17 @@ def _remove_first(
     agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, bind: bool
 ) -> Row | None:
     """Remove the first match; the row as asked for, with variables bound, or None when nothing matches."""
-    table = agent.beliefs[symbol]
-    if annotations is BY_SELF and table.plain and ATOMIC.issuperset(map(type, arguments)):
-        # What is usual: a fact whose only source is the agent itself goes as a whole.
-        held = table.rows.get(arguments)
-        if held is None or held is BY_SELF:
-            return arguments if held is not None and table.remove(arguments) else None
-    trail = agent.trail
-    if annotations is BY_SELF and table.plain:
-        # The same with variables, as long as the facts that may match are the agent's own.
-        for fact in table.rows_like(arguments):
-            if table.rows[fact] is not BY_SELF:
-                break
-            mark = len(trail)
-            if unify_rows(arguments, fact, trail):
-                taken = table.remove(fact)
-                if not (bind and taken):
-                    undo(trail, mark)
-                return fact if taken else None
-            undo(trail, mark)
-        else:
-            return None
-    unbound = all(a.__class__ is Var and a.ref is None for a in arguments)
-    for entry, held in table.in_order() if unbound else table.candidates(arguments):
+    table, trail = agent.beliefs[symbol], agent.trail
+    for entry, held in table.candidates(arguments):
         mark = len(trail)
-        row = entry if entry.__class__ is tuple else _open_row(entry)
+        row = _row_of(entry)
         if (
             row is not None
             and unify_rows(arguments, row, trail)
             and unify_annotations(annotations, None, held, None, trail)
         ):
-            found = tuple(resolve(a) for a in arguments)
-            taken = take_away(table, entry, held, tuple(resolve(a) for a in annotations))
+            found = resolve_all(arguments)
+            taken = take_away(table, entry, held, resolve_all(annotations))
             if not (bind and taken):
                 undo(trail, mark)
             return found if taken else None
@@ -224,11 +184,11 @@ def _remove_first(
     return None
 
 
-def _open_row(entry: Any) -> Row | None:
+def _row_of(entry: Any) -> Row | None:
+    """The arguments of an entry of a table; None for a rule."""
     if isinstance(entry, OpenFact):
-        head = bare(entry.head())
-        return head[1:] if head.__class__ is tuple else ()
-    return None
+        return arguments_of(entry.head())
+    return entry if entry.__class__ is tuple else None
 
 
 def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = BY_SELF) -> None:
@@ -236,23 +196,10 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
 
     Its event is external.
     """
-    if annotations is BY_SELF:
-        _delete_own(agent, symbol)
-        return
     arguments = tuple(Var() for _ in range(symbol.arity))
     removed = _remove_first(agent, symbol, arguments, annotations, bind=False)
     if removed is not None:
-        external_change(agent, "-", symbol, removed, tuple(resolve(a) for a in annotations))
-
-
-def _delete_own(agent: Circumstance, symbol: Functor) -> None:
-    table = agent.beliefs[symbol]
-    for entry, held in table.in_order():
-        row = entry if entry.__class__ is tuple else _open_row(entry)
-        if row is not None and BY_SELF[0] in held:
-            if take_away(table, entry, held, BY_SELF):
-                external_change(agent, "-", symbol, row, BY_SELF)
-            return
+        external_change(agent, "-", symbol, removed, resolve_all(annotations))
 
 
 def operand_error(term: Term) -> str:
@@ -331,7 +278,7 @@ def _abolish_entry(
     arguments: Row | None,
     annotations: Annotations,
 ) -> None:
-    row = entry if entry.__class__ is tuple else _open_row(entry)
+    row = _row_of(entry)
     if row is None:
         return
     trail = agent.trail
@@ -342,14 +289,6 @@ def _abolish_entry(
     undo(trail, mark)
     if matches and table.remove(entry):
         external_change(agent, "-", symbol, row, held)
-
-
-def _is_flat(row: Row) -> bool:
-    """Whether a row holds numbers, strings and atoms only."""
-    for argument in row:  # noqa: SIM110 - `all` would make a generator for every percept
-        if argument.__class__ not in ATOMIC:
-            return False
-    return True
 
 
 def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:

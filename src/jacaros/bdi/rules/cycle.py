@@ -14,8 +14,7 @@ from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.sel_ev import event_of, handle_atomic_event, handle_event, is_ready
 from jacaros.bdi.rules.sel_int import select_intention
 from jacaros.bdi.rules.urgency import read_urgent_messages
-from jacaros.bdi.state.bounded_beliefs import INTERVAL, watch
-from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.circumstance import INTERVAL, Circumstance
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import RUNNING
 
@@ -53,9 +52,8 @@ def turn(agent: Circumstance) -> Iterator[None]:
 
 
 def look_at_names(agent: Circumstance) -> None:
-    """Drop the names that the agent no longer uses, and bound a belief base that is half full."""
+    """Drop the names that the agent no longer uses."""
     agent.beliefs.forget_names()
-    watch(agent.beliefs, agent, agent.options.belief_limit)
     agent.next_count = agent.cycles + max(INTERVAL, len(agent.beliefs))
 
 

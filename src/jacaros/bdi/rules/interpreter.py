@@ -8,6 +8,8 @@ from jacaros.bdi.rules import cycle
 from jacaros.bdi.rules.applicable_plans import Selection
 from jacaros.bdi.rules.body_steps import interpreted
 from jacaros.bdi.rules.query import interpret_rule
+from jacaros.bdi.state.belief_base import BeliefTables
+from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Every, Select
 from jacaros.bdi.state.plan import Plan
@@ -28,6 +30,10 @@ class Interpreter:
         self.actions = actions
 
     run = staticmethod(cycle.run)
+
+    def belief_base(self, agent: Circumstance, limit: int) -> BeliefTables:
+        """A belief base that counts its beliefs."""
+        return BoundedBeliefs(agent, limit, self)
 
     def begin(self, agent: Circumstance) -> None:
         """An agent is about to begin: nothing is to be prepared."""

@@ -3,234 +3,156 @@
 A sensor that is faster than its agent asks whether the last percept has been taken up before it tells more.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from jacaros.bdi.rules import failure
-from jacaros.bdi.rules.belief_update import external_change, insert, look_again
-from jacaros.bdi.state import unkeyed_percepts
+from jacaros.bdi.rules.belief_update import external_change, insert
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import Row, Table, parts, take_away
-from jacaros.bdi.state.belief_base import literal as belief_literal
+from jacaros.bdi.state.belief_base import Row, literal, take_away
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
+from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION
 from jacaros.bdi.state.intention import GOAL, Intention
 from jacaros.bdi.state.rule import OpenFact
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.errors import InternalError
-from jacaros.terms.substitution import ATOMIC
-from jacaros.terms.values import Functor, Term, functor_of
+from jacaros.terms.detaching import detached, holds_collection
+from jacaros.terms.substitution import is_key
+from jacaros.terms.values import Functor, Term, arguments_of, functor_of
 
 Annotations = tuple[Term, ...]
 Holder = tuple[Annotations, Any]
 """The annotations of a property among several with the same values, and the entry of its belief in the table."""
 
 
-def take_percepts(agent: Circumstance) -> None:
-    """Bring the belief base in line with what was noticed, and raise the events, in order."""
-    beliefs, holders, selects = agent.beliefs, agent.held_percepts, agent.selects
-    post = agent.events.append if _has_plain_queue(agent) else agent.post
-    watched = bool(agent.event_waits or agent.subplans or agent.options.events != "discard")
-    noticed, waits = agent.percepts, agent.condition_waits
-    while noticed:
-        percepts = noticed.popleft()
+def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
+    """Bring the belief base in line with what was noticed in one step, and raise the events, in order."""
+    for percept in percepts:
+        take(agent, percept)
+
+
+def take_percepts(agent: Circumstance, way: Callable[[Circumstance, list[Percept]], None] = take_in) -> None:
+    """Bring the belief base in line with what was noticed; a fault skips the rest of a step."""
+    while agent.percepts:
+        percepts = agent.percepts.popleft()
         try:
-            if waits:
-                for percept in percepts:
-                    symbol, row, _, _ = percept.taken or _taken(agent, percept)
-                    waits.changed(symbol, row)
-            if len(percepts) == 2 and not watched:
-                # What is usual, for many agents many times a second: one property has another value.
-                old, new = percepts
-                exchange = old.exchange
-                if exchange is None or exchange[0] is not new:
-                    exchange = _exchange(agent, old, new)
-                _, symbol, row, new_row, removed, added = exchange
-                if symbol is not None and new.literal not in holders:
-                    annotations = new.annotations
-                    held_by = holders.pop(old.literal, None)
-                    table = beliefs[symbol]
-                    if (
-                        held_by is annotations
-                        and table.__class__ is Table
-                        and table.exchange(row, new_row, annotations)
-                    ):
-                        holders[new.literal] = annotations
-                        if selects[removed] is not None:
-                            post(old.event or _event(old, removed, row))
-                        if selects[added] is not None:
-                            post(new.event or _event(new, added, new_row))
-                        continue
-                    if held_by is not None:
-                        holders[old.literal] = held_by
-            _apply(agent, percepts, watched)
+            way(agent, percepts)
         except InternalError:
             raise
         except Exception as fault:
             failure.passed_over(agent, "what was perceived", fault)
-    if waits and waits.want_a_look():
-        agent.do_soon(look_again)
 
 
-def _has_plain_queue(agent: Circumstance) -> bool:
-    """Whether events need only be put into the queue, and there is room for them."""
-    return (
-        agent.urgency is None
-        and len(agent.events) < agent.event_limit
-        and len(agent.alive) < agent.intention_limit
-    )
+def take(agent: Circumstance, percept: Percept) -> None:
+    """Believe or forget what one percept says, and raise its event.
 
-
-def _apply(agent: Circumstance, percepts: list[Percept], watched: bool) -> None:
-    """Bring the belief base in line with what was noticed at once, and raise the events, in order."""
-    beliefs, holders, selects = agent.beliefs, agent.held_percepts, agent.selects
-    post = agent.events.append if _has_plain_queue(agent) else agent.post
-    for percept in percepts:
-        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
-        symbol, row, is_flat, change = percept.taken or _taken(agent, percept)
-        if is_flat is None:
-            _take_unkeyed(agent, percept, symbol, row)
-            continue
-        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
-        if kind == "add":
-            table = beliefs[symbol]
-            if (
-                literal in holders
-                or table.__class__ is not Table
-                or not is_flat
-                or not table.begin(row, annotations)
-            ):
-                if not _take_percept(agent, symbol, row, literal, annotations):
-                    continue
-            else:
-                holders[literal] = annotations
-        elif kind == "remove":
-            held_by = holders.pop(literal, None)
-            table = beliefs[symbol]
-            if (
-                held_by is not annotations or table.__class__ is not Table or not table.end(row, annotations)
-            ) and not _forget_percept(agent, symbol, row, literal, annotations, held_by):
-                continue
-        if watched:
-            external_change(agent, change.operator, symbol, row, annotations, percept.cause)
-        elif selects[change] is not None:
-            post(percept.event or _event(percept, change, row))
-
-
-Taken = tuple[Functor, Row, bool | None, Trigger]
-
-
-def _taken(agent: Circumstance, percept: Percept) -> Taken:
-    """Functor and arguments of a percept, whether these are flat (None: not even to be looked up), and the kind of its
-    event; kept with it for all who share it."""
-    literal = percept.literal
-    if literal.__class__ is tuple:
-        symbol, row = literal[0], literal[1:]
-    else:
-        symbol, row, _ = parts(literal)
-        if symbol is None:
-            raise InternalError(f"a percept is no literal: {literal!r}")
-    table = agent.beliefs[symbol]
-    change = table.deleted if percept.kind == "remove" else table.added
-    is_flat: bool | None = True
-    for argument in row:
-        if argument.__class__ not in ATOMIC:
-            is_flat = None if unkeyed_percepts.is_unkeyed(row) else False
-            break
-    taken: Taken = (symbol, row, is_flat, change)
-    percept.taken = taken
-    return taken
-
-
-def _event(percept: Percept, change: Trigger, row: Row) -> Event:
-    """The event of a percept, kept with it for all who share it."""
-    event: Event = ((change, *row), None, percept.annotations, percept.cause)
-    percept.event = event
-    return event
-
-
-def _exchange(
-    agent: Circumstance, old: Percept, new: Percept
-) -> tuple[Percept, Functor | None, Row, Row, Trigger, Trigger]:
-    """Two percepts as one change of a belief: the second, functor, both rows, and the kinds of the events; kept with the
-    first.  Without a functor they are something else."""
-    symbol, row, is_flat, removed = old.taken or _taken(agent, old)
-    new_symbol, new_row, new_is_flat, added = new.taken or _taken(agent, new)
-    alike = new_symbol is symbol and is_flat and new_is_flat and old.annotations is new.annotations
-    is_one = alike and old.kind == "remove" and new.kind == "add"
-    exchange = (new, symbol if is_one else None, row, new_row, removed, added)
-    old.exchange = exchange
-    return exchange
-
-
-def _take_unkeyed(agent: Circumstance, percept: Percept, symbol: Functor, row: Row) -> None:
-    """Take in a percept that cannot be looked up by what it says."""
-    annotations = percept.annotations
+    Raises:
+        InternalError: what it says is not a literal.
+    """
+    symbol, row = functor_of(percept.literal), arguments_of(percept.literal)
+    if symbol is None:
+        raise InternalError(f"a percept is no literal: {percept.literal!r}")
+    keyed = all(is_key(argument) and not holds_collection(argument) for argument in row)
     own: Row | None
     if percept.kind == "add":
-        own = unkeyed_percepts.take(agent, symbol, row, annotations)
+        own = (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
     elif percept.kind == "remove":
-        own = unkeyed_percepts.forget(agent, symbol, row, annotations)
+        own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
     else:
-        own = unkeyed_percepts.own_row(row)
+        own = _own_row(row)
     if own is not None:
         operator = "-" if percept.kind == "remove" else "+"
-        external_change(agent, operator, symbol, own, annotations, percept.cause)
+        external_change(agent, operator, symbol, own, percept.annotations, percept.cause)
 
 
-def _take_percept(
-    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations
-) -> bool:
-    """Add a percept whose literal may be held already, by the agent or for other properties with the same values.
+def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
+    """Believe a percept whose literal may be held already, by the agent or for other properties with the same values.
 
-    False when the base has no room for it.
+    None when the base has no room for it.
     """
-    known = agent.held_percepts.get(literal)
+    known = agent.held_percepts.get(percept.literal)
     if known is not None:
-        return _believe_apart(agent, symbol, row, literal, annotations, known)
+        return _believe_apart(agent, symbol, row, percept, known)
     refusals = agent.beliefs.refusals
-    insert(agent, symbol, row, annotations)
+    insert(agent, symbol, row, percept.annotations)
     if agent.beliefs.refusals != refusals:
-        return False
-    agent.held_percepts[literal] = annotations
-    return True
+        return None
+    agent.held_percepts[percept.literal] = percept.annotations
+    return row
 
 
 def _believe_apart(
-    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations, known: Any
-) -> bool:
+    agent: Circumstance, symbol: Functor, row: Row, percept: Percept, known: Any
+) -> Row | None:
     """Believe a property beside others with the same values: a belief of its own, with its own annotations.
 
-    False when the base has no room for it.
+    None when the base has no room for it.
     """
-    belief = OpenFact(belief_literal(symbol, row), annotations)
-    if agent.beliefs[symbol].add(belief, annotations) is None:
-        return False
+    belief = OpenFact(literal(symbol, row), percept.annotations)
+    if agent.beliefs[symbol].add(belief, percept.annotations) is None:
+        return None
     holders: list[Holder] = known if known.__class__ is list else [(known, row)]
-    holders.append((annotations, belief))
-    agent.held_percepts[literal] = holders
-    return True
+    holders.append((percept.annotations, belief))
+    agent.held_percepts[percept.literal] = holders
+    return row
 
 
-def _forget_percept(
-    agent: Circumstance, symbol: Functor, row: Row, literal: Term, annotations: Annotations, known: Any
-) -> bool:
+def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
     """Give up the belief of one property; others may have the same values.
 
-    False when the belief is not held any more.
+    None when the belief is not held any more.
     """
+    known = agent.held_percepts.pop(percept.literal, None)
     holders: list[Holder] = known if known.__class__ is list else [] if known is None else [(known, row)]
     # Of two properties of one artifact the annotations are equal, too: either may go.
-    place = next((i for i, holder in enumerate(holders) if holder[0] == annotations), None)
+    place = next((i for i, holder in enumerate(holders) if holder[0] == percept.annotations), None)
     entry = row if place is None else holders.pop(place)[1]
     if holders:
-        agent.held_percepts[literal] = holders
+        agent.held_percepts[percept.literal] = holders
+    return row if _take_away(agent, symbol, entry, percept) else None
+
+
+def _take_away(agent: Circumstance, symbol: Functor, entry: Any, percept: Percept) -> bool:
+    """Take the annotations of a percept off its belief; False when that is not held any more."""
     table = agent.beliefs[symbol]
     held = table.get(entry)
-    if held is None:
-        return False
-    take_away(table, entry, held, annotations)
-    return True
+    if held is not None:
+        take_away(table, entry, held, percept.annotations)
+    return held is not None
+
+
+# --- percepts that cannot be looked up by what they say --------------------------------------------------------
+
+# Python could not compare or hash very long or deeply nested terms, and of sets and maps every agent needs its own.  Such
+# a percept is told from others by the very arguments that its property was written with, and is a belief by itself.
+
+
+def _own_row(row: Row) -> Row:
+    """The arguments, with sets and maps of the agent's own."""
+    return tuple(map(detached, row))
+
+
+def _believe_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
+    own = _own_row(row)
+    belief = OpenFact(literal(symbol, own), percept.annotations)
+    if agent.beliefs[symbol].add(belief, percept.annotations) is None:
+        return None
+    # The arguments are kept with it: their identities stay theirs.
+    agent.held_percepts[_identity(symbol, row)] = belief, row, own
+    return own
+
+
+def _forget_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
+    belief, _, own = agent.held_percepts.pop(_identity(symbol, row), (None, row, row))
+    return own if belief is not None and _take_away(agent, symbol, belief, percept) else None
+
+
+def _identity(symbol: Functor, row: Row) -> tuple[object, ...]:
+    # No literal begins with None.
+    return (None, symbol, *map(id, row))
+
+
+# --- whether an agent has taken up what it perceived -------------------------------------------------------------
 
 
 def is_untaken(agent: Circumstance, name: str) -> bool:

@@ -54,15 +54,11 @@ class Percept:
         literal: an atom or structure, ground, without annotations.
         annotations: sorted; ``source(percept)`` among them.
         cause: the sensor message or property change behind it.
-        taken: what the first mind that took it in made of it, for all that share it; theirs alone.
-        event: the same for its event.
-        exchange: the same for it and the percept that follows it.
+        kept: what the engine of the first mind that took it in keeps with it, for all that share it.
     """
 
     kind: str
     literal: Term
     annotations: tuple[Term, ...]
     cause: Cause | None = None
-    taken: Any = field(default=None, init=False, compare=False, repr=False)
-    event: Any = field(default=None, init=False, compare=False, repr=False)
-    exchange: Any = field(default=None, init=False, compare=False, repr=False)
+    kept: Any = field(default=None, init=False, compare=False, repr=False)

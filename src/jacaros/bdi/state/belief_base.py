@@ -200,54 +200,6 @@ class Table:
         for positions, index in self._indexes.items():
             _put(index, row[positions[0]] if len(positions) == 1 else key_of(row, positions), row)
 
-    def begin(self, row: Row, annotations: tuple[Term, ...]) -> bool:
-        """Put in a row of numbers, strings and atoms while nobody searches; False when it is held already.
-
-        For tables of this very class: `add` is written out.
-        """
-        rows = self.rows
-        if row in rows or (self.late and row in self.late):
-            return False
-        if self.searches is not None or self._indexes:
-            self.add(row, annotations)
-        else:
-            rows[row] = annotations
-        return True
-
-    def end(self, row: Row, annotations: tuple[Term, ...]) -> bool:
-        """Take out a row while nobody searches; False when it is not held with this very tuple of annotations.
-
-        For tables of this very class: `remove` is written out.
-        """
-        rows = self.rows
-        if rows.get(row) is not annotations:
-            return False
-        if self.late or self._indexes or self.others:
-            self.remove(row)
-            return True
-        last, value = rows.popitem()
-        if last is not row and last != row:
-            rows[last] = value
-            del rows[row]
-        return True
-
-    def exchange(self, old: Row, new: Row, annotations: tuple[Term, ...]) -> bool:
-        """`end` of one row and `begin` of another at once; False when that needs more."""
-        rows = self.rows
-        if not rows or self.late or self._indexes or self.searches is not None:
-            return False
-        last, value = rows.popitem()
-        if value is annotations and last == old and (not rows or new not in rows):
-            # It was the newest, and mostly the only one.
-            rows[new] = annotations
-            return True
-        rows[last] = value
-        if rows.get(old) is not annotations or new in rows:
-            return False
-        del rows[old]
-        rows[new] = annotations
-        return True
-
     def remove(self, row: Any) -> bool:
         """Take out a row, rule or open belief that is held; False when the base refuses."""
         if self._base is not None and self._base.searching:
@@ -315,11 +267,6 @@ class Table:
         found.reverse()
         found.extend(self.late.items())
         return found
-
-    def in_order(self) -> Iterator[tuple[Any, tuple[Term, ...]]]:
-        """The entries one by one in the order in which they answer, for who stops when something changes."""
-        yield from reversed(self.rows.items())
-        yield from self.late.items()
 
     def candidates(self, arguments: Row) -> Iterable[Item]:
         """The entries that may unify with the arguments, in order, until something changes; an index is used where one

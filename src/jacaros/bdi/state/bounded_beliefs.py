@@ -1,8 +1,4 @@
-"""A belief base with a limit (agent option ``belief_limit``).
-
-Agents have a plain `BeliefTables`, whose tables count nothing, until half of the limit is reached (`watch`); unless the
-limit is small.
-"""
+"""A belief base with a limit (agent option ``belief_limit``)."""
 
 from typing import Any
 
@@ -10,11 +6,6 @@ from jacaros.bdi.state.belief_base import BeliefTables, Table
 from jacaros.bdi.state.budget import Holder
 from jacaros.bdi.state.engine import Engine
 from jacaros.terms.values import Functor, Term
-
-SMALL = 100_000
-"""Limits up to this one are kept from the beginning."""
-INTERVAL = 1_000
-"""Reasoning cycles between two counts of the beliefs; more when there are more names."""
 
 
 class BoundedBeliefs(BeliefTables):
@@ -41,7 +32,7 @@ class BoundedBeliefs(BeliefTables):
         return self._budget.refusals
 
     def __missing__(self, functor: Functor) -> Table:
-        table = self[functor] = _BoundedTable(functor, self)
+        table = self[functor] = BoundedTable(functor, self)
         return table
 
     def admits(self) -> bool:
@@ -62,7 +53,9 @@ class BoundedBeliefs(BeliefTables):
         self._held += change
 
 
-class _BoundedTable(Table):
+class BoundedTable(Table):
+    """A table that asks the base before it grows."""
+
     __slots__ = ()
 
     _base: BoundedBeliefs
@@ -77,18 +70,3 @@ class _BoundedTable(Table):
         removed = super().remove(row)
         self._base.count(-1)
         return removed
-
-
-def watch(beliefs: BeliefTables, holder: Holder, limit: int) -> bool:
-    """Bound a plain base from now on when half of the limit is reached; True when it is bounded."""
-    if beliefs.__class__ is not BeliefTables:
-        return True
-    if 2 * sum(map(len, beliefs.values())) < limit:
-        return False
-    for table in beliefs.values():
-        if table.__class__ is Table:
-            table.__class__ = _BoundedTable
-    beliefs.__class__ = BoundedBeliefs
-    assert isinstance(beliefs, BoundedBeliefs)
-    beliefs.bind(holder, limit)
-    return True

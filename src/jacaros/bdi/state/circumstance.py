@@ -9,7 +9,6 @@ from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import SELECT_OPTION, BeliefTables
-from jacaros.bdi.state.bounded_beliefs import INTERVAL, SMALL, BoundedBeliefs
 from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
@@ -23,6 +22,8 @@ from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
 
+INTERVAL = 1_000
+"""Reasoning cycles between two looks at the names that an agent uses; more when there are more names."""
 CROWD = 2000
 """Intentions that take turns.  With more of them, goals that the agent sets itself (``!!g``) begin one by one."""
 
@@ -36,8 +37,8 @@ class Circumstance:
         trail: bindings of the search under way; empty between two steps.
         beliefs, library, selects: what it believes, its plans, and their select functions.
         events: the queue of events, oldest first.
-        usual_events: external events without a plan are passed over, and events of belief changes in plans belong to
-            the intentions that made them.
+        usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
+            intentions that made them, and no agent class is asked about these changes.
         requeued: external events without plan that are to be tried again (``events=requeue``).
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
         crowd: intentions for goals that the agent set itself beside `CROWD` others that can run: they join these as others
@@ -191,10 +192,8 @@ class Circumstance:
         self.trail = Trail()
         self.current: Intention | None = None
         self.budgets = budgets(self)
-        limit = options.belief_limit
-        self.beliefs: BeliefTables = (
-            BoundedBeliefs(self, limit, plans.engine) if limit <= SMALL else BeliefTables(plans.engine)
-        )
+        self.engine = plans.engine
+        self.beliefs: BeliefTables = plans.engine.belief_base(self, options.belief_limit)
         self.next_count = INTERVAL
         self.event_limit, self.intention_limit = options.event_limit, options.intention_limit
         if options.search_limit:
@@ -202,7 +201,6 @@ class Circumstance:
         self.usual_events = options.events == "discard" and not options.new_focus
         self.option_filter = self.beliefs[SELECT_OPTION]
         self.refused_options = False
-        self.engine = plans.engine
         self.library = PlanLibrary(plans)
         self.selects = self.library.selects
         self.urgency: Any = None

@@ -165,12 +165,12 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
 
 
 _ADDITIONS = {
-    "+": "add_belief",
-    "+<": "add_belief",
-    "+>": "add_belief_last",
-    "++": "add_belief_apart",
-    "-+": "replace_belief",
-    "-++": "add_belief_apart",
+    "+": "add_belief(agent, ",
+    "+<": "add_belief(agent, ",
+    "+>": "agent.add_belief_last(",
+    "++": "agent.add_belief_apart(",
+    "-+": "replace_belief(agent, ",
+    "-++": "agent.add_belief_apart(",
 }
 
 
@@ -196,15 +196,14 @@ def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) 
         annotations = own_annotations(fn, operand.annotations)
     if operator in ("-", "--"):
         arguments = tuple_of([build(fn, a) for a in operand.arguments]) if operand.arguments else "()"
-        fn.line(f"posted = agent.delete_belief({symbol}, {arguments}, {annotations}, {operator == '--'})")
+        fn.line(f"posted = delete_belief(agent, {symbol}, {arguments}, {annotations}, {operator == '--'})")
         return
     row = tuple_of([resolved(fn, build(fn, a)) for a in operand.arguments]) if operand.arguments else "()"
     if operator == "-++":
         fn.line(f"row = {row}")
         fn.line(f"agent.delete_any({symbol}, {annotations})")
         row = "row"
-    method = _ADDITIONS[operator]
-    fn.line(f"posted = agent.{method}({symbol}, {row}, {annotations})")
+    fn.line(f"posted = {_ADDITIONS[operator]}{symbol}, {row}, {annotations})")
 
 
 def _external(compiler: BodyCompiler, step: nodes.ExternalAction, name: str, next_name: str) -> None:

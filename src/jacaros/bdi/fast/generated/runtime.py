@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
+from jacaros.bdi.fast.beliefs import add_belief, delete_belief, replace_belief
 from jacaros.bdi.rules.calls import (
     answers_of,
     cannot_wait,
@@ -62,6 +63,7 @@ CLOSED = frozenset({float, String, Functor, List})
 
 
 _FUNCTIONS = (
+    add_belief,
     annotation_set,
     annotations_of_event,
     answers_of,
@@ -74,6 +76,7 @@ _FUNCTIONS = (
     deconstruct_in,
     deconstructed,
     deeper,
+    delete_belief,
     bare,
     deref,
     equal,
@@ -94,6 +97,7 @@ _FUNCTIONS = (
     refuse,
     refuse_quietly,
     release,
+    replace_belief,
     resolve,
     resolve_all,
     run,

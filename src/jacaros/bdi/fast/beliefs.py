@@ -1,0 +1,176 @@
+"""Changes of beliefs that are facts, and percepts that change such beliefs.
+
+Stands for `add_belief`, `replace_belief` and `delete_belief` of `jacaros.bdi.rules.belief_update`, and for `take_in` of
+`jacaros.bdi.rules.perceiving`.  What is rarer is left to these.
+"""
+
+from typing import Any
+
+from jacaros.bdi.rules import perceiving
+from jacaros.bdi.rules.belief_update import deleted, external_change, own_event
+from jacaros.bdi.rules.searching import unify_rows
+from jacaros.bdi.state.act import Percept
+from jacaros.bdi.state.belief_base import BeliefTables, Row, Table
+from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs, BoundedTable
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.engine import Engine
+from jacaros.bdi.state.event import Event, Raised
+from jacaros.bdi.state.triggers import Trigger
+from jacaros.errors import InternalError
+from jacaros.terms.substitution import ATOMIC, is_key
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import BY_SELF, Functor, Term, arguments_of, functor_of
+
+Annotations = tuple[Term, ...]
+SMALL = 100_000
+"""Limits up to this one are kept from the beginning."""
+Kept = tuple[Functor, Row | None, Trigger, Event]
+"""Functor and arguments of a percept, the kind of its event, and the event."""
+
+
+def add_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
+    """``+b`` of a fact that is not held yet."""
+    table = agent.beliefs[symbol]
+    if not (table.plain and agent.usual_events and _is_keyed(row)) or row in table.rows:
+        posted: Raised = agent.add_belief(symbol, row, annotations)
+        return posted
+    new = table.add(row, annotations)
+    if new is not BY_SELF or agent.condition_waits:
+        return own_event(agent, symbol, row, new)
+    kind = table.added
+    if agent.selects[kind] is None and not (
+        agent.events or agent.intentions or agent.event_waits or agent.subplans
+    ):
+        return None
+    return (kind, *row)
+
+
+def replace_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
+    """``-+b`` where the newest belief is one of the agent's own."""
+    table = agent.beliefs[symbol]
+    rows = table.rows
+    if not (annotations is BY_SELF and rows and table.plain and agent.usual_events) or (
+        rows[newest := next(reversed(rows))] is not BY_SELF
+    ):
+        posted: Raised = agent.replace_belief(symbol, row, annotations)
+        return posted
+    if table.remove(newest) and (
+        agent.selects[table.deleted] is not None
+        or agent.event_waits
+        or agent.condition_waits
+        or agent.subplans
+    ):
+        external_change(agent, "-", symbol, newest, BY_SELF)
+    return add_belief(agent, symbol, row, annotations)
+
+
+def delete_belief(
+    agent: Any, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
+) -> Raised:
+    """``-b`` and ``--b`` where all facts that may match are the agent's own: the first match goes as a whole."""
+    table = agent.beliefs[symbol]
+    if annotations is BY_SELF and table.plain and agent.usual_events:
+        trail = agent.trail
+        for fact in table.rows_like(arguments):
+            if table.rows[fact] is not BY_SELF:
+                break
+            mark = len(trail)
+            if unify_rows(arguments, fact, trail):
+                taken = table.remove(fact)
+                if apart or not taken:
+                    undo(trail, mark)
+                return deleted(agent, symbol, fact, BY_SELF, apart) if taken else None
+            undo(trail, mark)
+        else:
+            return None
+    posted: Raised = agent.delete_belief(symbol, arguments, annotations, apart)
+    return posted
+
+
+def _is_keyed(row: Row) -> bool:
+    """Whether a belief is found by its arguments; most are numbers, strings and atoms."""
+    for argument in row:  # noqa: SIM110 - `all` would make a generator for every belief
+        if argument.__class__ not in ATOMIC and not is_key(argument):
+            return False
+    return True
+
+
+# --- percepts ----------------------------------------------------------------------------------------------------
+
+
+def take_percepts(agent: Circumstance) -> None:
+    """Bring the belief base in line with what was noticed."""
+    perceiving.take_percepts(agent, _take_in)
+
+
+def _take_in(agent: Circumstance, percepts: list[Percept]) -> None:
+    """Take in what was noticed in one step, where its events go into the queue as they are."""
+    if agent.event_waits or agent.condition_waits or agent.subplans or not _has_room(agent, len(percepts)):
+        perceiving.take_in(agent, percepts)
+        return
+    beliefs, holders, selects, events = agent.beliefs, agent.held_percepts, agent.selects, agent.events
+    for percept in percepts:
+        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
+        symbol, row, change, event = percept.kept or _kept(agent, percept)
+        table = beliefs[symbol]
+        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
+        if row is None or table.__class__ is not Table:
+            perceiving.take(agent, percept)
+            continue
+        if kind == "add":
+            if literal in holders or row in table.rows or table.late:
+                perceiving.take(agent, percept)
+                continue
+            table.add(row, annotations)
+            holders[literal] = annotations
+        elif kind == "remove":
+            if holders.get(literal) is not annotations or table.rows.get(row) is not annotations:
+                perceiving.take(agent, percept)
+                continue
+            table.remove(row)
+            del holders[literal]
+        if selects[change] is not None:
+            events.append(event)
+
+
+def _has_room(agent: Circumstance, count: int) -> bool:
+    """Whether that number of events need only be put into the queue."""
+    return (
+        agent.options.events == "discard"
+        and agent.urgency is None
+        and len(agent.events) + count <= agent.event_limit
+        and len(agent.alive) < agent.intention_limit
+    )
+
+
+def _kept(agent: Circumstance, percept: Percept) -> Kept:
+    """What is kept with a percept for all minds that share it; the arguments are None when they are not flat."""
+    symbol, row = functor_of(percept.literal), arguments_of(percept.literal)
+    if symbol is None:
+        raise InternalError(f"a percept is no literal: {percept.literal!r}")
+    table = agent.beliefs[symbol]
+    change = table.deleted if percept.kind == "remove" else table.added
+    event: Event = ((change, *row), None, percept.annotations, percept.cause)
+    percept.kept = kept = (symbol, row if ATOMIC.issuperset(map(type, row)) else None, change, event)
+    return kept
+
+
+# --- limits ------------------------------------------------------------------------------------------------------
+
+
+def belief_base(engine: Engine, agent: Any, limit: int) -> BeliefTables:
+    """A belief base that counts nothing, unless its limit is small: until `watch` finds it half full."""
+    return BoundedBeliefs(agent, limit, engine) if limit <= SMALL else BeliefTables(engine)
+
+
+def watch(agent: Circumstance) -> None:
+    """Count the beliefs from now on when half of the limit is reached."""
+    beliefs, limit = agent.beliefs, agent.options.belief_limit
+    if beliefs.__class__ is not BeliefTables or 2 * sum(map(len, beliefs.values())) < limit:
+        return
+    for table in beliefs.values():
+        if table.__class__ is Table:
+            table.__class__ = BoundedTable
+    beliefs.__class__ = BoundedBeliefs
+    assert isinstance(beliefs, BoundedBeliefs)
+    beliefs.bind(agent, limit)
