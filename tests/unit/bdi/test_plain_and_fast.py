@@ -7,6 +7,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from recording_host import printed
 
 from jacaros.bdi.fast.generated import conditions
 from jacaros.testing import run_project
@@ -78,6 +79,13 @@ def test_plain_and_fast_make_the_same_cycles(monkeypatch, tmp_path):
     fast = cycles()
     monkeypatch.setenv("JACAROS_PLAIN", "1")
     assert cycles() == fast
+
+
+@pytest.mark.parametrize("plain", ["0", "1"])
+def test_a_variable_with_annotations_finds_every_belief_that_has_them(monkeypatch, plain):
+    monkeypatch.setenv("JACAROS_PLAIN", plain)
+    program = "p(1)[a]. q(2)[a,b]. p(3). !s. +!s <- .findall(X, X[a], L); .findall(Y, Y[b], M); .print(L, M)."
+    assert printed(program) == ["[p(1),q(2)][q(2)]"]
 
 
 def test_random_programs_do_the_same_plain_and_fast_and_with_searched_contexts(monkeypatch, tmp_path):
