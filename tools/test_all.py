@@ -93,7 +93,7 @@ def parts() -> list[Part]:
         Part("ros2-kilted-install", ("tools/install_ros2.sh", "kilted"), "install"),
         Part("style", (f"{BIN}/ruff", "check", ".")),
         Part("format", (f"{BIN}/ruff", "format", "--check", ".")),
-        Part("types", (PYTHON, "-m", "mypy"), budget=30),
+        Part("types", ("sh", "-c", f"{PYTHON} -m mypy && {BIN}/pyright"), budget=75),
         Part("layers", (f"{BIN}/lint-imports", "--no-logo")),
         Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), budget=210),
         Part("wheel", ("tools/test_wheel.sh",)),

@@ -59,7 +59,7 @@ class Node(metaclass=_NodeType):
     def __eq__(self, other: object) -> bool:
         if other.__class__ is not self.__class__:
             return NotImplemented
-        return self is other or self.parts() == other.parts()
+        return self is other or self.parts() == other.parts()  # pyright: ignore[reportAttributeAccessIssue]
 
     def __hash__(self) -> int:
         return hash((self.__class__, self.parts()))

@@ -170,7 +170,7 @@ class Reflection:
         if operator == "?":
             return nodes.Test(self.term(operands[0]))
         if operator == "if":
-            otherwise = self.body(operands[2]) if len(operands) > 2 else None
+            otherwise = self.body(operands[2]) if operands[2:] else None
             return nodes.If(self.term(operands[0]), self.body(operands[1]), otherwise)
         if operator in ("while", "for"):
             loop = nodes.While if operator == "while" else nodes.For

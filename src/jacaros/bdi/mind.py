@@ -269,8 +269,8 @@ class Mind(Circumstance):
         """The agent will be ended after so many milliseconds; its plans may prepare for it."""
         meta_events.shutting_down(self, milliseconds)
 
-    drop_wait = waits.drop
-    notify_event_waits = waits.notify_event_waits
+    drop_wait = waits.drop  # pyright: ignore[reportAssignmentType]
+    notify_event_waits = waits.notify_event_waits  # pyright: ignore[reportAssignmentType]
 
     # --- called by generated code --------------------------------------------------------------------------
 

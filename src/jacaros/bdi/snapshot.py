@@ -176,7 +176,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
     part["events"] = [
         event
         for event in original.events
-        if event[EVENT_INTENTION] is None or _can_be_copied(original, event[EVENT_INTENTION])
+        if (intention := event[EVENT_INTENTION]) is None or _can_be_copied(original, intention)
     ]
     part["intentions"] = [
         each for each in (*original.intentions, *original.crowd) if _can_be_copied(original, each)

@@ -98,7 +98,7 @@ class PerceptWriter:
         if not namespace:
             return written
         # The very same arguments: by them the mind finds what it is to give up.
-        literal, about = written
+        literal, about = written  # pyright: ignore[reportGeneralTypeIssues]
         symbol = symbol_of(f"{namespace}::{each.name}", len(each.values))
         return (symbol, *literal[1:]) if each.values else symbol, about
 

@@ -131,7 +131,7 @@ def _key(value: object) -> object:
         return tuple(map(_key, value))
     if isinstance(value, dict):
         return tuple((key, _key(item)) for key, item in value.items())
-    if value.__class__ is Structure:
+    if isinstance(value, Structure):
         return Structure(value.functor, tuple(map(_key, value.arguments)))
     return value
 

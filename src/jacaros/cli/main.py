@@ -36,37 +36,37 @@ COMMANDS = {
 class Commands(click.Group):
     """The commands by name; the module of one is imported when it is called, not before."""
 
-    def list_commands(self, context: click.Context) -> list[str]:
+    def list_commands(self, ctx: click.Context) -> list[str]:
         """The names, in the order of importance."""
         return list(COMMANDS)
 
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of that name."""
-        if name not in COMMANDS:
+        if cmd_name not in COMMANDS:
             return None
-        command: click.Command = import_module(COMMANDS[name][0]).command
+        command: click.Command = import_module(COMMANDS[cmd_name][0]).command
         return command
 
     def resolve_command(
-        self, context: click.Context, arguments: list[str]
+        self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """A file in the place of the command is run: ``jacaros hello.asl``."""
-        if arguments and arguments[0].endswith((".asl", ".py", ".mas2j", ".jcm")):
-            arguments = ["run", *arguments]
-        return super().resolve_command(context, arguments)
+        if args and args[0].endswith((".asl", ".py", ".mas2j", ".jcm")):
+            args = ["run", *args]
+        return super().resolve_command(ctx, args)
 
-    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
 
 
-def _tell_version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+def _tell_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
     if wanted:
         from jacaros.cli.version import version_of
 
         click.echo(f"jacaros {version_of('jacaros')}")
-        context.exit()
+        ctx.exit()
 
 
 @click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

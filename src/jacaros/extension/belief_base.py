@@ -212,19 +212,19 @@ class AskingTable(Table):
 
     def add(self, row: Entry, annotations: Annotations, last: bool = False) -> Annotations | None:
         """Ask for a new row to be kept."""
-        if row.__class__ is not tuple:
+        if not isinstance(row, tuple):
             return super().add(row, annotations, last)
         return annotations if self._tables.ask_add(self, row, annotations, last) else None
 
     def set(self, row: Entry, annotations: Annotations) -> bool:
         """Ask for other annotations to be kept."""
-        if row.__class__ is not tuple:
+        if not isinstance(row, tuple):
             return super().set(row, annotations)
         return self._tables.ask_add(self, row, annotations, False)
 
     def remove(self, row: Entry) -> bool:
         """Ask for a row to be given up."""
-        if row.__class__ is not tuple:
+        if not isinstance(row, tuple):
             return super().remove(row)
         return self._tables.ask_remove(self, row)
 

@@ -97,7 +97,7 @@ class AgentClasses:
         if any(objects):
             return self._custom(spec, program, run, seed, options, code, plans, objects)
         host = AgentHost(spec.name, run, seed)
-        mind = Mind(spec.name, program, host, options, code.actions, plans)
+        mind = Mind(spec.name, program, host, options, code.actions, plans)  # pyright: ignore[reportArgumentType]
         code.serve(mind)
         host.mind = mind
         return host

@@ -227,7 +227,7 @@ class AgentHost:
     def ready(self) -> None:
         """The mind has something to do."""
         if not self.queued:
-            self._scheduler.make_ready(self)
+            self._scheduler.make_ready(self)  # pyright: ignore[reportArgumentType]
 
     @property
     def random(self) -> Random:

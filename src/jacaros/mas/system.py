@@ -244,7 +244,7 @@ class System:
         host = self.directory.find(DIRECTORY_NAME)
         if host is None:
             host = AgentHost(DIRECTORY_NAME, self, f"{self._seed}/{DIRECTORY_NAME}")
-            host.mind = Mind(DIRECTORY_NAME, Program(), host)
+            host.mind = Mind(DIRECTORY_NAME, Program(), host)  # pyright: ignore[reportArgumentType]
             self.directory.add(DIRECTORY_NAME, host)
         mind = host.mind
         assert isinstance(mind, Mind)

@@ -107,7 +107,7 @@ def from_rosbags(description: Any) -> FieldType:
     """Read the nested tuples of the ``rosbags`` typestore."""
     node, content = description
     if node.name == "BASE":
-        base, bound = content
+        base, bound = str(content[0]), content[1]
         return FieldType({"octet": "byte"}.get(base, base), bound=bound)
     if node.name == _NAME:
         return FieldType(content)

@@ -23,7 +23,8 @@ class Orphans:
     """
 
     def __init__(self, node_name: str, policy: OrphanPolicy, log: Callable[[str], None]) -> None:
-        self._policy, self._log = policy, log
+        self._policy: OrphanPolicy = policy
+        self._log = log
         run = secrets.token_hex(4)
         self._families = (f"{node_name}-", hashlib.sha256(node_name.encode()).hexdigest()[:12])
         self._named, self._hashed = (f"{family}{run}" for family in self._families)

@@ -29,7 +29,7 @@ class SetValue:
         return len(self.items)
 
     def __eq__(self, other: object) -> bool:
-        return other.__class__ is SetValue and self.items.keys() == other.items.keys()
+        return isinstance(other, SetValue) and self.items.keys() == other.items.keys()
 
     def __hash__(self) -> int:
         return hash(SetValue)  # the elements change while the set is an argument of a belief

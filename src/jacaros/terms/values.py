@@ -20,6 +20,9 @@ Formulae, plans and triggers are terms too (a program may pass them around): str
 another `Functor.kind` than `PLAIN`.
 """
 
+# What `x.__class__ is C` says of x is not known to
+# pyright: reportAttributeAccessIssue=false
+
 import itertools
 from _weakref import _remove_dead_weakref  # type: ignore[attr-defined]
 from collections.abc import Callable, Iterable, Iterator
@@ -128,7 +131,7 @@ class String(str):
     def __add__(self, other: object) -> NoReturn:
         raise TypeError("strings are joined with .concat")
 
-    __radd__ = __mul__ = __rmul__ = __mod__ = __add__
+    __radd__ = __mul__ = __rmul__ = __mod__ = __add__  # pyright: ignore[reportAssignmentType]
 
     def __repr__(self) -> str:
         return f"String({str.__repr__(self)})"

@@ -79,9 +79,8 @@ class AgentItem(pytest.Item):
         """
         from jacaros.testing.trial import TrialOptions, run_suite
 
-        options = TrialOptions(
-            timeout=self.config.getoption("--asl-timeout"), seed=self.config.getoption("--asl-seed")
-        )
+        given = self.config.option
+        options = TrialOptions(timeout=given.asl_timeout, seed=given.asl_seed)
         for outcome in run_suite(self._suite, options, lambda test: test is self._test):
             if not outcome.passed:
                 raise AgentTestFailed(outcome)

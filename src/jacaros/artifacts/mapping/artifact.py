@@ -160,7 +160,7 @@ class MappedArtifact(RosArtifact):
     async def run_process(self, process: object) -> None:
         """Run what takes its time for as long as the artifact is there."""
         assert callable(process)
-        await process()
+        await process()  # pyright: ignore[reportGeneralTypeIssues]
 
     # ---- reports
 

@@ -98,7 +98,7 @@ def _check_operation(
     filler(fitting(operation, types[0], interfaces), types[0], interfaces, problems)
     if operation.at_end is not None:
         filler(operation.at_end, types[0], interfaces, problems)
-    if len(types) > 1:
+    if types[1:]:
         check_answer(operation, types[1], interfaces, problems)
     for feedback in operation.feedback:
         check_topic(feedback, types[2], interfaces, problems)

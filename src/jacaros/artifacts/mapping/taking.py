@@ -296,7 +296,7 @@ def _otherwise(
             return after(instead)
 
         return from_message
-    figure = int(otherwise) if otherwise.is_integer() and field.conversion.digits == 0 else otherwise
+    figure = int(otherwise) if float(otherwise).is_integer() and field.conversion.digits == 0 else otherwise
     return lambda value, whole: figure
 
 

@@ -162,12 +162,13 @@ class ExpressionLayout(ABC):
             return Nest(None, self.formula(begin, end))
         parts: list[Document] = []
         between: Document = NOTHING
+        following: Document = NOTHING
         for place in [*places, end]:
             item: Document = self.formula(begin, place)
             if place < end:
                 tail = self.pieces[place].kind == "|"
                 item = row(item, self.piece(place))
-                following: Document = Break("") if tail else Break()
+                following = Break("") if tail else Break()
             parts.append(Group(row(between, item)))
             between, begin = following, place + 1
         return Nest(None, Row(tuple(parts)))

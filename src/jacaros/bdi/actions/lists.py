@@ -74,10 +74,10 @@ def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
         collection.__class__ is List
         and item.__class__ in ATOMIC
         and item == item  # not a number is in no list
-        and collection.is_settled()
-        and collection.depth == 1
+        and collection.is_settled()  # pyright: ignore[reportAttributeAccessIssue]
+        and collection.depth == 1  # pyright: ignore[reportAttributeAccessIssue]
     ):
-        for _ in range(collection.from_bottom().count(item)):
+        for _ in range(collection.from_bottom().count(item)):  # pyright: ignore[reportAttributeAccessIssue]
             yield
         return
     for candidate in members(collection, "the second argument of .member"):

@@ -73,7 +73,7 @@ class FailureReason:
 
     @property
     def _place(self) -> Any:
-        if self._at.__class__ is list:
+        if isinstance(self._at, list):
             self._at = StepPlace(self._at, self._at[STEP].info)
         return self._at
 

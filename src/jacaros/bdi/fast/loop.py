@@ -38,7 +38,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     if agent.crowd or options.search_limit:
         begin_turn(agent)
     # Calls inside terms are evaluated for this agent meanwhile.
-    before = RUNNING.set(agent)
+    before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
     try:
         begun = fuel

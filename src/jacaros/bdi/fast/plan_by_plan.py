@@ -70,7 +70,7 @@ class PlanByPlan:
                 # Only the plans that may be relevant for the first argument.
                 key = goal[1]
                 if key.__class__ is tuple:
-                    key = None if key[0].kind else key[0]
+                    key = None if key[0].kind else key[0]  # pyright: ignore[reportIndexIssue]
                 elif key.__class__ is List:
                     key = CONS
                 if key.__class__ in ATOMIC:

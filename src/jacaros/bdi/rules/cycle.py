@@ -38,7 +38,7 @@ def run(agent: Circumstance, fuel: int) -> bool:
 def turn(agent: Circumstance) -> Iterator[None]:
     """An agent has its turn: what comes in meanwhile need not wake it, and functions in terms are evaluated for it."""
     begin_turn(agent)
-    before = RUNNING.set(agent)
+    before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
     try:
         if agent.asleep:

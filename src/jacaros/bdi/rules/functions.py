@@ -118,7 +118,7 @@ def _symbol(function: RegisteredFunction) -> Functor:
 @contextmanager
 def evaluating(agent: Circumstance) -> Iterator[None]:
     """While it is open, calls inside terms are evaluated for this agent."""
-    before = RUNNING.set(agent)
+    before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     try:
         yield
     finally:

@@ -145,12 +145,12 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
         _event_state(agent, event, "dropped", "finished")
     for event in list(agent.events):
         if (
-            event[EVENT_INTENTION] is not None
+            (intention := event[EVENT_INTENTION]) is not None
             and _is_goal(event)
             and matches(agent, goal, event_literal(event))
         ):
             remove_event(agent, event)
-            drop_intention(agent, event[EVENT_INTENTION])
+            drop_intention(agent, intention)
 
 
 def drop_goal(agent: Circumstance, goal: Term) -> None:
@@ -180,15 +180,15 @@ def drop_all_goal_events(agent: Circumstance) -> None:
     for event in (*agent.events, *agent.suspended_events):
         if _is_goal(event):
             remove_event(agent, event)
-            if event[EVENT_INTENTION] is not None:
-                drop_intention(agent, event[EVENT_INTENTION])
+            if (intention := event[EVENT_INTENTION]) is not None:
+                drop_intention(agent, intention)
 
 
 def drop_all_events(agent: Circumstance) -> None:
     """All pending events; intentions that posted them vanish."""
     for event in list(agent.events):
-        if event[EVENT_INTENTION] is not None:
-            drop_intention(agent, event[EVENT_INTENTION])
+        if (intention := event[EVENT_INTENTION]) is not None:
+            drop_intention(agent, intention)
     agent.events.clear()
     agent.requeued.clear()
     agent.suspended_events.clear()

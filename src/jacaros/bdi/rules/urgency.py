@@ -78,7 +78,7 @@ class Urgency:
     def note_event(self, event: Event) -> None:
         """An event is about to be queued."""
         if self.by_trigger[event[EVENT_GOAL][0]] or (
-            event[EVENT_INTENTION] is not None and self.of_intention(event[EVENT_INTENTION])
+            (intention := event[EVENT_INTENTION]) is not None and self.of_intention(intention)
         ):
             self.rank()
 

@@ -45,7 +45,7 @@ class SpeechAct:
     @property
     def id(self) -> str:
         """Name of the message, unique in the system, such as ``mid7_ann``."""
-        if self._id.__class__ is int:
+        if isinstance(self._id, int):
             self._id = message_id(self._id, self.receiver if self.sender == "self" else self.sender)
         return str(self._id)
 

@@ -93,9 +93,10 @@ def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
     if endpoint.qos is not None:
         qos = endpoint.qos
         # The depth is nobody else's business: ROS 2 does not tell it over the network.
-        data["qos"] = {"reliability": qos.reliability, "durability": qos.durability}
+        quality: dict[str, Any] = {"reliability": qos.reliability, "durability": qos.durability}
         if qos.deadline is not None:
-            data["qos"]["deadline"] = qos.deadline
+            quality["deadline"] = qos.deadline
+        data["qos"] = quality
     return data
 
 

@@ -216,7 +216,7 @@ class Mas(EmbeddedRun):
         system, waits = self._open, self._running[1]
         if self._mailboxes is None:
             self._mailboxes = PythonMailboxes()
-            system.directory.join(self._mailboxes)
+            system.directory.join(self._mailboxes)  # pyright: ignore[reportArgumentType]
         known = self._mailboxes.find(name)
         if known is None:
             if name in system.directory.names():

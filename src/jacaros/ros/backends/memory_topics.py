@@ -115,7 +115,7 @@ class MemorySubscription:
         self._waiting: deque[Any] = deque(maxlen=qos.depth)
         self._deadline = None if qos.deadline is None else _Deadline(node, qos.deadline, self._missed)
         self._shared = node.graph.topic(topic)
-        self._shared.subscriptions.append(self)
+        self._shared.subscriptions.append(self)  # pyright: ignore[reportArgumentType]
         self.choose_way()
         for publisher in self._shared.publishers:
             self.meet(publisher)
@@ -137,10 +137,10 @@ class MemorySubscription:
         trouble = self.trouble(publisher)
         if trouble is not None:
             if trouble.trouble is TopicTrouble.OTHER_TYPE:
-                publisher.refused(self)
+                publisher.refused(self)  # pyright: ignore[reportArgumentType]
             self._tell(trouble)
         elif self._node.graph.up:
-            publisher.connect(self)
+            publisher.connect(self)  # pyright: ignore[reportArgumentType]
 
     def trouble(self, publisher: GraphPublisher) -> TopicEvent | None:
         """Why nothing can come from a publisher."""
@@ -185,7 +185,7 @@ class MemorySubscription:
         if self in self._shared.subscriptions:
             self._shared.subscriptions.remove(self)
         for publisher in self._shared.publishers:
-            publisher.disconnect(self)
+            publisher.disconnect(self)  # pyright: ignore[reportArgumentType]
         self._waiting.clear()
         if self._deadline is not None:
             self._deadline.stop()

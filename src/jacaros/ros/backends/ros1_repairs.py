@@ -23,14 +23,14 @@ def let_subscribers_hear() -> None:
 def print_to_standard_error() -> None:
     """Turn what rospy prints to standard error: standard output belongs to the agents.  Before ``init_node``."""
     for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
-        module.print = partial(print, file=sys.stderr)
+        module.print = partial(print, file=sys.stderr)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def log_to_standard_error() -> None:
     """Turn what rospy logs to standard error as well.  After ``init_node``, which sets the logs up."""
     for handler in logging.getLogger("rosout").handlers:
         if hasattr(handler, "_stdout"):
-            handler._stdout = sys.stderr
+            handler._stdout = sys.stderr  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def let_parameters_tell(listener: Callable[[str, Any], None]) -> None:

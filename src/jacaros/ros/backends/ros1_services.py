@@ -60,7 +60,7 @@ class Ros1Service:
 class Ros1Client(AttemptingClient):
     """Client of `Ros1Backend`."""
 
-    _node: Ros1Node
+    _node: Ros1Node  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(self, node: Ros1Node, name: str, type_name: str) -> None:
         super().__init__(node, name, type_name)

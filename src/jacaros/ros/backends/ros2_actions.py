@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from action_msgs.msg import GoalInfo, GoalStatusArray  # type: ignore[import-not-found]
-from action_msgs.msg import GoalStatus as Status
+from action_msgs.msg import GoalStatus as Status  # pyright: ignore[reportMissingImports]
 from action_msgs.srv import CancelGoal  # type: ignore[import-not-found]
 from unique_identifier_msgs.msg import UUID  # type: ignore[import-not-found]
 

@@ -74,7 +74,7 @@ class Ros2GoalWire:
         self.sender = GoalSender(
             node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
         )
-        self.sender.wire = self
+        self.sender.wire = self  # pyright: ignore[reportAttributeAccessIssue]
         self._node = node
         self._type_name = type_name
         self._impl: Any = node.schema.message_class(type_name).Impl
@@ -128,25 +128,25 @@ class Ros2GoalWire:
         """Make up the id of a new goal."""
         return self._node.orphans.hashed_id()
 
-    def send_goal(self, identity: str, goal: Any) -> None:
+    def send_goal(self, goal_id: str, goal: Any) -> None:
         """Send a goal."""
         self._mismatch = action_mismatch(self._node, self.name, self._type_name)
         if self._mismatch is not None:
             raise CallFailed(self._mismatch)
-        request = self._impl.SendGoalService.Request(goal_id=id_message(identity), goal=goal)
-        self._goals[identity] = _SentGoal(identity, request)
+        request = self._impl.SendGoalService.Request(goal_id=id_message(goal_id), goal=goal)
+        self._goals[goal_id] = _SentGoal(goal_id, request)
         self._note_servers()
         self._keep_looking()
-        self._send_when_settled(identity)
+        self._send_when_settled(goal_id)
 
-    def cancel_goal(self, identity: str) -> None:
+    def cancel_goal(self, goal_id: str) -> None:
         """Ask the server to cancel a goal."""
-        goal = self._goals.get(identity)
+        goal = self._goals.get(goal_id)
         if goal is not None:
             goal.cancel_asked = time.monotonic()
             self._keep_looking()
-        request = CancelGoal.Request(goal_info=GoalInfo(goal_id=id_message(identity)))
-        self._call(self._cancel_client, request, lambda answer: self._cancel_answered(identity, answer))
+        request = CancelGoal.Request(goal_info=GoalInfo(goal_id=id_message(goal_id)))
+        self._call(self._cancel_client, request, lambda answer: self._cancel_answered(goal_id, answer))
 
     def adopt_goal(self, identity: str) -> None:
         """Follow a goal of an earlier run."""

@@ -141,7 +141,7 @@ class Ros2Service:
 class Ros2Client(AttemptingClient):
     """Client of the ``ros2`` backend."""
 
-    _node: Ros2Node
+    _node: Ros2Node  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
         super().__init__(node, name, type_name)

@@ -39,6 +39,7 @@ class _Protocol(AsyncioRosBridgeProtocol):  # type: ignore[misc]
     """One connection; all but ``send_message`` and ``backlog`` is called on roslibpy's thread."""
 
     factory: "_Factory"
+    transport: Any
 
     def __init__(self) -> None:
         super().__init__()
@@ -165,7 +166,8 @@ class Link:
         if protocol is None:
             return
         # The connection's own thread does this after the messages that were handed to it before.
-        factory.manager.loop.call_soon_threadsafe(self._close_when_sent, protocol, seconds)
+        loop: Any = factory.manager.loop
+        loop.call_soon_threadsafe(self._close_when_sent, protocol, seconds)
         self._idle.wait(seconds + 0.5)
 
     def received(self, payload: bytes, binary: bool) -> None:

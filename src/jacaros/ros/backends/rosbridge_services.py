@@ -21,10 +21,10 @@ FOR_EVER = 86400.0
 class BridgeClient(AttemptingClient):
     """Client of `RosbridgeBackend`."""
 
-    _node: BridgeNode
+    _node: BridgeNode  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        super().__init__(node, name, type_name)
+        super().__init__(node, name, type_name)  # pyright: ignore[reportArgumentType]
         self._offered = Sight(
             node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
         )
