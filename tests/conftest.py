@@ -1,6 +1,7 @@
 """Options and fixtures of the whole test suite."""
 
 import gc
+import os
 import sys
 from collections.abc import Callable, Iterator
 
@@ -12,6 +13,9 @@ UNTIMED = hypothesis.settings(deadline=None, suppress_health_check=[hypothesis.H
 hypothesis.settings.register_profile("exploring", UNTIMED)
 hypothesis.settings.register_profile("repeatable", UNTIMED, derandomize=True, database=None)
 hypothesis.settings.load_profile("repeatable")
+
+# No test finds code that another one, or the user, has left.
+os.environ["JACAROS_CACHE"] = "0"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -90,3 +90,18 @@ def file_text(path: Path | str, largest: int = LARGEST) -> str:
 
 def _line(data: bytes, at: int) -> int:
     return data.count(b"\n", 0, at) + 1
+
+
+def kept_files() -> Path | None:
+    """Return the folder for files that are kept from run to run to save time; None if none are to be kept.
+
+    It is ``$JACAROS_CACHE``, by default ``jacaros`` in ``$XDG_CACHE_HOME`` or ``~/.cache``; ``JACAROS_CACHE=0`` keeps none.
+    """
+    given = os.environ.get("JACAROS_CACHE")
+    if given:
+        return None if given == "0" else Path(given)
+    caches = os.environ.get("XDG_CACHE_HOME", "")
+    try:
+        return (Path(caches) if os.path.isabs(caches) else Path.home() / ".cache") / "jacaros"
+    except RuntimeError:  # a user without a home
+        return None

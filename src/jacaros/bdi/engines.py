@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.rules.interpreter import Interpreter
-from jacaros.bdi.state.engine import Engine
+from jacaros.bdi.state.engine import CodeCache, Engine
 
 
 def is_plain() -> bool:
@@ -13,15 +13,18 @@ def is_plain() -> bool:
     return os.environ.get("JACAROS_PLAIN", "0") not in ("", "0")
 
 
-def new_engine(actions: Mapping[str, InternalAction], plain: bool | None = None) -> Engine:
+def new_engine(
+    actions: Mapping[str, InternalAction], plain: bool | None = None, cache: CodeCache | None = None
+) -> Engine:
     """What carries out plans and rules.
 
     Args:
         actions: the internal actions that they may call.
         plain: without generated code; as `is_plain` says unless given.
+        cache: where generated code is kept from run to run; None for nowhere.
     """
     if is_plain() if plain is None else plain:
         return Interpreter(actions)
     from jacaros.bdi.fast.compiler import Compiler  # here: a plain run does without it altogether
 
-    return Compiler(actions)
+    return Compiler(actions, cache)

@@ -86,7 +86,7 @@ def _read(file: Path, imports: bool) -> tuple[nodes.Program | None, PythonCode]:
 def _fault(piece: Piece) -> str | None:
     """Why Python does not take a piece; None when it does."""
     try:
-        piece.unit.execute()
+        piece.unit.code()
     except (SyntaxError, RecursionError) as fault:
         return f"{piece.title} are too large to be compiled: {fault}"
     return None

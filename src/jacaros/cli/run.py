@@ -151,6 +151,9 @@ def command(
 
     What agents print goes to the standard output as `[agent] text`, everything else to the standard error
     output.
+
+    Compiled plans are kept in $XDG_CACHE_HOME/jacaros (default: ~/.cache/jacaros), so that the next start is faster. Set
+    JACAROS_CACHE to another folder, or to 0 to keep nothing. You can remove the folder at any time.
     """  # fmt: skip
     check_file(file)
     outputs = Outputs(record, replay, ground_truth, view, record_limit * 1_000_000)

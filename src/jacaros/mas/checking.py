@@ -376,10 +376,11 @@ def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     """Plans that take longer because Python does not compile them."""
     from jacaros.bdi.engines import new_engine  # here: see `_of_artifacts`
     from jacaros.bdi.fast.compiler import too_large
+    from jacaros.bdi.fast.units import Units
     from jacaros.bdi.state.plan_library import ProgramPlans
 
     plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
-    for plan, fault in too_large(plans, code.actions):
+    for plan, fault in too_large(plans, Units(code.actions)):
         yield Diagnostic(
             "warning",
             f"{fault}: it takes longer",

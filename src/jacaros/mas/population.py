@@ -16,6 +16,7 @@ from jacaros.mas.activity import AgentTimer
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.agent_options import mind_options
+from jacaros.mas.code_folder import CodeFolder
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.directory import Directory
 from jacaros.mas.programs import Programs
@@ -41,6 +42,7 @@ class Population:
         seed: of the run.
         situate: gives each its place in the environment.
         when_made: called with every agent before it begins.
+        folder: keeps the code of their plans from run to run; None for not.
 
     Attributes:
         programs: reads what they run.
@@ -57,6 +59,7 @@ class Population:
         seed: int,
         situate: Situate,
         when_made: Callable[[AgentHost], None] | None = None,
+        folder: CodeFolder | None = None,
     ) -> None:
         self.programs = programs
         self._run = run
@@ -66,6 +69,7 @@ class Population:
         self._seed = seed
         self._situate = situate
         self._when_made = when_made
+        self._folder = folder
         self.when_ended: Callable[[str], None] = lambda name: None
         self._specs: dict[str, AgentSpec] = {}
         self._plans: dict[int, ProgramPlans] = {}
@@ -101,7 +105,8 @@ class Population:
         """The plans of a program: agents that run the same one share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
-            made = ProgramPlans(program.plans, new_engine(self._code.actions))
+            kept = None if self._folder is None else self._folder.of_program(program.plans)
+            made = ProgramPlans(program.plans, new_engine(self._code.actions, cache=kept))
             self._plans[id(program.plans)] = made
             self._uncompiled.append(made)
         return made
@@ -113,6 +118,8 @@ class Population:
             if plans.engine.compile_ahead(plans):
                 return True
             self._uncompiled.popleft()
+            if self._folder is not None:
+                self._folder.write()
         return False
 
     def create(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:

@@ -15,6 +15,7 @@ from jacaros.clock import Clock
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.code_folder import code_folder
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import Directory
@@ -99,6 +100,7 @@ class System:
         self.services: Services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
+        self._code_folder = code_folder()
         self.population = self._found(prepare, when_made)
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
@@ -131,7 +133,17 @@ class System:
         deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
         programs = Programs(deployment.source_paths, warn, code, prepare)
         classes = AgentClasses(self._modules, deployment.base_path, lambda warning: warn(warning.render()))
-        return Population(self, self.directory, programs, classes, code, self._seed, self._situate, when_made)
+        return Population(
+            self,
+            self.directory,
+            programs,
+            classes,
+            code,
+            self._seed,
+            self._situate,
+            when_made,
+            self._code_folder,
+        )
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
         """Run the project until it ends; the exit code.
@@ -332,6 +344,8 @@ class System:
         self.end(1)
         hosts = list(self.directory)
         async with AsyncExitStack() as steps:  # the last one that is written goes first
+            if self._code_folder is not None:
+                steps.callback(self._code_folder.close)
             steps.push_async_callback(self.ros.close)
             if self._diagnostics is not None:
                 steps.callback(self._diagnostics.close)

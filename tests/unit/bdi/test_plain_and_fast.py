@@ -38,14 +38,16 @@ def test_there_are_programs():
 
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_a_program_prints_the_same_plain_and_fast(program, monkeypatch):
+def test_a_program_prints_the_same_plain_and_fast_and_with_code_that_was_kept(program, monkeypatch, tmp_path):
+    monkeypatch.setenv("JACAROS_CACHE", str(tmp_path))
     fast = run_project(program, seconds=120)
+    kept = run_project(program, seconds=120)
     monkeypatch.setenv("JACAROS_PLAIN", "1")
     plain = run_project(program, seconds=120)
 
-    assert plain.lines == fast.lines
-    assert plain.errors == fast.errors
-    assert plain.exit_code == fast.exit_code
+    assert plain.lines == kept.lines == fast.lines
+    assert plain.errors == kept.errors == fast.errors
+    assert plain.exit_code == kept.exit_code == fast.exit_code
 
 
 def test_what_is_there_for_speed_is_not_even_imported_when_it_is_left_out():

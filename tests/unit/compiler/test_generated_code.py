@@ -11,7 +11,7 @@ from typing import Any
 
 from jacaros.asl.loader import load_program
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.fast.generated.unit import compile_select
+from jacaros.bdi.fast.units import Units
 from jacaros.bdi.state.plan import Plan, label_of
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.unifier import Trail
@@ -36,7 +36,7 @@ def selected(program: str, actions: dict[str, InternalAction] | None = None) -> 
     tree, _ = load_program("robot.asl", program)
     plans = [Plan(node, label_of(node, i)) for i, node in enumerate(tree.plans)]
     kind = trigger("+", "!", functor("g", 1))
-    select, _ = compile_select(kind, plans, actions or {})
+    select = Units(actions or {}).select(kind, plans)
     frame = select(Bare(), (kind, 3.0), BY_SELF)
     assert frame is not None
     return frame
@@ -143,7 +143,7 @@ def test_steps_of_an_included_plan_carry_their_own_file(tmp_path: Path) -> None:
         ".bad": InternalAction(".bad", broken),
         ".print": InternalAction(".print", broken),
     }
-    select, _ = compile_select(kind, plans, actions)
+    select = Units(actions).select(kind, plans)
     places = []
     for argument in (1.0, 6.0):
         frame = select(Bare(), (kind, argument), BY_SELF)

@@ -6,27 +6,19 @@ Stands for `jacaros.bdi.rules.interpreter`, which carries out what is not compil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import islice
-from typing import Any, cast
+from typing import Any
 
-from jacaros.asl import nodes
 from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast import beliefs, loop
-from jacaros.bdi.fast.generated.bodies import body_compiler
-from jacaros.bdi.fast.generated.function import FrameLayout
-from jacaros.bdi.fast.generated.unit import (
-    CodeUnit,
-    compile_rule_function,
-    compile_select,
-    install_body,
-    write_select,
-)
+from jacaros.bdi.fast.generated.unit import write_body
 from jacaros.bdi.fast.plan_by_plan import PlanByPlan
 from jacaros.bdi.fast.searches import Searches
+from jacaros.bdi.fast.units import Units, executed
 from jacaros.bdi.rules.interpreter import Interpreter
 from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.engine import Every, Select
+from jacaros.bdi.state.engine import CodeCache, Every, Select
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import Answers, Rule
@@ -42,10 +34,16 @@ TOO_LARGE = (SyntaxError, RecursionError, MemoryError)
 
 
 class Compiler(Interpreter):
-    """Carries out plans and rules by generated code, see `jacaros.bdi.state.engine.Engine`."""
+    """Carries out plans and rules by generated code, see `jacaros.bdi.state.engine.Engine`.
 
-    def __init__(self, actions: Mapping[str, InternalAction]) -> None:
+    Args:
+        actions: the internal actions that plans may call.
+        cache: where the code is kept from run to run; None for nowhere.
+    """
+
+    def __init__(self, actions: Mapping[str, InternalAction], cache: CodeCache | None = None) -> None:
         super().__init__(actions)
+        self._units = Units(actions, cache)
         self._functions: dict[Any, Any] = {}
         self._begun = False
         self._one_by_one: dict[Trigger, PlanByPlan] = {}
@@ -61,7 +59,7 @@ class Compiler(Interpreter):
 
         def compiled(some: Sequence[Plan], outer: Plan | None) -> Select:
             try:
-                return compile_select(trigger, some, self.actions, outer)[0]
+                return self._units.select(trigger, some, outer)
             except TOO_LARGE:
                 if len(some) > 1:
                     raise
@@ -78,23 +76,16 @@ class Compiler(Interpreter):
     def every(self, trigger: Trigger, plans: Sequence[Plan]) -> Every:
         """The same for all applicable plans."""
         try:
-            return cast("Every", compile_select(trigger, plans, self.actions, every=True)[0])
+            return self._units.select(trigger, plans, every=True)
         except TOO_LARGE:
             return super().every(trigger, plans)
 
     def give_steps(self, plan: Plan) -> None:
         """Give a plan that stands for a body made at run time its steps."""
-        unit = CodeUnit("<body>", self.actions)
-        compiler = body_compiler(unit, FrameLayout(plan), "step")
-        body = plan.node.body
-        assert isinstance(body, nodes.Body)
         try:
-            first = compiler.body(body.steps, "None")
-            unit.execute()
+            executed(write_body(plan, self.actions))
         except TOO_LARGE:
             super().give_steps(plan)
-        else:
-            install_body(unit, plan, compiler, first)
 
     def step_at(self, plan: Plan, position: str) -> Any:
         """The step at a position of a plan; the plan is compiled if that has not been done."""
@@ -116,7 +107,7 @@ class Compiler(Interpreter):
             return
         self._begun = True
         program = agent.library.program
-        for _, told in too_large(program.plans, self.actions):
+        for _, told in too_large(program.plans, self._units):
             agent.architecture.log("warning", f"{told}: it takes longer")
         if agent.urgency is not None:
             for kind in program.kinds():
@@ -145,14 +136,14 @@ class Compiler(Interpreter):
         key = (id(rule.written),)
         if key not in functions:
             # What was written is held, so that nothing else can be at its place in memory.
-            functions[key] = (compile_rule_function(rule.node, self.actions), rule.written)
+            functions[key] = (self._units.rule(rule), rule.written)
         return functions[key][0]
 
     def searches(self, predicate: Any) -> tuple[Any, Any] | None:
         """Functions that answer questions for a predicate with rules, and those for deep searches."""
         return (
-            Searches(predicate, self.actions, self._functions),
-            Searches(predicate, self.actions, self._functions, deep=True),
+            Searches(predicate, self._units, self._functions),
+            Searches(predicate, self._units, self._functions, deep=True),
         )
 
 
@@ -160,7 +151,7 @@ _LARGE = 100
 """Parts of a plan from which on it is looked at whether it can be compiled."""
 
 
-def too_large(plans: Sequence[Plan], actions: Mapping[str, InternalAction]) -> Iterator[tuple[Plan, str]]:
+def too_large(plans: Sequence[Plan], units: Units) -> Iterator[tuple[Plan, str]]:
     """The plans that are too large to be compiled, each with what is to be said of it."""
     for plan in plans:
         if sum(1 for _ in islice(walk(plan.node), _LARGE)) < _LARGE:
@@ -169,7 +160,7 @@ def too_large(plans: Sequence[Plan], actions: Mapping[str, InternalAction]) -> I
         symbol = plan.trigger_functor()
         kind = trigger_of_kind(head.operator, head.kind, symbol or functor("plan", 0))
         try:
-            write_select(kind, [plan], actions).unit.execute()
+            units.select(kind, [plan])
         except TOO_LARGE as fault:
             name = f"{head.operator}{head.kind}{'_' if symbol is None else repr(symbol)}"
             span = plan.node.span

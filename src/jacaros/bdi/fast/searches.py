@@ -3,13 +3,11 @@
 Stands for `jacaros.bdi.rules.searching.solve`.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any, Protocol
 
-from jacaros.asl import nodes
-from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated.predicates import given_positions
-from jacaros.bdi.fast.generated.unit import compile_search_function
+from jacaros.bdi.fast.units import Units
 from jacaros.bdi.rules.searching import run, solve
 from jacaros.bdi.state.budget import SearchBudget
 from jacaros.terms.unifier import Trail
@@ -39,7 +37,7 @@ class Searches(dict[int, Search]):
     """The generator functions of a predicate with rules, by pattern of use, each made when it is first wanted.
 
     Args:
-        actions: the internal actions that the rules may call.
+        units: makes them.
         functions: where functions are kept that all agents of a program share.
 
     Attributes:
@@ -50,13 +48,13 @@ class Searches(dict[int, Search]):
     def __init__(
         self,
         predicate: Predicate,
-        actions: Mapping[str, InternalAction],
+        units: Units,
         functions: dict[Any, Any],
         deep: bool = False,
     ) -> None:
         super().__init__()
         self.predicate = predicate
-        self._actions, self._functions = actions, functions
+        self._units, self._functions = units, functions
         self.deep = deep
         self.before = False
 
@@ -110,9 +108,7 @@ class Searches(dict[int, Search]):
         key = (symbol, pattern, names, self.deep)
         if key not in functions:
             try:
-                search = compile_search_function(
-                    symbol, pattern, _nodes(before), _nodes(after), self._actions, self.deep
-                )
+                search = self._units.search(symbol, pattern, before, after, self.deep)
             except (SyntaxError, RecursionError):
                 return None  # Python's limits for one function
             # What was written is held, so that nothing else can be at its place in memory.
@@ -120,7 +116,3 @@ class Searches(dict[int, Search]):
         found: Search = functions[key][0]
         budget = self.predicate.budget
         return found if budget is None else budget.counting(found)
-
-
-def _nodes(rules: Sequence[Any]) -> list[nodes.Rule]:
-    return [rule.node for rule in rules]

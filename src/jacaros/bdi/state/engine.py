@@ -17,6 +17,20 @@ Every = Callable[[Any, Goal, Any], Iterator[Frame]]
 """The same for the frames of all applicable plans."""
 
 
+class CodeCache(Protocol):
+    """The port to where generated code is kept from run to run; the mind itself reads and writes no files.
+
+    What it returns is executed.  So it must return only what was put there under the same key, by the same version of this
+    package and of Python.
+    """
+
+    def get(self, key: bytes) -> bytes | None:
+        """What is kept under a key, immediately; None when there is nothing."""
+
+    def put(self, key: bytes, entry: bytes) -> None:
+        """Keep an entry, now or later; nothing fails when that is impossible."""
+
+
 class Engine(Protocol):
     """What carries out the plans and rules of a program, for all agents that run it.
 

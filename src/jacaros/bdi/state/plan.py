@@ -52,6 +52,7 @@ class Plan:
         atomic: whether the label says ``atomic``.
         body_term: the body that a variable held, for whose sake the plan was made; or None.
         by_name: internal actions that reach variables by their names: all variables of the plan are kept for them.
+        of_program: whether it stands in the program, so that the next run has it too.
         urgency: the number of ``urgency(N)`` in the label, 0 without.
         first: the first step, None for an empty body; set when the plan is first needed.
         size: number of places of a frame behind the fixed ones.
@@ -76,6 +77,7 @@ class Plan:
         "interpreted",
         "label",
         "node",
+        "of_program",
         "replaceable",
         "scope",
         "size",
@@ -92,6 +94,7 @@ class Plan:
         self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
         self.atomic = ATOMIC_LABEL in self.annotations
         self.urgency = _urgency(self.annotations) if self.annotations else 0
+        self.of_program = False
         self.body_term: Term = None
         self.replaceable = node.goal_condition is None and not node.subplans
         self._slots: dict[str, int] | None = None

@@ -41,6 +41,7 @@ class ProgramPlans:
         ]
         self._by_head: dict[tuple[str, str, Any], list[Plan]] = {}
         for plan in self.plans:
+            plan.of_program = True
             head = plan.node.trigger
             self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
         self.has_subplans = any(plan.subplans for plan in self.plans)

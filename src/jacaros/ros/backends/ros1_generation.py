@@ -16,6 +16,7 @@ from types import ModuleType, SimpleNamespace
 from typing import Any
 
 from jacaros.ros.interfaces import split_action
+from jacaros.text_files import kept_files
 
 FindClass = Callable[[str], Any]
 """Gives the class of a message type named as on ROS 1, ``geometry_msgs/Pose``; raises `UnknownInterface`."""
@@ -175,12 +176,13 @@ def _packages(classes: dict[str, Any]) -> dict[str, SimpleNamespace]:
 
 
 def _cache_folder() -> Path:
-    root = os.environ.get("JACAROS_CACHE") or Path.home() / ".cache" / "jacaros"
-    folder = Path(root) / "ros1"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if os.access(folder, os.W_OK):
-            return folder
-    except OSError:  # a read-only or missing home directory
-        pass
+    root = kept_files()
+    if root is not None:
+        folder = root / "ros1"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if os.access(folder, os.W_OK):
+                return folder
+        except OSError:  # a read-only or missing home directory
+            pass
     return Path(tempfile.mkdtemp(prefix="jacaros-ros1-"))

@@ -140,7 +140,8 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
     with fn.writer.block(head(name)):
         fn.load(compiler.frame, names_in(node))
         if direct is not None:
-            fn.line(f"{fn.constant(direct)}({', '.join(['agent', *(build(fn, a) for a in node.arguments)])})")
+            function = fn.unit.constant(direct, node)
+            fn.line(f"{function}({', '.join(['agent', *(build(fn, a) for a in node.arguments)])})")
             fn.store(compiler.frame)
             fn.line(f"frame[0] = {next_name}")
             compiler.finish(fn)

@@ -1,43 +1,44 @@
-"""A unit of generated code: the functions of one event kind or rule, made real."""
+"""A unit of generated code: the functions of one event kind or rule, before they are executed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
-from types import FunctionType
+from types import CodeType
 from typing import Any, NamedTuple
 
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.fast.generated import runtime
-from jacaros.bdi.fast.generated.body_compiler import BodyCompiler
+from jacaros.bdi.fast.generated.bodies import body_compiler
+from jacaros.bdi.fast.generated.function import FrameLayout
 from jacaros.bdi.fast.generated.predicates import compile_search
 from jacaros.bdi.fast.generated.selection import SelectCompiler, compile_goal_condition, compile_rule
 from jacaros.bdi.fast.generated.writer import Writer, compile_all
-from jacaros.bdi.state.engine import Select
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan import Plan, StepInfo
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.terms.values import Functor, String, Term
 
 
 class CodeUnit:
-    """Collects functions and constants, and executes the code.
+    """Collects functions and constants.
 
     Attributes:
         actions: the internal actions known at compile time.
-        source: the text of everything generated, for people.
-        writers: what has been written and not been executed yet.
+        globals: the names that the functions use.
+        writers: the functions.
+        calls: the names of functions that internal actions gave for calls as they are written, with these calls.
     """
 
     def __init__(self, filename: str, actions: Mapping[str, InternalAction]) -> None:
         self.filename = filename
         self.actions = actions
         self.globals: dict[str, Any] = dict(runtime.NAMES)
-        self.source: list[str] = []
         self.writers: list[Writer] = []
+        self.calls: dict[str, nodes.InternalAction] = {}
         self._constants: dict[Any, str] = {}
         self._count = 0
 
-    def constant(self, value: Term) -> str:
-        """A global name for a value; equal values share it."""
+    def constant(self, value: Term, call: nodes.InternalAction | None = None) -> str:
+        """A global name for a value; equal values share it.  With a *call*, the value is what its action gave for it."""
         key: Any = value if value.__class__ in (Functor, Trigger) else (value.__class__, id(value))
         if value.__class__ in (String, float):
             key = (value.__class__, value)
@@ -45,25 +46,27 @@ class CodeUnit:
         if name is None:
             name = self._constants[key] = f"{_prefix(value)}_{len(self._constants)}"
             self.globals[name] = value
+            if call is not None:
+                self.calls[name] = call
         return name
+
+    def constants(self) -> Iterator[tuple[str, Any]]:
+        """The constants by their names."""
+        return ((name, self.globals[name]) for name in self._constants.values())
 
     def add(self, writer: Writer) -> None:
         """Make a finished function part of the unit."""
         writer.prune()
         self.writers.append(writer)
-        self.source.append(writer.text())
 
     def fresh_function(self, prefix: str) -> str:
         """A name for another function."""
         self._count += 1
         return f"{prefix}{self._count}"
 
-    def execute(self) -> None:
-        """Make the functions: afterwards they are in `globals`."""
-        # A code object has but one file, and plans may be included.
-        for filename, writers in groupby(self.writers, self._file_of):
-            exec(compile_all(writers, filename), self.globals)  # only ever made from the syntax tree
-        self.writers.clear()
+    def code(self) -> list[CodeType]:
+        """Compile what has been written.  A code object has but one file, and plans may be included."""
+        return [compile_all(writers, filename) for filename, writers in groupby(self.writers, self._file_of)]
 
     def _file_of(self, writer: Writer) -> str:
         file = writer.files[0]
@@ -76,42 +79,47 @@ def _prefix(value: Term) -> str:
     return f"K_{text}"
 
 
-def compile_select(
-    trigger: Trigger,
-    plans: Sequence[Plan],
-    actions: Mapping[str, InternalAction],
-    outer: Plan | None = None,
-    every: bool = False,
-) -> tuple[Select, str]:
-    """The select function of an event kind, and the generated text; *outer* is the plan that sub-plans belong to.
-
-    With *every* it is a generator of the frames of all applicable plans.
-    """
-    written = write_select(trigger, plans, actions, outer, every)
-    unit = written.unit
-    unit.execute()
-    for plan, achieved in written.conditions.items():
-        plan.goal_condition = unit.globals[achieved]
-    for plan, body, first in written.bodies:
-        install_body(unit, plan, body, first)
-    select: Select = unit.globals[written.name]
-    return select, "\n".join(unit.source)
-
-
-class WrittenSelect(NamedTuple):
-    """A select function that has been written, and is not executed yet.
+class Body(NamedTuple):
+    """The written body of a plan.
 
     Attributes:
-        unit: holds it, and what it needs.
-        name: of the function.
-        bodies: of each plan the body, and the name of its first step function.
+        plan: whose body it is.
+        first: name of its first step function, ``"None"`` without any.
+        size: number of places of a frame behind the fixed ones.
+        steps: what is known of each step, by the name of its function.
+    """
+
+    plan: Plan
+    first: str
+    size: int
+    steps: dict[str, StepInfo]
+
+    def install(self, names: Mapping[str, Any]) -> None:
+        """Give the plan its steps.  What is known of a step is kept with its function: a frame may still be at a step of an
+        earlier unit when the plan is compiled again.
+        """
+        plan = self.plan
+        plan.first = names[self.first] if self.first != "None" else None
+        plan.steps, plan.size = self.steps, self.size
+        for name, info in self.steps.items():
+            function = names[name]
+            function.plan, function.info, function.steps = plan, info, self.steps
+
+
+class Written(NamedTuple):
+    """A unit that has been written, and what its functions are for.
+
+    Attributes:
+        unit: holds the code.
+        name: of the function that others call.
+        bodies: of the plans that it chooses among.
         conditions: of each plan that has one, the name of the test of its goal condition.
     """
 
     unit: CodeUnit
     name: str
-    bodies: list[tuple[Plan, BodyCompiler, str]]
-    conditions: dict[Plan, str]
+    bodies: Sequence[Body] = ()
+    conditions: Sequence[tuple[Plan, str]] = ()
 
 
 def write_select(
@@ -120,52 +128,48 @@ def write_select(
     actions: Mapping[str, InternalAction],
     outer: Plan | None = None,
     every: bool = False,
-) -> WrittenSelect:
-    """Write the select function of an event kind; see `compile_select`."""
+) -> Written:
+    """Write the select function of an event kind; *outer* is the plan that sub-plans belong to.
+
+    With *every* it is a generator of the frames of all applicable plans.
+    """
     unit = CodeUnit(plans[0].file, actions)
     compiler = SelectCompiler(unit, trigger.functor.arity, every)
     name = compiler.select(plans, outer)
-    conditions = {
-        plan: compile_goal_condition(unit, plan) for plan in plans if plan.node.goal_condition is not None
-    }
-    return WrittenSelect(unit, name, compiler.bodies, conditions)
+    conditions = [
+        (plan, compile_goal_condition(unit, plan)) for plan in plans if plan.node.goal_condition is not None
+    ]
+    bodies = [Body(plan, first, body.frame.size, body.infos) for plan, body, first in compiler.bodies]
+    return Written(unit, name, bodies, conditions)
 
 
-def install_body(unit: CodeUnit, plan: Plan, body: BodyCompiler, first: str) -> None:
-    """Give a plan its compiled body.  What is known of a step is kept with its function: a frame may still be at a step
-    of an earlier unit when the plan is compiled again.
-    """
-    plan.first = unit.globals[first] if first != "None" else None
-    plan.steps = body.infos
-    plan.size = body.frame.size
-    for name, info in body.infos.items():
-        function = unit.globals[name]
-        function.plan, function.info, function.steps = plan, info, body.infos
+def write_body(plan: Plan, actions: Mapping[str, InternalAction]) -> Written:
+    """Write the steps of a plan that stands for a body made at run time."""
+    unit = CodeUnit("<body>", actions)
+    compiler = body_compiler(unit, FrameLayout(plan), "step")
+    body = plan.node.body
+    assert isinstance(body, nodes.Body)
+    first = compiler.body(body.steps, "None")
+    return Written(unit, first, [Body(plan, first, compiler.frame.size, compiler.infos)])
 
 
-def compile_search_function(
+def write_search(
     symbol: Functor,
     pattern: int,
     before: Sequence[nodes.Rule],
     after: Sequence[nodes.Rule],
     actions: Mapping[str, InternalAction],
     trampoline: bool,
-) -> FunctionType:
-    """The generator function of a predicate for one pattern of use, see `jacaros.bdi.fast.generated.predicates`."""
+) -> Written:
+    """Write the generator function of a predicate for one pattern of use, see `jacaros.bdi.fast.generated.predicates`."""
     unit = CodeUnit(_file_of((*before, *after)[0]), actions)
-    name = compile_search(unit, symbol, pattern, before, after, trampoline)
-    unit.execute()
-    function: FunctionType = unit.globals[name]
-    return function
+    return Written(unit, compile_search(unit, symbol, pattern, before, after, trampoline))
 
 
-def compile_rule_function(rule: nodes.Rule, actions: Mapping[str, InternalAction]) -> FunctionType:
-    """The generator function of a rule."""
+def write_rule(rule: nodes.Rule, actions: Mapping[str, InternalAction]) -> Written:
+    """Write the generator function of a rule."""
     unit = CodeUnit(_file_of(rule), actions)
-    name = compile_rule(unit, rule)
-    unit.execute()
-    function: FunctionType = unit.globals[name]
-    return function
+    return Written(unit, compile_rule(unit, rule))
 
 
 def _file_of(rule: nodes.Rule) -> str:
