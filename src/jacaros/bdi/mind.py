@@ -25,6 +25,7 @@ from jacaros.bdi.rules import (
 from jacaros.bdi.rules.answers import answer_by_plan
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.failure import output_misfit
+from jacaros.bdi.rules.selections import Fair
 from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
@@ -95,6 +96,7 @@ class Mind(Circumstance):
         super().__init__(name, architecture, known, options or Options(), made)
         self.program = program
         self.context = Context(self)
+        self.selections = Fair(self)
         self._acts = 0
         self._beginning = 0
         self._ended_at_once: Completion | None = None
@@ -217,6 +219,7 @@ class Mind(Circumstance):
         """
         if len(self.inbox) >= self.options.mailbox_limit:
             raise self.budgets["mailbox_limit"].failure(len(self.inbox), f" that {self.name} has not read")
+        self.selections.note_message(message)
         self.inbox.append(message)
         self.called = True
         self.architecture.ready()

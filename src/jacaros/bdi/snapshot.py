@@ -13,7 +13,7 @@ from typing import Any
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_kinds import NotStorable
 from jacaros.bdi.object_table import Reader, Writer
-from jacaros.bdi.rules import waits
+from jacaros.bdi.rules import urgency, waits
 from jacaros.bdi.rules.plan_changes import look_at_plans
 from jacaros.bdi.state.act import Completion
 from jacaros.bdi.state.circumstance import Circumstance
@@ -49,7 +49,6 @@ _FIELDS = (
     "pending_acts",
     "pending_asks",
     "percepts",
-    "refused_options",
     "requeued",
     "suspended_events",
     "tasks",
@@ -118,8 +117,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     mind.trail.serial = held["serial"]
     version, state, gauss = data["random"]
     mind.architecture.random.setstate((version, tuple(state), gauss))
-    if mind.urgency is not None:
-        mind.urgency.rank()
+    urgency.plans_changed(mind)
     if not same_host:
         for number in list(mind.pending_acts):
             mind.complete(number, Completion(False, annotations=_INTERRUPTED))

@@ -275,5 +275,5 @@ def install(mind: Mind, base: BeliefBase, folder: Path, arguments: Iterable[obje
     """Let a mind keep its beliefs in a base of the project's class; before it takes up any."""
     base.agent, base.folder = agent_of(mind), folder
     mind.beliefs = base._tables = Tables(base, mind)
-    mind.option_filter = mind.beliefs[SELECT_OPTION]
+    mind.selections.option_filter = mind.beliefs[SELECT_OPTION]
     base.init(*arguments)

@@ -1,25 +1,25 @@
 """Agent classes at work: what a subclass of `Agent` overrides is put into its mind, and nothing else.
 
-The mind itself knows nothing of this: its queues and select functions are replaced by ones that ask.
+The mind itself knows nothing of this: its selection functions are replaced by ones that ask.
 """
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.failure import error_terms
-from jacaros.bdi.rules.option_selection import options
+from jacaros.bdi.rules.selections import options
+from jacaros.bdi.rules.urgency import Urgent
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import literal, parts
-from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.event import EVENT_INTENTION, Event, Raised
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Failure
-from jacaros.bdi.state.plan_library import OwnSelects, PlanLibrary
-from jacaros.bdi.state.triggers import Goal, Trigger
+from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.bdi.state.triggers import Goal
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
 from jacaros.extension.faults import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from
@@ -33,6 +33,8 @@ Item = TypeVar("Item")
 Seen = TypeVar("Seen")
 Result = TypeVar("Result")
 
+_SELECTION_FUNCTIONS = ("select_message", "select_event", "select_option", "select_intention")
+
 
 class CustomMind(Mind):
     """The mind of an agent whose class is the project's: asks it about changes of beliefs, if it wants to be asked."""
@@ -43,14 +45,8 @@ class CustomMind(Mind):
     def begin_as(self, face: Agent) -> None:
         """Let an object of the project's class have its say; before the mind takes up anything."""
         give_face(self, face)
-        if (choose_event := overridden(face, "select_event")) is not None:
-            self.events = ChoiceQueue(self, choose_event, EventView, _is_open)
-        if (choose_intention := overridden(face, "select_intention")) is not None:
-            self.intentions = ChoiceQueue(self, choose_intention, IntentionView, _can_run)
-        if (choose_message := overridden(face, "select_message")) is not None:
-            self.inbox = ChoiceQueue(self, choose_message, Message, lambda message: True)
-        if (choose_option := overridden(face, "select_option")) is not None:
-            self.library.selects = self.selects = ChoosingSelects(self.library, choose_option)
+        if any(overridden(face, name) for name in _SELECTION_FUNCTIONS):
+            self.selections = Chosen(self, face)
         if (accepts := overridden(face, "soc_acc")) is not None:
             self.accepts = lambda message: ask(self, accepts, bool, True, Message(message))
         self._revises = overridden(face, "brf")
@@ -167,37 +163,91 @@ class CustomMind(Mind):
             raise Failure(*error_terms("belief_revision_failed", message))
 
 
-class ChoiceQueue(deque[Item], Generic[Item, Seen]):
-    """A queue of a mind that asks the agent's class which of several goes first.
+class Chosen(Urgent):
+    """The selection functions of an agent whose class overrides some of them; the others are as ever.
 
     Args:
-        owner: the mind.
-        choose: the method of the class.
-        view: makes what the method sees of an item.
-        counts: whether an item may be chosen; the mind itself removes the others.
+        mind: of the agent.
+        face: the object of the project's class.
     """
 
-    def __init__(
+    __slots__ = ("_event", "_intention", "_message", "_mind", "_option")
+
+    def __init__(self, mind: CustomMind, face: Agent) -> None:
+        super().__init__(mind)
+        self._mind = mind
+        self._event = overridden(face, "select_event")
+        self._intention = overridden(face, "select_intention")
+        self._message = overridden(face, "select_message")
+        self._option = overridden(face, "select_option")
+        self._orders_events = self._event is None
+        self._orders_intentions = self._intention is None
+        self.look_anew()
+
+    def _calm_down(self) -> None:
+        super()._calm_down()
+        self.plain = False
+
+    def select_messages(self) -> Sequence[SpeechAct]:
+        """The one that the class chooses."""
+        if self._message is None:
+            return super().select_messages()
+        return (self._choose(self._message, self._mind.inbox, Message, lambda message: True),)
+
+    def select_event(self) -> Event | None:
+        """The one that the class chooses."""
+        if self._event is None or not self._mind.events:
+            return super().select_event()
+        return self._choose(self._event, self._mind.events, EventView, _is_open)
+
+    def select_intention(self) -> Intention | None:
+        """The one that the class chooses."""
+        if self._intention is None or not self._mind.intentions:
+            return super().select_intention()
+        return self._choose(self._intention, self._mind.intentions, IntentionView, _can_run)
+
+    def _choose(
         self,
-        owner: CustomMind,
-        choose: Callable[..., object],
+        method: Callable[..., object],
+        queue: deque[Item],
         view: Callable[[Item], Seen],
         counts: Callable[[Item], bool],
-    ) -> None:
-        super().__init__()
-        self._owner, self._choose, self._view, self._counts = owner, choose, view, counts
-
-    def popleft(self) -> Item:
-        """The item that was chosen."""
-        places = [place for place, item in enumerate(self) if self._counts(item)]
-        if len(places) < 2 or (len(places) < len(self) and places[0] != 0):
-            return super().popleft()
-        views = [self._view(self[place]) for place in places]
-        chosen = ask(self._owner, self._choose, _one_of(views), views[0], tuple(views))
-        place = places[next(index for index, view in enumerate(views) if view is chosen)]
-        item = self[place]
-        del self[place]
+    ) -> Item:
+        """Take out of a queue what a method chooses from the items that count; the mind itself removes the others."""
+        places = [place for place, item in enumerate(queue) if counts(item)]
+        if len(places) < 2 or (len(places) < len(queue) and places[0] != 0):
+            return queue.popleft()
+        views = [view(queue[place]) for place in places]
+        chosen = ask(self._mind, method, _one_of(views), views[0], tuple(views))
+        place = places[next(index for index, each in enumerate(views) if each is chosen)]
+        item = queue[place]
+        del queue[place]
         return item
+
+    def select_option(
+        self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
+    ) -> Frame | None:
+        """The one of all applicable plans that the class chooses."""
+        if self._option is None:
+            return super().select_option(goal, annotations, intention)
+        # The context is asked once: what it drew or did may come out otherwise the next time.
+        held: list[tuple[Frame, list[tuple[Var, Term]]]] = []
+        found: list[Option] = []
+        trail = self._mind.trail
+        for frame in options(self._mind, goal, annotations):
+            found.append(Option(frame[PLAN], frame))
+            held.append(([*frame], [(variable, variable.ref) for variable in trail]))
+        undo(trail, 0)
+        if not found:
+            return None
+        candidates: list[Option | None] = [*found, None]
+        chosen = ask(self._mind, self._option, _one_of(candidates), candidates[0], tuple(found))
+        for option, (frame, bindings) in zip(found, held, strict=True):
+            if option is chosen:
+                for variable, value in bindings:
+                    bind(variable, value, trail)
+                return frame
+        return None
 
 
 def _is_open(raised: Event) -> bool:
@@ -207,38 +257,6 @@ def _is_open(raised: Event) -> bool:
 
 def _can_run(intention: Intention) -> bool:
     return not intention.dropped and intention.suspended is None
-
-
-class ChoosingSelects(OwnSelects):
-    """Select functions that look for all applicable plans and ask the agent's class for one."""
-
-    def __init__(self, library: PlanLibrary, choose: Callable[..., object]) -> None:
-        super().__init__(library)
-        self._choose = choose
-
-    def __missing__(self, trigger: Trigger) -> Select | None:
-        plans = self.library.relevant(trigger)
-        return self.keep(trigger, self._selected if plans else None, plans)
-
-    def _selected(self, agent: CustomMind, goal: Goal, annotations: EventAnnotations) -> Frame | None:
-        # The context is asked once: what it drew or did may come out otherwise the next time.
-        held: list[tuple[Frame, list[tuple[Var, Term]]]] = []
-        found: list[Option] = []
-        for frame in options(agent, goal, annotations):
-            found.append(Option(frame[PLAN], frame))
-            held.append(([*frame], [(variable, variable.ref) for variable in agent.trail]))
-        undo(agent.trail, 0)
-        if not found:
-            return None
-        candidates: list[Option | None] = [*found, None]
-        first: Option | None = found[0]
-        chosen = ask(agent, self._choose, _one_of(candidates), first, tuple(found))
-        for option, (frame, bindings) in zip(found, held, strict=True):
-            if option is chosen:
-                for variable, value in bindings:
-                    bind(variable, value, agent.trail)
-                return frame
-        return None
 
 
 # --- asking ------------------------------------------------------------------------------------------------

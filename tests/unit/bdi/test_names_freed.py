@@ -101,7 +101,7 @@ def test_the_filter_of_options_still_works_after_many_names() -> None:
         +!there <- .print(there).
     """)
     host.run()
-    assert host.agent.option_filter is host.agent.beliefs[SELECT_OPTION]
+    assert host.agent.selections.option_filter is host.agent.beliefs[SELECT_OPTION]
     assert host.printed == ["there"]
 
 

@@ -4,6 +4,7 @@ from collections import deque
 
 from recording_host import RecordingHost, mind, printed
 
+from jacaros.bdi.rules.selections import Fair
 from jacaros.bdi.rules.urgency import UrgentQueue
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.options import Options
@@ -252,11 +253,11 @@ def test_a_number_that_is_none_is_no_urgency() -> None:
     assert told(low(1), bump(1), program=program).printed[0] == "low 1"
 
 
-def test_an_agent_without_urgent_plans_keeps_plain_queues() -> None:
+def test_an_agent_without_urgent_plans_is_fair() -> None:
     host = mind("!s. +!s <- .print(a).")
     host.run()
-    assert host.agent.urgency is None
-    assert not isinstance(host.agent.events, UrgentQueue)
+    assert isinstance(host.agent.selections, Fair)
+    assert host.agent.events.__class__ is deque
 
 
 # --- bursts ---------------------------------------------------------------------------------------------------
@@ -371,13 +372,13 @@ def test_an_urgent_intention_that_waited_goes_first_when_its_wait_ends() -> None
         host.ring_next(host.time + 1000)
 
 
-def test_queues_are_plain_while_nothing_in_them_is_urgent() -> None:
+def test_the_first_goes_first_while_nothing_that_waits_is_urgent() -> None:
     host = busy()
     agent = host.agent
-    assert agent.events.__class__ is agent.intentions.__class__ is deque
+    assert agent.selections.plain
     agent.perceive(noticed(bump(1)))
     agent.run(1)
-    assert isinstance(agent.intentions, UrgentQueue)
+    assert not agent.selections.plain
     agent.run(100)
     assert host.printed == ["halt 1"]
-    assert agent.events.__class__ is agent.intentions.__class__ is deque
+    assert agent.selections.plain

@@ -137,7 +137,7 @@ def _has_room(agent: Circumstance, count: int) -> bool:
     """Whether that number of events need only be put into the queue."""
     return (
         agent.options.events == "discard"
-        and agent.urgency is None
+        and agent.selections.urgencies is None
         and len(agent.events) + count <= agent.event_limit
         and len(agent.alive) < agent.intention_limit
     )

@@ -109,11 +109,11 @@ class Compiler(Interpreter):
         program = agent.library.program
         for _, told in too_large(program.plans, self._units):
             agent.architecture.log("warning", f"{told}: it takes longer")
-        if agent.urgency is not None:
-            for kind in program.kinds():
-                if agent.urgency.by_trigger[kind]:
-                    while self._compile_ahead(program, kind):
-                        pass
+        urgencies = agent.selections.urgencies
+        if urgencies is not None:
+            for kind in filter(urgencies.__getitem__, program.kinds()):
+                while self._compile_ahead(program, kind):
+                    pass
 
     def compile_ahead(self, program: ProgramPlans) -> bool:
         """Compile something that no event has asked for yet; False when there is nothing left."""

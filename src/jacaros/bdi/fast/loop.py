@@ -1,23 +1,22 @@
 """The reasoning cycle of an agent with nothing out of the ordinary about it.
 
-Stands for `jacaros.bdi.rules.cycle` with all that it calls: `sel_ev`, `applicable_plans`, `add_im`, `sel_int`,
-`exec_int` and `clr_int`.  With empty queues the next cycle would pick the very event and intention of this one, so an
+Stands for `jacaros.bdi.rules.cycle` with all that it calls: `sel_ev`, `applicable_plans`, `add_im`, `exec_int`
+and `clr_int`.  With empty queues the next cycle would pick the very event and intention of this one, so an
 intention goes on as long as nothing else wants a cycle.  What an agent has that is rarer is left to the rules.
 """
 
 from typing import Any
 
 from jacaros.bdi.fast.beliefs import take_percepts, watch
-from jacaros.bdi.rules import add_im, failure, meta_events
 from jacaros.bdi.rules import cycle as plain_cycle
+from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.add_im import add_frame, go_without, log_inapplicable
-from jacaros.bdi.rules.clr_int import end_achieved_goals, pop_finished
-from jacaros.bdi.rules.cycle import begin_turn, has_work, look_at_names
-from jacaros.bdi.rules.exec_int import announce, execute, step_failed, tell_waiting
+from jacaros.bdi.rules.clr_int import pop_finished
+from jacaros.bdi.rules.cycle import begin_turn, deliberate, has_work, is_done, look_at_names
+from jacaros.bdi.rules.exec_int import announce, execute, select_intention, step_failed, tell_waiting
 from jacaros.bdi.rules.goal_failure import fail_intention, has_room
 from jacaros.bdi.rules.proc_msg import read_message
-from jacaros.bdi.rules.sel_ev import begin_intention, begin_with, handle_atomic_event, pass_over
-from jacaros.bdi.rules.sel_int import select_intention
+from jacaros.bdi.rules.sel_ev import begin_with, handle_atomic_event, pass_over
 from jacaros.bdi.state.circumstance import CROWD, Circumstance
 from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
@@ -45,28 +44,35 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
         if agent.asleep:
             meta_events.awake(agent)
         events, intentions = agent.events, agent.intentions
+        option_filter = agent.selections.option_filter
         always = options.percept_interval == 1
         while fuel > 0 and not agent.stopped:
             if agent.called or not always:
                 look_around(agent, agent.cycles + begun - fuel)
-                if agent.urgent:
-                    agent.urgency.settle()
-                    events, intentions = agent.events, agent.intentions
+                events, intentions = agent.events, agent.intentions
+            if agent.special or option_filter.rows or not agent.selections.plain:
+                made = agent.cycles
+                goes_on = deliberate(agent)
+                made = agent.cycles - made
+                fuel, begun = fuel - made, begun - made
+                if not goes_on:
+                    break
+                if is_done(agent):
+                    agent.cycles += begun - fuel
+                    return False
+                events, intentions = agent.events, agent.intentions
+                continue
             intention: Intention | None = None
             if events:
                 if agent.atomic is not None:
                     handle_atomic_event(agent, agent.atomic)
-                elif not agent.urgent:
+                else:
                     intention = handle_event(agent)
-                elif agent.urgency.may_take_event() and (new := handle_event(agent)) is not None:
-                    intentions.append(new)
-            if agent.goal_conditions:
-                end_achieved_goals(agent)
             if intention is None and (intentions or agent.crowd):
                 intention = select_intention(agent)
             if intention is not None:
                 try:
-                    if agent.special or agent.event_waits or agent.option_filter.rows:
+                    if agent.event_waits:
                         execute(agent, intention)
                         fuel -= 1
                     elif agent.atomic is not None:
@@ -108,7 +114,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
     if (
         agent.tasks
         or (agent.condition_waits and agent.condition_waits.want_a_look())
-        or (agent.urgency is not None and agent.inbox)
+        or (agent.inbox and not agent.selections.plain)
         or agent.options.percept_interval != 1
     ):
         plain_cycle.look_around(agent, cycle)
@@ -121,9 +127,9 @@ def look_around(agent: Circumstance, cycle: int) -> None:
             plain_cycle.do_tasks(agent)
             plain_cycle.check_conditions(agent)
     waiting = len(agent.inbox)
-    agent.called = waiting > 1 or agent.special or agent.urgent
+    agent.called = waiting > 1 or agent.special or not agent.selections.plain
     if waiting:
-        read_message(agent)
+        read_message(agent, agent.inbox.popleft())
 
 
 def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - written out for speed
@@ -147,10 +153,6 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
                         intention.parked = True
                 agent.current = None
                 return None
-            if agent.special or agent.option_filter.rows:
-                if begin_intention(agent, event):
-                    return None
-                continue
             # `begin_intention`, written out for what is usual.
             trail, kind = agent.trail, goal[0]
             trail.serial += 1
@@ -186,8 +188,6 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
 
 def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
     """Put a plan for the goal on the intention; False when the intention goes no further now."""
-    if agent.special or agent.option_filter.rows:
-        return add_im.push(agent, intention, goal, annotations)
     # What is usual: `select_plan` and `add_frame`, written out.
     trail = agent.trail
     trail.serial += 1
@@ -246,8 +246,12 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
     agent.current = intention
     frames, handlers, trail, selects = intention.frames, intention.handlers, agent.trail, agent.selects
     events, intentions = agent.events, agent.intentions
-    option_filter, depth, tail_calls = agent.option_filter, agent.goal_depth, agent.options.tail_calls
-    urgency = agent.urgency
+    option_filter, depth, tail_calls = (
+        agent.selections.option_filter,
+        agent.goal_depth,
+        agent.options.tail_calls,
+    )
+    urgencies = agent.selections.urgencies
     frame: Frame = frames[-1]
     while True:
         fuel -= 1
@@ -309,8 +313,8 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
                 if goal is None:
                     break
             goal, annotations = goal.goal, goal.annotations
-        if urgency is not None and urgency.by_trigger[goal[0]]:
-            urgency.rank()
+        if urgencies is not None and urgencies[goal[0]]:
+            agent.selections.rank()
         if intentions or events or agent.called or option_filter.rows or fuel <= 0:
             announce(agent, intention, goal, annotations)
             events.append((goal, intention, annotations, None))

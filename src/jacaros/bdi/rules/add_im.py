@@ -1,7 +1,7 @@
 """A plan for a goal or event of an intention becomes part of it: rule AddIM."""
 
 from jacaros.bdi.explaining import lost_goals
-from jacaros.bdi.rules import meta_events, option_selection, subplans
+from jacaros.bdi.rules import meta_events, subplans
 from jacaros.bdi.rules.goal_failure import has_room, too_deep, unplanned
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Event
@@ -13,22 +13,16 @@ from jacaros.bdi.state.triggers import Goal
 def select_plan(
     agent: Circumstance, goal: Goal, annotations: EventAnnotations, intention: Intention | None = None
 ) -> Frame | None:
-    """Rules RelPl, ApplPl and SelAppl: the frame of the first applicable plan, sub-plans of *intention* first."""
+    """Rules RelPl, ApplPl and SelAppl: the frame of the plan that is taken, sub-plans of *intention* first."""
     trail = agent.trail
     trail.serial += 1
-    select = agent.selects[goal[0]]
     if agent.subplans and intention is not None:
         inner = subplans.select_in_scope(agent, intention, goal, annotations)
         if inner is not None:
             trail.clear()
             return inner
-    if select is None:
-        return None
-    if agent.option_filter.rows:
-        return option_selection.first_option(agent, goal, annotations, intention)
-    frame = select(agent, goal, annotations)
-    if trail:
-        trail.clear()
+    frame = agent.selections.select_option(goal, annotations, intention)
+    trail.clear()
     return frame
 
 
@@ -87,8 +81,7 @@ def go_without(
     if not is_alone(agent):
         agent.post(event)
         return False
-    if agent.urgency is not None:
-        agent.urgency.note_goal(posted.goal[0])
+    agent.note(posted.goal[0])
     if agent.event_waits:
         agent.notify_event_waits(event)
     return push(agent, intention, posted.goal, posted.annotations)

@@ -8,12 +8,10 @@ from contextlib import contextmanager
 
 from jacaros.bdi.rules import failure, meta_events, waits
 from jacaros.bdi.rules.clr_int import end_achieved_goals
-from jacaros.bdi.rules.exec_int import execute
+from jacaros.bdi.rules.exec_int import execute, select_intention
 from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.sel_ev import event_of, handle_atomic_event, handle_event, is_ready
-from jacaros.bdi.rules.sel_int import select_intention
-from jacaros.bdi.rules.urgency import read_urgent_messages
 from jacaros.bdi.state.circumstance import INTERVAL, Circumstance
 from jacaros.errors import InternalError
 from jacaros.terms.arithmetic import RUNNING
@@ -29,7 +27,7 @@ def run(agent: Circumstance, fuel: int) -> bool:
         while agent.cycles < end and not agent.stopped:
             if not _cycle(agent):
                 return not agent.stopped and has_work(agent)
-            if _is_done(agent):
+            if is_done(agent):
                 return False
         return not agent.stopped
 
@@ -70,8 +68,11 @@ def _cycle(agent: Circumstance) -> bool:
     """One reasoning cycle; False when there is nothing to do."""
     if agent.called or agent.options.percept_interval != 1:
         look_around(agent, agent.cycles)
-        if agent.urgent:
-            agent.urgency.settle()
+    return deliberate(agent)
+
+
+def deliberate(agent: Circumstance) -> bool:
+    """A reasoning cycle after its look at what has come."""
     if agent.events:
         _take_up_event(agent)
     if agent.goal_conditions:
@@ -95,7 +96,7 @@ def _cycle(agent: Circumstance) -> bool:
 def _take_up_event(agent: Circumstance) -> None:
     if agent.atomic is not None:
         handle_atomic_event(agent, agent.atomic)
-    elif not agent.urgent or agent.urgency.may_take_event():
+    else:
         handle_event(agent)
 
 
@@ -107,7 +108,7 @@ def _waits(agent: Circumstance) -> bool:
     return bool(agent.percepts or agent.tasks or (agent.edges and meta_events.fall_asleep(agent)))
 
 
-def _is_done(agent: Circumstance) -> bool:
+def is_done(agent: Circumstance) -> bool:
     """Whether the next cycle would find nothing to do."""
     return not (agent.events or agent.intentions or agent.crowd or agent.called or agent.edges)
 
@@ -127,14 +128,15 @@ def look_around(agent: Circumstance, cycle: int) -> None:
     looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
     housekeeping(agent, looks)
     if agent.inbox and looks:
-        (read_message if agent.urgency is None else read_urgent_messages)(agent)
+        for message in agent.selections.select_messages():
+            read_message(agent, message)
     agent.called = bool(
         agent.inbox
         or agent.percepts
         or agent.tasks
         or agent.condition_waits.want_a_look()
         or agent.special
-        or agent.urgent
+        or not agent.selections.plain
     )
 
 

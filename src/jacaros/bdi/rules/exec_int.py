@@ -1,4 +1,4 @@
-"""An intention makes a step: rule ExecInt."""
+"""An intention has its turn and makes a step: rules SelInt and ExecInt."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from jacaros.bdi.rules.add_im import push
 from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.failure import note_lack_of_memory
 from jacaros.bdi.rules.goal_failure import fail_intention
-from jacaros.bdi.rules.sel_ev import go_on_later
+from jacaros.bdi.rules.sel_ev import is_ready
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import STEP, Frame, Intention
@@ -19,6 +19,26 @@ from jacaros.bdi.state.waiting import OWN_SUSPENSION
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF
+
+
+def select_intention(agent: Circumstance) -> Intention | None:
+    """Rule SelInt: the atomic one, else the one that the agent selects of those that can make a step."""
+    if agent.atomic is not None:
+        if not is_ready(agent, agent.atomic):
+            return None
+        agent.intentions.remove(agent.atomic)
+        return agent.atomic
+    while agent.intentions or agent.crowd:
+        if not agent.intentions:
+            agent.let_in()
+        intention = agent.selections.select_intention()
+        if intention is None:
+            return None
+        if intention.suspended is not None:
+            intention.parked = True
+        elif not intention.dropped:
+            return intention
+    return None
 
 
 def execute(agent: Circumstance, intention: Intention) -> None:
@@ -36,7 +56,7 @@ def execute(agent: Circumstance, intention: Intention) -> None:
     elif posted is not None:
         _pursue(agent, intention, posted)
     elif frame[STEP] is not None or pop_finished(agent, intention):
-        go_on_later(agent, intention)
+        agent.make_ready(intention)
     agent.current = None
 
 
@@ -59,10 +79,8 @@ def _pursue(agent: Circumstance, intention: Intention, posted: Any) -> None:
     """A step has posted a goal or event: it is handled in one of the next cycles, that of an atomic intention now."""
     goal, annotations = (posted.goal, posted.annotations) if posted.__class__ is Posted else (posted, BY_SELF)
     announce(agent, intention, goal, annotations)
-    if agent.urgency is not None:
-        agent.urgency.note_goal(goal[0])
     if agent.atomic is not intention:
-        agent.events.append((goal, intention, annotations, None))
+        agent.queue((goal, intention, annotations, None))
     elif push(agent, intention, goal, annotations):
         agent.make_ready(intention)
 

@@ -128,8 +128,8 @@ def no_plan(
     """The reason of a goal that has no relevant or no applicable plan."""
     if agent.selects[goal[0]] is None:
         error, told = "no_relevant", "no relevant plan"
-    elif agent.refused_options:
-        agent.refused_options = False
+    elif agent.selections.refused:
+        agent.selections.refused = False
         error, told = "no_option", "no option is selected"
     else:
         error, told = "no_applicable", "no applicable plan"

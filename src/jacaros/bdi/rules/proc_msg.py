@@ -12,7 +12,6 @@ from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.belief_base import is_source, parts
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.engine import Select
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal, Trigger, trigger
 from jacaros.bdi.state.waiting import AnswerWait
@@ -49,9 +48,8 @@ ERROR = functor("error", 1)
 RECEIVED = trigger("+", "!", functor("kqml_received", 4))
 
 
-def read_message(agent: Circumstance) -> None:
-    """Rule ProcMsg for the message whose turn it is."""
-    message = agent.inbox.popleft()
+def read_message(agent: Circumstance, message: SpeechAct) -> None:
+    """Rule ProcMsg for a message whose turn it is."""
     try:
         if (
             message.in_reply_to is None
@@ -76,8 +74,7 @@ def _process(agent: Circumstance, message: SpeechAct) -> None:
         return
     if agent.accepts is not None and not agent.accepts(message):
         return
-    select = agent.selects[RECEIVED]
-    if select is not None and _handled_by_program(agent, message, select):
+    if agent.selects[RECEIVED] is not None and _handled_by_program(agent, message):
         return
     action = _ACTIONS.get(message.performative)
     if action is None:
@@ -145,10 +142,10 @@ def nobody_there(receiver: str) -> tuple[str, Term]:
     return f"there is no agent '{receiver}' to send to", (ERROR, atom("receiver_not_found"))
 
 
-def _handled_by_program(agent: Circumstance, message: SpeechAct, select: Select) -> bool:
+def _handled_by_program(agent: Circumstance, message: SpeechAct) -> bool:
     """Post ``+!kqml_received`` when the program has an applicable plan for it."""
     goal = (RECEIVED, atom(message.sender), atom(message.performative), message.content, atom(message.id))
-    frame = select(agent, goal, BY_SELF)
+    frame = agent.selections.select_option(goal, BY_SELF, None)
     undo(agent.trail, 0)
     if frame is None:
         return False

@@ -13,8 +13,7 @@ from jacaros.terms.values import BY_SELF
 
 def handle_event(agent: Circumstance) -> None:
     """Rule SelEv and what follows: one event is handled; external events without plan are passed over."""
-    while agent.events:
-        event = agent.events.popleft()
+    while (event := agent.selections.select_event()) is not None:
         try:
             if _is_taken_up(agent, event):
                 return
@@ -32,17 +31,9 @@ def _is_taken_up(agent: Circumstance, event: Event) -> bool:
         return False
     agent.current = intention  # contexts may ask for it
     if push(agent, intention, goal, annotations):
-        go_on_later(agent, intention)
+        agent.make_ready(intention)
     agent.current = None
     return True
-
-
-def go_on_later(agent: Circumstance, intention: Intention) -> None:
-    """An intention that has had its turn waits for the next one; a suspended one is parked."""
-    if intention.suspended is None:
-        agent.intentions.append(intention)
-    else:
-        intention.parked = True
 
 
 def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:

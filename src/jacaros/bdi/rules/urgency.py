@@ -13,16 +13,18 @@ a name.  What is more urgent goes first, and among equals the order is Jason's. 
   before it are read in the same cycle, and it too.  Percepts are always worked in all together.
 * Atomic intentions are not interrupted.
 
-The queues are plain as long as nothing in them is urgent, whatever plans there are.  Code that adds something urgent notes
-it (`Urgency.rank`).  The next cycle then puts the queues in order, and they are kept in order until nothing urgent is
-left.  So an urgent plan costs unrelated events one look-up in a table each.
+The queues are plain as long as nothing in them is urgent, whatever plans there are.  What is urgent is noted when it comes;
+the next cycle puts the queues in order, and they are kept in order until nothing urgent is left.  So an urgent plan costs
+unrelated events one look-up in a table each.
 """
 
+from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, Generic, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Generic, TypeVar
 
-from jacaros.bdi.rules.proc_msg import RECEIVED, read_message
+from jacaros.bdi.rules.proc_msg import RECEIVED
+from jacaros.bdi.rules.selections import Fair
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Intention
@@ -45,67 +47,112 @@ _TRIGGERS = {
 """Operator and kind of the event that a message leads to."""
 
 
-class Urgency:
-    """How urgent things are for one agent.
+class Urgent(Fair):
+    """The selection functions of an agent that has urgent plans.
 
     Args:
-        agent: whose plans and options say so.
-
-    Attributes:
-        by_trigger: the urgency of the most urgent plan for each event kind, sub-plans included.
+        agent: whose plans and options say how urgent things are.
     """
 
-    def __init__(self, agent: Circumstance) -> None:
-        self._agent = agent
-        self._named = dict(agent.options.urgency)
-        self.by_trigger = _ByTrigger(self.of_plan, agent)
-        self._looked_at = 0
-        self._to_read = 0
+    __slots__ = (
+        "_in_order",
+        "_named",
+        "_of_kinds",
+        "_orders_events",
+        "_orders_intentions",
+        "_ranked",
+        "_urgent_messages",
+    )
 
-    def forget(self) -> None:
-        """Plans have come or gone."""
-        self.by_trigger.clear()
+    def __init__(self, agent: Circumstance) -> None:
+        super().__init__(agent)
+        self._named = dict(agent.options.urgency)
+        self._of_kinds = _OfKinds(self)
+        self.urgencies: Mapping[Trigger, int] | None = self._of_kinds
+        self._in_order = False
+        self._orders_events = self._orders_intentions = True
+        self._ranked = False
+        self._urgent_messages = 0
+
+    def look_anew(self) -> None:
+        """Plans have come or gone, or the queues are filled anew."""
+        self._of_kinds.clear()
+        self._in_order = False
+        self._urgent_messages = sum(self._of_message(message) > 0 for message in self.agent.inbox)
+        self.rank()
 
     def rank(self) -> None:
-        """Something urgent comes into the queues: from the next cycle on they are in order of urgency."""
-        self._agent.urgent = self._agent.called = True
+        """Something urgent comes into the queues: from the next cycle on it goes first."""
+        self._ranked, self.plain = True, False
+        self.agent.called = True
 
-    def note_goal(self, kind: Trigger) -> None:
-        """An event of a kind is about to be queued, or handled at once."""
-        if self.by_trigger[kind]:
-            self.rank()
-
-    def note_event(self, event: Event) -> None:
-        """An event is about to be queued."""
-        if self.by_trigger[event[EVENT_GOAL][0]] or (
-            (intention := event[EVENT_INTENTION]) is not None and self.of_intention(intention)
-        ):
-            self.rank()
+    # --- what comes into the queues ------------------------------------------------------------------------
 
     def note_intention(self, intention: Intention) -> None:
         """An intention that waited, was suspended or is new is about to be queued."""
-        if self.of_intention(intention):
+        if not self._ranked and self._of_intention(intention):
             self.rank()
 
-    def settle(self) -> None:
-        """Put the queues in order of urgency, or make them plain again when nothing urgent is left in them.
+    def note_message(self, message: SpeechAct) -> None:
+        """A message is about to be queued."""
+        if self._of_message(message):
+            self._urgent_messages += 1
+            self.rank()
 
-        Queues from which the agent's class chooses stay as they are.
-        """
-        agent = self._agent
-        if agent.events.__class__ is deque:
-            agent.events = UrgentQueue(self.of_event, agent.events)
-        if agent.intentions.__class__ is deque:
-            agent.intentions = UrgentQueue(self.of_intention, agent.intentions)
-        if not (self._holds_urgent(agent.events) or self._holds_urgent(agent.intentions)):
-            agent.urgent = False
-            if isinstance(agent.events, UrgentQueue):
-                agent.events = deque(agent.events)
-            if isinstance(agent.intentions, UrgentQueue):
-                agent.intentions = deque(agent.intentions)
+    # --- the selection functions ---------------------------------------------------------------------------
 
-    def _holds_urgent(self, queue: "deque[Event] | deque[Intention]") -> bool:
-        return isinstance(queue, UrgentQueue) and bool(queue) and queue.first_urgency() > 0
+    def select_messages(self) -> Sequence[SpeechAct]:
+        """The oldest one; all up to the last about something urgent, when there is one."""
+        inbox = self.agent.inbox
+        chosen = [inbox.popleft()]
+        self._urgent_messages -= self._urgent_messages > 0 and self._of_message(chosen[0]) > 0
+        while inbox and self._urgent_messages > 0:
+            chosen.append(inbox.popleft())
+            self._urgent_messages -= self._of_message(chosen[-1]) > 0
+        return chosen
+
+    def select_event(self) -> Event | None:
+        """The most urgent one, unless an intention that is ready is more urgent."""
+        events, intentions = self._put_in_order()
+        if (
+            events
+            and intentions
+            and isinstance(events, UrgentQueue)
+            and isinstance(intentions, UrgentQueue)
+            and self._of_event(events[0]) < self._of_intention(intentions[0])
+        ):
+            return None
+        return super().select_event()
+
+    def select_intention(self) -> Intention | None:
+        """The most urgent one."""
+        events, intentions = self._put_in_order()
+        if self._ranked and not (self._urgent_messages or _holds_urgent(events) or _holds_urgent(intentions)):
+            self._calm_down()
+        return super().select_intention()
+
+    def _put_in_order(self) -> "tuple[deque[Event], deque[Intention]]":
+        """The queues; in order of urgency as long as something urgent is in them."""
+        agent = self.agent
+        if self._ranked and not self._in_order:
+            self._in_order = True
+            if self._orders_events:
+                agent.events = UrgentQueue(self._of_event, agent.events)
+            if self._orders_intentions:
+                agent.intentions = UrgentQueue(self._of_intention, agent.intentions)
+        return agent.events, agent.intentions
+
+    def _calm_down(self) -> None:
+        """Nothing urgent is left."""
+        self._ranked = self._in_order = False
+        self.plain = True
+        self.agent.events, self.agent.intentions = deque(self.agent.events), deque(self.agent.intentions)
+
+    def may_line_up(self, intention: Intention) -> bool:
+        """Whether a new intention may have to wait until there are few."""
+        return not self._of_intention(intention)
+
+    # --- how urgent something is ---------------------------------------------------------------------------
 
     def of_plan(self, plan: Plan) -> int:
         """The urgency of a plan: what the agent's option says of its event, else what its label says."""
@@ -115,13 +162,12 @@ class Urgency:
         name = f"{symbol.namespace}::{symbol.name}" if symbol.namespace else symbol.name
         return self._named.get(name, plan.urgency)
 
-    def of_event(self, event: Event) -> int:
-        """The urgency of an event, not below that of the intention that posted it."""
-        urgency = self.by_trigger[event[EVENT_GOAL][0]]
+    def _of_event(self, event: Event) -> int:
+        urgency = self._of_kinds[event[EVENT_GOAL][0]]
         intention = event[EVENT_INTENTION]
-        return urgency if intention is None else max(urgency, self.of_intention(intention))
+        return urgency if intention is None else max(urgency, self._of_intention(intention))
 
-    def of_intention(self, intention: Intention) -> int:
+    def _of_intention(self, intention: Intention) -> int:
         """The urgency of the most urgent plan on the stack of an intention.
 
         What was found is noted for each frame with those below it, so that a deep stack is gone through once.
@@ -140,51 +186,30 @@ class Urgency:
             known.append((frame, urgency))
         return urgency
 
-    def of_message(self, message: SpeechAct) -> int:
+    def _of_message(self, message: SpeechAct) -> int:
         """The urgency of the events that a message may lead to."""
-        urgency = self.by_trigger[RECEIVED]
+        urgency = self._of_kinds[RECEIVED]
         kind = _TRIGGERS.get(message.performative)
         if kind is not None:
             content = message.content
             for item in list_items(content) if is_list(content) else (content,):
                 symbol = functor_of(item)
                 if symbol is not None:
-                    urgency = max(urgency, self.by_trigger[trigger(*kind, symbol)])
+                    urgency = max(urgency, self._of_kinds[trigger(*kind, symbol)])
         return urgency
 
-    def messages_to_read(self) -> int:
-        """How many messages are to be read in this cycle: one, or all up to the last about something urgent."""
-        inbox = self._agent.inbox
-        if inbox.__class__ is not deque:
-            # The agent's class chooses its messages itself.
-            return 1
-        for place in range(self._looked_at, len(inbox)):
-            if self.of_message(inbox[place]) > 0:
-                self._to_read = place + 1
-        count = max(1, self._to_read)
-        self._looked_at, self._to_read = len(inbox) - count, 0
-        return count
 
-    def may_take_event(self) -> bool:
-        """Whether the next event has its turn: while a more urgent intention is ready it waits."""
-        events, intentions = self._agent.events, self._agent.intentions
-        if not (intentions and isinstance(events, UrgentQueue) and isinstance(intentions, UrgentQueue)):
-            return True
-        return self.of_event(events[0]) >= self.of_intention(intentions[0])
-
-
-class _ByTrigger(dict[Trigger, int]):
+class _OfKinds(dict[Trigger, int]):
     """The urgency of event kinds, worked out when it is first asked for."""
 
-    def __init__(self, of_plan: Callable[[Plan], int], agent: Circumstance) -> None:
+    def __init__(self, urgent: Urgent) -> None:
         super().__init__()
-        self._of_plan, self._agent = of_plan, agent
+        self._urgent = urgent
 
     def __missing__(self, kind: Trigger) -> int:
-        plans = _with_inner(self._agent.library.plans)
-        urgency = max((self._of_plan(plan) for plan in plans if concerns(plan, kind)), default=0)
-        self[kind] = urgency
-        return urgency
+        plans = _with_inner(self._urgent.agent.library.plans)
+        self[kind] = max((self._urgent.of_plan(plan) for plan in plans if concerns(plan, kind)), default=0)
+        return self[kind]
 
 
 class UrgentQueue(deque[Item], Generic[Item]):
@@ -195,8 +220,8 @@ class UrgentQueue(deque[Item], Generic[Item]):
         self._urgency = urgency
 
     def first_urgency(self) -> int:
-        """The urgency of the first item, which is the greatest."""
-        return self._urgency(self[0])
+        """The urgency of the first item, which is the greatest; 0 without any."""
+        return self._urgency(self[0]) if self else 0
 
     def append(self, item: Item) -> None:
         """Put an item behind those that are as urgent, or more."""
@@ -204,28 +229,19 @@ class UrgentQueue(deque[Item], Generic[Item]):
         # Nothing is below 0: what is not urgent needs no look at the others.
         if urgency == 0 or not self or self._urgency(self[-1]) >= urgency:
             super().append(item)
-            return
-        low, high = 0, len(self) - 1
-        while low < high:
-            middle = (low + high) // 2
-            if self._urgency(self[middle]) >= urgency:
-                low = middle + 1
-            else:
-                high = middle
-        self.insert(low, item)
+        else:
+            self.insert(bisect_right(self, -urgency, key=lambda other: -self._urgency(other)), item)
 
     def extendleft(self, items: Iterable[Item]) -> None:
         """Put items back before those that are as urgent."""
         for item in items:
-            urgency = self._urgency(item)
-            place = next((i for i, other in enumerate(self) if self._urgency(other) <= urgency), len(self))
-            self.insert(place, item)
+            self.insert(
+                bisect_left(self, -self._urgency(item), key=lambda other: -self._urgency(other)), item
+            )
 
-    def sort(self) -> None:
-        """Bring the items into their order again: their urgency is another now."""
-        items = sorted(self, key=self._urgency, reverse=True)
-        self.clear()
-        self.extend(items)
+
+def _holds_urgent(queue: "deque[Event] | deque[Intention]") -> bool:
+    return isinstance(queue, UrgentQueue) and queue.first_urgency() > 0
 
 
 def _with_inner(plans: Sequence[Plan]) -> Iterator[Plan]:
@@ -241,25 +257,8 @@ def has_urgent_plans(agent: Circumstance) -> bool:
 
 def plans_changed(agent: Circumstance) -> None:
     """See whether an agent has urgent plans; to be called whenever its plans have changed."""
-    if agent.urgency is not None:
-        agent.urgency.forget()
-    elif has_urgent_plans(agent):
-        agent.urgency = Urgency(agent)
-    else:
-        return
-    agent.urgency.rank()
-    # In the next cycle: the step that is being made has the queues in its hands.
-    agent.do_soon(_sort)
-
-
-def _sort(agent: Circumstance) -> None:
-    """Bring queues that are in order of urgency into order again: plans have come or gone."""
-    for queue in (agent.events, agent.intentions):
-        if isinstance(queue, UrgentQueue):
-            queue.sort()
-
-
-def read_urgent_messages(agent: Any) -> None:
-    """Read the message whose turn it is; all up to the last about something urgent, when there is one."""
-    for _ in range(agent.urgency.messages_to_read()):
-        read_message(agent)
+    if not isinstance(agent.selections, Urgent):
+        if not has_urgent_plans(agent):
+            return
+        agent.selections = Urgent(agent)
+    agent.selections.look_anew()

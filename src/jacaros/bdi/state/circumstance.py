@@ -8,13 +8,14 @@ from jacaros.asl.source import Span
 from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import SELECT_OPTION, BeliefTables
+from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
-from jacaros.bdi.state.event import EVENT_INTENTION, Event
+from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
+from jacaros.bdi.state.selections import Selections
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, Waiting
@@ -47,14 +48,11 @@ class Circumstance:
         budgets: what refuses more than a limit allows, by the name of the option.
         next_count: number of the cycle after which beliefs are counted, and unused names dropped, next; a look at what
             comes in counts as one.
-        option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
-        refused_options: there were applicable plans for the last event, and the filter let none pass.
+        selections: which message, event, plan and intention goes first.
         alive: every intention that is not over, by id.
         current: the intention whose step is being made.
         atomic: the intention that has an atomic plan on its stack, or None.
         atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
-        urgency: how urgent things are (`jacaros.bdi.rules.urgency.Urgency`); None while no plan is more urgent than others.
-        urgent: something in the queues is more urgent than the rest, or may be: they are kept in order of urgency.
         inbox, percepts: what was received and noticed, and not yet looked at.
         tasks: housekeeping for the beginning of the next cycle: functions, and their arguments behind the agent.
         suspended_events: goal events whose goal was suspended before it became an intention.
@@ -77,7 +75,8 @@ class Circumstance:
         subplans: whether plans have plans of their own.
         special: whether any of `meta`, `goal_conditions` and `subplans` is true.
         called: something may want to be looked at besides `events` and `intentions`: `inbox`, `percepts`, `tasks`,
-            restless `condition_waits`, a suspension, or because the agent is `special` or `urgent`.  Whoever adds to one of
+            restless `condition_waits`, a suspension, or because the agent is `special` or its
+            `selections` are not plain.  Whoever adds to one of
             them sets it.
         outer_frame: frame of the plan whose sub-plans are being tried.
         context: the view of itself that it gives to internal actions.
@@ -148,7 +147,6 @@ class Circumstance:
         "next_look",
         "on_finish",
         "on_lost",
-        "option_filter",
         "options",
         "outer_frame",
         "parsed",
@@ -157,10 +155,10 @@ class Circumstance:
         "percepts",
         "plans_made",
         "project_functions",
-        "refused_options",
         "requeued",
         "rule_depth",
         "running",
+        "selections",
         "selects",
         "special",
         "stopped",
@@ -168,11 +166,10 @@ class Circumstance:
         "suspended_events",
         "tasks",
         "trail",
-        "urgency",
-        "urgent",
         "usual_events",
     )
 
+    selections: Selections
     call_own: Callable[[Term], Term]
     drop_wait: Callable[[Waiting], None]
     notify_event_waits: Callable[[Event], None]
@@ -199,12 +196,8 @@ class Circumstance:
         if options.search_limit:
             self.beliefs.budget = SearchBudget(options.search_limit)
         self.usual_events = options.events == "discard" and not options.new_focus
-        self.option_filter = self.beliefs[SELECT_OPTION]
-        self.refused_options = False
         self.library = PlanLibrary(plans)
         self.selects = self.library.selects
-        self.urgency: Any = None
-        self.urgent = False
         self.events: deque[Event] = deque()
         self.requeued: list[Event] = []
         self.next_look = 0
@@ -271,8 +264,7 @@ class Circumstance:
         if intention.suspended is not None:
             intention.parked = True
         else:
-            if self.urgency is not None:
-                self.urgency.note_intention(intention)
+            self.selections.note_intention(intention)
             self.intentions.append(intention)
         if not self.running:
             self.architecture.ready()
@@ -305,9 +297,14 @@ class Circumstance:
 
     def queue(self, event: Event) -> None:
         """Put an event at the end of the queue."""
-        if self.urgency is not None:
-            self.urgency.note_event(event)
+        self.note(event[EVENT_GOAL][0])
         self.events.append(event)
+
+    def note(self, kind: Trigger) -> None:
+        """An event of a kind is about to be queued, or handled at once."""
+        urgencies = self.selections.urgencies
+        if urgencies is not None and urgencies[kind]:
+            self.selections.rank()
 
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and resume those who wait for it."""
@@ -315,8 +312,8 @@ class Circumstance:
             len(self.events) >= self.event_limit or len(self.alive) >= self.intention_limit
         ) and not self._admits(event):
             return
-        if self.urgency is not None:
-            self.urgency.note_event(event)
+        if self.selections.urgencies is not None:
+            self.note(event[EVENT_GOAL][0])
         self.events.append(event)
         if self.event_waits:
             self.notify_event_waits(event)
@@ -337,10 +334,7 @@ class Circumstance:
 
     def line_up(self, intention: Intention) -> None:
         """Put a new intention for a goal that the agent set itself behind all others, now that there are `CROWD`."""
-        if self.urgency is not None and self.urgency.of_intention(intention):
-            self.intentions.append(intention)
-        else:
-            self.crowd.append(intention)
+        (self.crowd if self.selections.may_line_up(intention) else self.intentions).append(intention)
 
     def is_in_turn(self, intention: Intention) -> bool:
         """Whether an intention waits for its turn."""

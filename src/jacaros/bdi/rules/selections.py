@@ -1,0 +1,101 @@
+"""The selection functions of a fair agent: the oldest message and event, the first applicable plan, intentions in a circle.
+
+A program chooses among the applicable plans itself with rules for ``select__option(Trigger, Intention, Plan, Bindings)``:
+the first plan for which they hold is taken.  Label annotation ``all_unifs``: every answer of the plan's context is an
+option, not the first one only.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from jacaros.bdi.rules.plan_terms import bindings_of, plan_term
+from jacaros.bdi.rules.query import solve_formula
+from jacaros.bdi.rules.searching import run
+from jacaros.bdi.state.belief_base import SELECT_OPTION
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import Event
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, Frame, Intention
+from jacaros.bdi.state.literals import EventAnnotations, literal_of
+from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.bdi.state.triggers import Goal, Trigger
+from jacaros.terms.plans import trigger
+from jacaros.terms.unifier import undo
+from jacaros.terms.values import Term, Var
+
+
+class Fair:
+    """See `jacaros.bdi.state.selections.Selections`."""
+
+    __slots__ = ("agent", "option_filter", "plain", "refused", "urgencies")
+
+    def __init__(self, agent: Circumstance) -> None:
+        self.agent = agent
+        self.plain = True
+        self.option_filter = agent.beliefs[SELECT_OPTION]
+        self.refused = False
+        self.urgencies: Mapping[Trigger, int] | None = None
+
+    def select_messages(self) -> Sequence[SpeechAct]:
+        """The oldest one."""
+        return (self.agent.inbox.popleft(),)
+
+    def select_event(self) -> Event | None:
+        """The oldest one."""
+        events = self.agent.events
+        return events.popleft() if events else None
+
+    def select_option(
+        self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
+    ) -> Frame | None:
+        """The first applicable plan; if the program has rules that filter plans, the first one that they let pass."""
+        agent = self.agent
+        if not self.option_filter.rows:
+            select = agent.selects[goal[0]]
+            return None if select is None else select(agent, goal, annotations)
+        for frame in options(agent, goal, annotations):
+            if _passes(agent, frame, intention):
+                self.refused = False
+                return frame
+            self.refused = True
+        return None
+
+    def select_intention(self) -> Intention | None:
+        """The one whose last turn is the longest ago."""
+        intentions = self.agent.intentions
+        return intentions.popleft() if intentions else None
+
+    def rank(self) -> None:
+        """What came first goes first."""
+
+    def note_intention(self, intention: Intention) -> None:
+        """It goes to the end."""
+
+    def note_message(self, message: SpeechAct) -> None:
+        """It is read last."""
+
+    def may_line_up(self, intention: Intention) -> bool:
+        """Every one may."""
+        del intention
+        return True
+
+
+def options(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
+    """The frames of all applicable plans, in the order of the program; a frame holds until the next is asked for."""
+    agent.selections.refused = False
+    every = agent.library.every_option(goal[0])
+    return iter(()) if every is None else every(agent, goal, annotations)
+
+
+def _passes(agent: Circumstance, frame: Frame, intention: Intention | None) -> bool:
+    number: Term = Var("Intention") if intention is None else float(intention.id)
+    operator = frame[GOAL][0].operator + frame[GOAL][0].kind
+    rest = (number, plan_term(agent, frame[PLAN]), bindings_of(frame))
+    # A rule may ask for annotations of the event, but most are written without.
+    events = (literal_of(frame[GOAL], frame[ANNOTATIONS]), literal_of(frame[GOAL], ()))
+    return any(_holds(agent, (SELECT_OPTION, trigger(operator, event), *rest)) for event in events)
+
+
+def _holds(agent: Circumstance, question: Term) -> bool:
+    mark = len(agent.trail)
+    holds = any(True for _ in run(solve_formula(agent, question, agent.trail), agent.rule_depth))
+    undo(agent.trail, mark)
+    return holds
