@@ -6,7 +6,6 @@ from typing import Any
 
 from jacaros.clock import Clock
 from jacaros.errors import UsageError
-from jacaros.ros.address import ROS_KINDS
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import BackendUnavailable
 from jacaros.ros.node import NodeSettings
@@ -49,8 +48,8 @@ def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", *
         BackendUnavailable: the client library is not installed.
         NameInvalid: the node's name or a namespace breaks the rules of ROS.
     """
-    if kind not in ROS_KINDS:
-        raise UsageError(f"there is no ROS backend {kind!r}; there are {', '.join(ROS_KINDS)}")
+    if kind not in _OPTIONS:
+        raise UsageError(f"there is no ROS backend {kind!r}; there are {', '.join(_OPTIONS)}")
     if clock.virtual and kind != "memory":
         raise UsageError(
             f"the virtual clock cannot run with a real ROS graph ({kind}): its nodes live in real time. "
