@@ -1,5 +1,6 @@
 """What must hold for the repository as a whole: one version, no names of other places, nothing untested."""
 
+import ast
 import re
 import subprocess
 import tomllib
@@ -114,3 +115,11 @@ def test_the_programs_of_the_suite_can_be_run() -> None:
     programs = [ROOT / ".ci" / "run", *sorted((ROOT / "tools").glob("*.sh"))]
     assert [path.name for path in programs if not path.stat().st_mode & 0o111] == []
     assert [path.name for path in programs if not path.read_text().startswith("#!/")] == []
+
+
+def test_the_mind_says_what_its_values_are() -> None:
+    files = list((ROOT / "src" / "jacaros" / "bdi").rglob("*.py"))
+    texts = [file.read_text(encoding="utf-8") for file in files]
+    names = [node for text in texts for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Name)]
+    untyped = sum(node.id == "Any" for node in names)
+    assert 1000 * untyped / sum(text.count("\n") for text in texts) <= 10

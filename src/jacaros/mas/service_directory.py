@@ -76,8 +76,8 @@ class ServiceDirectory:
             watcher(name, service, provides)
 
     def _held(self, symbol: Term, service: str) -> list[str]:
-        found = [row for row, _ in self.agent.beliefs[symbol].entries() if row[1] == String(service)]
-        return [row[0].name for row in reversed(found)]
+        rows = [row for row, _ in self.agent.beliefs[symbol].entries() if isinstance(row, tuple)]
+        return [row[0].name for row in reversed(rows) if row[1] == String(service)]
 
     def _tell(self, receiver: str, provider: str, service: str) -> None:
         content = (_PROVIDER, atom(provider), String(service))

@@ -1,7 +1,6 @@
 """Why a goal failed: the annotations of its failure event, and what people are told of it."""
 
 from collections.abc import Callable
-from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
@@ -10,7 +9,7 @@ from jacaros.asl.source import Span
 from jacaros.bdi.explaining.step_text import step_text
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
 from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
-from jacaros.bdi.state.plan import StepInfo
+from jacaros.bdi.state.plan import Plan, StepInfo
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.deep import CyclicTerm
 from jacaros.terms.excerpt import excerpt
@@ -43,8 +42,8 @@ class FailureReason:
     def __init__(
         self,
         terms: _Terms | Callable[[], _Terms],
-        at: Any,
-        goal_annotations: Any = None,
+        at: "_Nowhere | Frame",
+        goal_annotations: EventAnnotations | None = None,
         goal_number: int | None = None,
     ) -> None:
         """Make a reason.
@@ -72,7 +71,7 @@ class FailureReason:
         return FailureReason(self._terms, self._at, annotations, number)
 
     @property
-    def _place(self) -> Any:
+    def _place(self) -> "_Nowhere":
         if isinstance(self._at, list):
             self._at = StepPlace(self._at, self._at[STEP].info)
         return self._at
@@ -123,9 +122,9 @@ class FailureReason:
         found: tuple[Goal, ...] = self._place.inner_goals()
         return found
 
-    def unplanned(self) -> tuple[Goal, Any] | None:
+    def unplanned(self) -> tuple[Goal, EventAnnotations] | None:
         """The goal that no plan fits and its annotations, None when that is not the reason."""
-        found: tuple[Goal, Any] | None = self._place.unplanned()
+        found: tuple[Goal, EventAnnotations] | None = self._place.unplanned()
         return found
 
     def interrupted(self, frames: list[Frame]) -> "FailureReason":
@@ -159,7 +158,7 @@ class _Nowhere:
     def inner_goals(self) -> tuple[Goal, ...]:
         return ()
 
-    def unplanned(self) -> tuple[Goal, Any] | None:
+    def unplanned(self) -> tuple[Goal, EventAnnotations] | None:
         return None
 
     def annotations(self) -> tuple[Term, ...]:
@@ -186,8 +185,9 @@ class StepPlace(_Nowhere):
         return _failed_formula(self.info.node)
 
     @property
-    def plan(self) -> Any:
-        return self.frame[PLAN]
+    def plan(self) -> Plan:
+        plan: Plan = self.frame[PLAN]
+        return plan
 
     def annotations(self) -> tuple[Term, ...]:
         return _code(self._resolved(lower(self.node, self._value)), self.node.span, self.plan.file)
@@ -280,7 +280,7 @@ class GoalPlace(_Nowhere):
     def span(self) -> Span | None:
         return self._call()[0]
 
-    def unplanned(self) -> tuple[Goal, Any] | None:
+    def unplanned(self) -> tuple[Goal, EventAnnotations] | None:
         return self.goal, self.goal_annotations
 
     def _call(self) -> tuple[Span | None, str]:
@@ -318,7 +318,7 @@ def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
     return calls[0].span if calls else plan.node.span
 
 
-def _code(term: Term, span: Any, file: str) -> tuple[Term, ...]:
+def _code(term: Term, span: Span | None, file: str) -> tuple[Term, ...]:
     return (CODE, term), *code_place(span, file)
 
 

@@ -6,7 +6,6 @@ for plans (`jacaros.bdi.fast`) does the same, and makes the same frames.
 """
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import Names, lower
@@ -14,6 +13,7 @@ from jacaros.asl.walk import names_in
 from jacaros.bdi.rules.body_steps import interpreted
 from jacaros.bdi.rules.query import answers
 from jacaros.bdi.rules.searching import run, unify_rows
+from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Frame
 from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of, namespace_of
 from jacaros.bdi.state.plan import ALL_UNIFIERS, Plan
@@ -36,11 +36,11 @@ class Selection:
     def __init__(self, plans: Sequence[Plan], outer: Plan | None = None) -> None:
         self.plans, self.outer = plans, outer
 
-    def __call__(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Frame | None:
+    def __call__(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Frame | None:
         """The frame of the first applicable plan, or None."""
         return next(self.frames(agent, goal, annotations), None)
 
-    def every(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
+    def every(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
         """The frames of all applicable plans: of each the first, or, with ``all_unifs`` in its label, one for each answer
         of its context."""
         for plan in self.plans:
@@ -50,7 +50,7 @@ class Selection:
                     break
             undo(agent.trail, 0)
 
-    def frames(self, agent: Any, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
+    def frames(self, agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
         """The first frame of each applicable plan, with the bindings that its context made."""
         for plan in self.plans:
             found = next(self._frames_of(plan, agent, goal, annotations), None)
@@ -59,7 +59,7 @@ class Selection:
             undo(agent.trail, 0)
 
     def _frames_of(
-        self, plan: Plan, agent: Any, goal: Goal, annotations: EventAnnotations
+        self, plan: Plan, agent: Circumstance, goal: Goal, annotations: EventAnnotations
     ) -> Iterator[Frame]:
         """A frame for each answer of the context.  A plan whose context cannot be evaluated is not applicable."""
         names = Names() if self.outer is None else _names_of(self.outer, agent.outer_frame, plan)

@@ -24,7 +24,7 @@ from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.unifier import Trail, undo
 from jacaros.terms.values import Annotated, Term, Var, arguments_of, bare, deref, functor, functor_of
 
-Next = Callable[[Any, Frame], Any] | None
+Next = Callable[[Any, Frame], object] | None
 
 
 class Step:
@@ -54,9 +54,9 @@ class Step:
         self.names: list[str] = []
         self.place = 0
 
-    def __call__(self, agent: Any, frame: Frame) -> Any:
+    def __call__(self, agent: Any, frame: Frame) -> object:
         """Carry out the step."""
-        return _MEANING[type(self.node)](self, agent, frame)
+        return _MEANING[type(self.node)](self, self.node, agent, frame)
 
     def go_on_with(self, behind: Next) -> None:
         """Have the step followed by another one."""
@@ -79,7 +79,7 @@ class Step:
             if name in slots and name in names:
                 frame[slots[name]] = deref(names[name])
 
-    def go_on(self, frame: Frame, names: Names, posted: Any = None) -> Any:
+    def go_on(self, frame: Frame, names: Names, posted: object = None) -> object:
         """The step has succeeded."""
         self.keep(frame, names)
         frame[STEP] = self.next
@@ -91,9 +91,12 @@ class Round(Step):
 
     __slots__ = ()
 
-    def __call__(self, agent: Any, frame: Frame) -> Any:
+    def __call__(self, agent: Any, frame: Frame) -> None:
         """Carry out the step."""
-        return (_while_round if isinstance(self.node, nodes.While) else _for_round)(self, agent, frame)
+        if isinstance(self.node, nodes.While):
+            _while_round(self, self.node, agent, frame)
+        elif isinstance(self.node, nodes.For):
+            _for_round(self, self.node, agent, frame)
 
 
 class Loop:
@@ -237,9 +240,8 @@ def holds(agent: Any, condition: nodes.Node, names: Names, trail: Trail) -> bool
     return False
 
 
-def _achieve(step: Step, agent: Any, frame: Frame) -> Any:
+def _achieve(step: Step, node: nodes.Achieve, agent: Any, frame: Frame) -> object:
     """``!g`` and ``!!g``."""
-    node: Any = step.node
     names = step.values(frame)
     posted = agent.goal_from("+", "!", lower(node.goal, names.__getitem__), node.separate)
     if node.separate:
@@ -247,9 +249,8 @@ def _achieve(step: Step, agent: Any, frame: Frame) -> Any:
     return step.go_on(frame, names, posted)
 
 
-def _test(step: Step, agent: Any, frame: Frame) -> Any:
+def _test(step: Step, node: nodes.Test, agent: Any, frame: Frame) -> object:
     """``?g``: a question to the belief base, or else a goal that a plan may achieve."""
-    node: Any = step.node
     names = step.values(frame)
     asked = isinstance(node.formula, (nodes.Literal, nodes.Variable))
     if isinstance(node.formula, nodes.Variable):
@@ -263,16 +264,16 @@ def _test(step: Step, agent: Any, frame: Frame) -> Any:
     return step.go_on(frame, names, agent.test_goal_from(lower(node.formula, names.__getitem__)))
 
 
-def _constraint(step: Step, agent: Any, frame: Frame) -> Any:
+def _constraint(step: Step, node: nodes.Constraint, agent: Any, frame: Frame) -> object:
     """A condition, or an internal action."""
-    formula: Any = step.node.formula  # type: ignore[attr-defined]
+    formula = node.formula
     if isinstance(formula, nodes.InternalAction) and collecting(agent, formula) is None:
         return _internal_action(step, formula, agent, frame)
     names = step.values(frame)
     return step.go_on(frame, names) if holds(agent, formula, names, agent.trail) else FAILED
 
 
-def _internal_action(step: Step, node: nodes.InternalAction, agent: Any, frame: Frame) -> Any:
+def _internal_action(step: Step, node: nodes.InternalAction, agent: Any, frame: Frame) -> object:
     names = step.values(frame)
     arguments = [resolve(lower(argument, names.__getitem__)) for argument in node.arguments]
     action = agent.actions.get(node.name)
@@ -291,17 +292,16 @@ def _internal_action(step: Step, node: nodes.InternalAction, agent: Any, frame: 
     return step.go_on(frame, names) if found else FAILED
 
 
-def _belief_change(step: Step, agent: Any, frame: Frame) -> Any:
+def _belief_change(step: Step, node: nodes.BeliefChange, agent: Any, frame: Frame) -> object:
     """``+b``, ``-b``, ``-+b`` and the like."""
-    node: Any = step.node
     names = step.values(frame)
     posted = agent.change_mind(node.operator, resolve(lower(node.operand, names.__getitem__)))
     return step.go_on(frame, names, posted)
 
 
-def _external_action(step: Step, agent: Any, frame: Frame) -> Any:
+def _external_action(step: Step, node: nodes.ExternalAction, agent: Any, frame: Frame) -> object:
     """An action of the environment, or what a variable stands for."""
-    action: Any = step.node.action  # type: ignore[attr-defined]
+    action = node.action
     names = step.values(frame)
     term = lower(action, names.__getitem__)
     step.keep(frame, names)
@@ -312,8 +312,7 @@ def _external_action(step: Step, agent: Any, frame: Frame) -> Any:
     return agent.begin_act(functor_of(term), arguments, annotations, step.next)
 
 
-def _if(step: Step, agent: Any, frame: Frame) -> Any:
-    node: Any = step.node
+def _if(step: Step, node: nodes.If, agent: Any, frame: Frame) -> None:
     names = step.values(frame)
     then, otherwise = step.first
     if holds(agent, node.condition, names, agent.trail):
@@ -324,13 +323,12 @@ def _if(step: Step, agent: Any, frame: Frame) -> Any:
         frame[STEP] = otherwise
 
 
-def _while(step: Step, agent: Any, frame: Frame) -> Any:
+def _while(step: Step, node: nodes.While, agent: Any, frame: Frame) -> object:
     frame[step.place] = Loop(step, frame)
     return step.first[0](agent, frame)  # type: ignore[misc]
 
 
-def _while_round(step: Step, agent: Any, frame: Frame) -> Any:
-    node: Any = step.node
+def _while_round(step: Step, node: nodes.While, agent: Any, frame: Frame) -> None:
     frame[step.place].begin_round(frame)
     names = step.values(frame)
     if holds(agent, node.condition, names, agent.trail):
@@ -341,24 +339,23 @@ def _while_round(step: Step, agent: Any, frame: Frame) -> Any:
         frame[STEP] = step.next
 
 
-def _for(step: Step, agent: Any, frame: Frame) -> Any:
+def _for(step: Step, node: nodes.For, agent: Any, frame: Frame) -> object:
     loop = frame[step.place] = Loop(step, frame)
     slots = frame[PLAN].slots
     wanted = [name for name in step.names if name in slots and slots[name] in loop.inner]
-    loop.answers = Remaining(_rounds(step, agent, step.values(frame), wanted))
+    loop.answers = Remaining(_rounds(node, agent, step.values(frame), wanted))
     return step.first[0](agent, frame)  # type: ignore[misc]
 
 
-def _rounds(step: Step, agent: Any, names: Names, wanted: list[str]) -> Iterator[tuple[Term, ...]]:
+def _rounds(node: nodes.For, agent: Any, names: Names, wanted: list[str]) -> Iterator[tuple[Term, ...]]:
     """What the variables of a ``for`` are in each round."""
     trail = Trail()
     trail.serial = agent.trail.serial
-    condition: Any = step.node.condition  # type: ignore[attr-defined]
-    for _ in run(answers(agent, condition, names.__getitem__, trail), agent.rule_depth):
+    for _ in run(answers(agent, node.condition, names.__getitem__, trail), agent.rule_depth):
         yield tuple(deref(names[name]) for name in wanted)
 
 
-def _for_round(step: Step, agent: Any, frame: Frame) -> Any:
+def _for_round(step: Step, node: nodes.For, agent: Any, frame: Frame) -> None:
     loop: Loop = frame[step.place]
     loop.begin_round(frame)
     slots = frame[PLAN].slots
@@ -374,13 +371,12 @@ def _for_round(step: Step, agent: Any, frame: Frame) -> Any:
     frame[STEP] = step.next
 
 
-def _fork(step: Step, agent: Any, frame: Frame) -> Any:
+def _fork(step: Step, node: nodes.Fork, agent: Any, frame: Frame) -> object:
     """``a |&| b`` and ``a ||| b``."""
-    node: Any = step.node
     return agent.fork(node.operator, frame, step.first, step.next)
 
 
-_MEANING: dict[type, Callable[[Step, Any, Frame], Any]] = {
+_MEANING: dict[type, Callable[..., object]] = {
     nodes.Achieve: _achieve,
     nodes.Test: _test,
     nodes.Constraint: _constraint,

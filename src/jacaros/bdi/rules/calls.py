@@ -1,16 +1,27 @@
 """Calls of internal actions that generated code makes, and what becomes of those that cannot be made."""
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import Protocol
 
 from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.plan import Failure
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import Trail, undo
 from jacaros.terms.values import String, Term, atom, functor
 
 
-def answers_of(context: Any, trail: Trail, action: InternalAction, *arguments: Term) -> Iterator[None]:
+class Calling(Protocol):
+    """The view that internal actions have of their agent (`jacaros.bdi.rules.context.Context`), as calls need it."""
+
+    agent: Circumstance
+    trail: Trail
+
+    def report(self, action: str, fault: object) -> None:
+        """Warn of an action in a condition that could not be done."""
+
+
+def answers_of(context: Calling, trail: Trail, action: InternalAction, *arguments: Term) -> Iterator[None]:
     """The answers of a backtracking internal action, on the given trail; its bindings are undone in between.
 
     An error inside ends the answers and is reported: in a condition an action that cannot be done does not hold.
@@ -39,7 +50,7 @@ def answers_of(context: Any, trail: Trail, action: InternalAction, *arguments: T
         undo(trail, mark)
 
 
-def values_of(context: Any, action: InternalAction, *arguments: Term) -> Iterable[Term]:
+def values_of(context: Calling, action: InternalAction, *arguments: Term) -> Iterable[Term]:
     """What the first argument of a backtracking internal action is in each of its answers, as `answers_of` gives them.
 
     *arguments* are the others; the first one has no value yet.
@@ -56,7 +67,7 @@ def values_of(context: Any, action: InternalAction, *arguments: Term) -> Iterabl
     return values if budget is None else budget.counting_answers(values)
 
 
-def first_answer_of(context: Any, trail: Trail, action: InternalAction, *arguments: Term) -> bool:
+def first_answer_of(context: Calling, trail: Trail, action: InternalAction, *arguments: Term) -> bool:
     """The first answer of a backtracking internal action that is a step of its own: errors fail the step."""
     del trail
     for _ in action.function(context, *arguments):
@@ -64,7 +75,7 @@ def first_answer_of(context: Any, trail: Trail, action: InternalAction, *argumen
     return False
 
 
-def holds(context: Any, trail: Trail, action: InternalAction, *arguments: Term) -> bool:
+def holds(context: Calling, trail: Trail, action: InternalAction, *arguments: Term) -> bool:
     """Whether an internal action succeeds as a condition, on the given trail; an error is reported and counts as no."""
     outer, context.trail = context.trail, trail
     beliefs = context.agent.beliefs
@@ -103,19 +114,19 @@ def refuse(action: InternalAction, count: int) -> bool:
     raise Failure(error, (functor("error_msg", 1), String(wrong_arity(action, count))))
 
 
-def refuse_quietly(context: Any, action: InternalAction, count: int) -> bool:
+def refuse_quietly(context: Calling, action: InternalAction, count: int) -> bool:
     """A condition calls an internal action with a number of arguments that it does not take: it does not hold."""
     context.report(action.name, wrong_arity(action, count))
     return False
 
 
-def unknown(context: Any, name: str) -> bool:
+def unknown(context: Calling, name: str) -> bool:
     """A condition calls an internal action that does not exist: it does not hold."""
     context.report(name, "there is no such internal action")
     return False
 
 
-def cannot_wait(context: Any, action: InternalAction) -> bool:
+def cannot_wait(context: Calling, action: InternalAction) -> bool:
     """A condition calls an internal action that may suspend the intention: it does not hold."""
     context.report(action.name, "it takes time, or acts on the intention, and cannot be a condition")
     return False

@@ -4,7 +4,7 @@ Each branch is an intention of its own with a copy of the stack, so what it bind
 last (``|&|``) or first (``|||``) goes on with the rest of the plan.
 """
 
-from typing import Any
+from collections.abc import Sequence
 
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.state.circumstance import Circumstance
@@ -34,8 +34,8 @@ class Fork:
 
 
 def fork(
-    agent: Circumstance, operator: str, frame: Frame, firsts: tuple[Any, ...], next_step: NextStep
-) -> Any:
+    agent: Circumstance, operator: str, frame: Frame, firsts: Sequence[NextStep], next_step: NextStep
+) -> object:
     """Begin the branches; the intention that forks is replaced by theirs."""
     parent = agent.current
     assert parent is not None
@@ -77,7 +77,7 @@ def copied(frames: list[Frame]) -> list[Frame]:
     return copies
 
 
-def join_branch(agent: Circumstance, frame: Frame) -> Any:
+def join_branch(agent: Circumstance, frame: Frame) -> object:
     """The step behind the last one of a branch: it has come to its end."""
     intention = agent.current
     assert intention is not None

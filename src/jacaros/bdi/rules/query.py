@@ -20,7 +20,7 @@ from jacaros.bdi.rules.deconstruction import deconstruct, deconstruct_in
 from jacaros.bdi.rules.searching import exists, run, solve, solve_annotated, unify_rows
 from jacaros.bdi.state.belief_base import literal
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.rule import Answers, OpenFact
+from jacaros.bdi.state.rule import Answers, OpenFact, Rule
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.substitution import related, rename, resolve
 from jacaros.terms.unifier import Trail, undo, unify
@@ -194,7 +194,7 @@ def _anything(agent: Circumstance, pattern: Term, trail: Trail) -> Answers:
     """A variable as a query: every belief."""
     for symbol, table in list(agent.beliefs.items()):
         for entry, annotations in table.entries():
-            if entry.__class__ is not tuple and not isinstance(entry, OpenFact):
+            if isinstance(entry, Rule):
                 continue
             believed = entry.head() if isinstance(entry, OpenFact) else literal(symbol, entry, annotations)
             mark = len(trail)

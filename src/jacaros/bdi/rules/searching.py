@@ -4,13 +4,15 @@ from collections.abc import Iterator
 from operator import length_hint
 from typing import Any, NoReturn
 
+from jacaros.bdi.state.belief_base import Table
+from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.rule import Answers
 from jacaros.terms.substitution import resolve
 from jacaros.terms.unifier import Trail, each_annotation_match, undo, unify
 from jacaros.terms.values import Term, Var
 
 
-def run(question: Answers, limit: int, allowed: int | None = None) -> Iterator[Any]:
+def run(question: Answers, limit: int, allowed: int | None = None) -> Iterator[tuple[Term, ...]]:
     """Drive a search generator: a tuple it yields is an answer, a generator is to be run for it.
 
     The stack of generators is a list, so depth costs no Python recursion.
@@ -57,7 +59,7 @@ def run(question: Answers, limit: int, allowed: int | None = None) -> Iterator[A
             opened.pop().close()
 
 
-def deeper(agent: Any, trail: Trail, question: Answers) -> Iterator[Any]:
+def deeper(agent: Circumstance, trail: Trail, question: Answers) -> Iterator[tuple[Term, ...]]:
     """The rest of a search that is nested too deeply to go on by Python's stack."""
     return run(question, trail.room, agent.rule_depth)
 
@@ -71,7 +73,7 @@ def too_many_open(limit: int) -> NoReturn:
     raise RecursionError(f"more than {limit} rules and conditions are open at once (option rule_depth)")
 
 
-def exists(answers: Iterator[Any], trail: Trail) -> bool:
+def exists(answers: Iterator[object], trail: Trail) -> bool:
     """Whether there is an answer; bindings are taken back."""
     mark, room = len(trail), trail.room
     for _ in answers:
@@ -81,7 +83,9 @@ def exists(answers: Iterator[Any], trail: Trail) -> bool:
     return False
 
 
-def solve(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail, lasting: bool = True) -> Answers:
+def solve(
+    agent: Circumstance, table: Any, arguments: tuple[Term, ...], trail: Trail, lasting: bool = True
+) -> Answers:
     """Answers of a predicate in the order of its base: facts by unification, rules by their functions.
 
     *lasting* ones stay when beliefs change.
@@ -100,7 +104,12 @@ def solve(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail, las
 
 
 def solve_annotated(
-    agent: Any, table: Any, arguments: tuple[Term, ...], items: tuple[Term, ...], tail: Term, trail: Trail
+    agent: Circumstance,
+    table: Any,
+    arguments: tuple[Term, ...],
+    items: tuple[Term, ...],
+    tail: Term,
+    trail: Trail,
 ) -> Answers:
     """Answers of a predicate that is asked with annotations."""
     for entry, annotations in list(table.candidates(arguments)):
@@ -118,7 +127,7 @@ def solve_annotated(
         undo(trail, mark)
 
 
-def solve_held(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
+def solve_held(agent: Circumstance, table: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
     """Answers of a predicate as `solve` has them, each as a pair with the annotations that go with it."""
     for entry, annotations in table.candidates(arguments):
         mark = len(trail)
@@ -133,7 +142,7 @@ def solve_held(agent: Any, table: Any, arguments: tuple[Term, ...], trail: Trail
 
 
 def facts(
-    table: Any, arguments: tuple[Term, ...], trail: Trail, lasting: bool = False
+    table: Table, arguments: tuple[Term, ...], trail: Trail, lasting: bool = False
 ) -> Iterator[tuple[Term, ...]]:
     """The answers of a predicate that are facts, by unification; *lasting* ones stay when beliefs change."""
     rows = table.rows_like(arguments)
@@ -159,7 +168,7 @@ def release(variables: list[Var]) -> None:
         variable.ref = None
 
 
-def still_held(table: Any, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term, ...]]:
+def still_held(table: Table, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term, ...]]:
     """The rows of a loop over beliefs: one is fixed ahead, those that are deleted before their turn are left out."""
     source = iter(rows)
     ahead = next(source, None)

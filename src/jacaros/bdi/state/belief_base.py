@@ -1,13 +1,13 @@
 """Beliefs and rules, indexed by functor and, where programs ask for it, by arguments."""
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from jacaros.bdi.state.budget import SearchBudget
 from jacaros.bdi.state.engine import Engine
 from jacaros.bdi.state.mixed_beliefs import FEW, Late, Mixed, discard, key_of
-from jacaros.bdi.state.rule import OpenFact
+from jacaros.bdi.state.rule import Answers, Entry, OpenFact
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms import values
 from jacaros.terms.order import annotation_set
@@ -28,9 +28,9 @@ from jacaros.terms.values import (
 )
 
 Row = tuple[Term, ...]
-Item = tuple[Any, tuple[Term, ...]]
+Item = tuple[Entry, tuple[Term, ...]]
 """An entry of a table with its annotations."""
-Index = dict[Any, Any]
+Index = dict[Term, Any]
 """By key the row, or a dictionary of the rows, newest last."""
 MANY_NAMES = 1_000
 """Names of which an agent keeps what it found out about them, although it has no such belief or plan."""
@@ -95,11 +95,12 @@ class Table:
         """How much may be searched; None for any amount."""
         return None if self._base is None else self._base.budget
 
-    def search(self, pattern: int, agent: Any, trail: Trail) -> Any:
+    def search(self, pattern: int, agent: Any, trail: Trail) -> Callable[..., Answers]:
         """The generator function for a search that begins here; *pattern* tells which arguments are given."""
         trail.room = agent.rule_depth
         assert self.searches is not None
-        return self.searches[pattern]
+        found: Callable[..., Answers] = self.searches[pattern]
+        return found
 
     def exact(self, row: Row) -> Iterable[tuple[()]]:
         """One empty answer when the row is held."""
@@ -110,7 +111,7 @@ class Table:
         held = self.rows.get(row)
         return _NOTHING if held is None else ((row, held),)
 
-    def find(self, positions: tuple[int, ...], key: Any) -> Iterable[Row]:
+    def find(self, positions: tuple[int, ...], key: Term) -> Iterable[Row]:
         """The rows whose arguments at *positions* are *key* (one value, or a tuple), newest first."""
         index = self._indexes.get(positions)
         if index is None:
@@ -120,7 +121,7 @@ class Table:
             return _NONE
         return (bucket,) if bucket.__class__ is tuple else reversed(bucket)
 
-    def find_items(self, positions: tuple[int, ...], key: Any) -> Iterable[Item]:
+    def find_items(self, positions: tuple[int, ...], key: Term) -> Iterable[Item]:
         """What `find` finds, each row with its annotations."""
         held = self.rows.__getitem__
         return zip(self.find(positions, key), map(held, self.find(positions, key)), strict=True)
@@ -147,12 +148,12 @@ class Table:
         """Whether nothing but a change of this table changes its answers.  False may be wrong."""
         return self.others + self.late.others == self.unwritten
 
-    def get(self, row: Any) -> tuple[Term, ...] | None:
+    def get(self, row: Entry) -> tuple[Term, ...] | None:
         """The annotations of a row, None when it is not held."""
         held = self.rows.get(row)
         return self.late.get(row) if held is None and self.late else held
 
-    def set(self, row: Any, annotations: tuple[Term, ...]) -> bool:
+    def set(self, row: Entry, annotations: tuple[Term, ...]) -> bool:
         """Replace the annotations of a row that is held; False when the base refuses."""
         (self.rows if row in self.rows else self.late)[row] = annotations
         return True
@@ -185,9 +186,9 @@ class Table:
             self._mixed.add(row)
         return annotations
 
-    def _note(self, entry: Any, change: int) -> None:
+    def _note(self, entry: Entry, change: int) -> None:
         """A rule, a belief with variables, or an entry of `late` came (*change* is 1) or went (-1)."""
-        if entry.__class__ is tuple:
+        if isinstance(entry, tuple):
             if len(self.late) - self.late.others > (change > 0):
                 return  # searches take the general way as long as there are facts in `late`
         elif entry.node is None:
@@ -240,7 +241,7 @@ class Table:
             self.rows, self.late = dict(self.rows), Late(self.late) if self.late else _NO_LATE
             self._indexes, self._mixed = {}, None
 
-    def around(self) -> tuple[list[Any], list[Any]] | None:
+    def around(self) -> tuple[list[Entry], list[Entry]] | None:
         """The rules and beliefs with variables that answer before all facts, and those behind all facts.
 
         None when they are mixed, or when there is a belief with variables that no function can be written for.
@@ -250,7 +251,7 @@ class Table:
         sides = self._sides()
         return None if sides is None else (sides[0], [*sides[1], *self.late])
 
-    def _sides(self) -> tuple[list[Any], list[Any]] | None:
+    def _sides(self) -> tuple[list[Entry], list[Entry]] | None:
         """What `around` tells, of `rows` alone."""
         before = list(itertools.islice(reversed(self.rows), self.others))
         while before and before[-1].__class__ is tuple:
@@ -261,7 +262,7 @@ class Table:
         after.reverse()
         return ([], before) if self.others == len(self.rows) else (before, after)
 
-    def entries(self) -> list[tuple[Any, tuple[Term, ...]]]:
+    def entries(self) -> list[Item]:
         """All entries with their annotations, in the order in which they answer."""
         found = list(self.rows.items())
         found.reverse()
@@ -286,7 +287,7 @@ class Table:
         if not self.others:
             return self._rows_for(arguments)
         facts = (row for row in self._rows_with(places, keys, len(arguments)) if row.__class__ is tuple)
-        entries: Iterator[Any]
+        entries: Iterator[Entry]
         sides = self._sides() if self._mixed is None and self.others < FEW else None
         if sides is not None:
             entries = itertools.chain(sides[0], facts, sides[1])
@@ -337,7 +338,7 @@ def _known(arguments: Row) -> tuple[list[int], list[Term]]:
     return places, keys
 
 
-def _put(index: Index, key: Any, row: Row) -> None:
+def _put(index: Index, key: Term, row: Row) -> None:
     """Put a row into an index.  Most keys have one row: it is its own bucket until there is a second."""
     bucket = index.get(key)
     if bucket is None:
@@ -390,7 +391,7 @@ class BeliefTables(dict[Functor, Table]):
         """All beliefs with their annotations, predicate by predicate."""
         for functor, table in list(self.items()):
             for entry, annotations in table.entries():
-                if entry.__class__ is tuple:
+                if isinstance(entry, tuple):
                     yield literal(functor, entry, annotations)
                 elif isinstance(entry, OpenFact):
                     yield Annotated(entry.head(), annotations)
@@ -437,7 +438,7 @@ def without_sources(term: Term) -> Term:
     return Annotated(term.term, kept, term.tail) if kept or term.tail is not None else term.term
 
 
-def take_away(table: Table, entry: Any, held: tuple[Term, ...], annotations: tuple[Term, ...]) -> bool:
+def take_away(table: Table, entry: Entry, held: tuple[Term, ...], annotations: tuple[Term, ...]) -> bool:
     """Take annotations off a belief; it goes when no source is left.  False when the base refuses."""
     rest = tuple(a for a in held if a not in annotations)
     return table.set(entry, rest) if has_source(rest) else table.remove(entry)

@@ -110,3 +110,7 @@ class OpenFact:
     def head(self) -> Term:
         """A copy of the literal."""
         return rename(self.literal)
+
+
+Entry = tuple[Term, ...] | Rule | OpenFact
+"""What a table of beliefs holds: the arguments of a fact, or what answers like one."""
