@@ -64,33 +64,35 @@ def step_failure(frame: Frame, fault: Exception | None = None) -> FailureReason:
     return FailureReason(terms, frame)
 
 
+_ERRORS = (
+    (WrongArguments, "wrong_arguments"),
+    (ArithmeticFault, "arithmetic_error"),
+    (SearchLimit, "search_limit"),
+    (RecursionError, "too_deep"),
+    (CyclicTerm, "cyclic_term"),
+)
+"""Faults that say themselves what is wrong, and their errors."""
+
+
 def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
-    node = info.node
     if isinstance(fault, Failure):
         return (*fault.annotations, *_message_unless_given(fault.annotations, _default_message(fault)))
     if isinstance(fault, Fail):
-        return error_terms(*_plain_failure(node))
-    if isinstance(fault, WrongArguments):
-        return error_terms("wrong_arguments", str(fault))
+        return error_terms(*_plain_failure(info.node))
+    for kind, error in _ERRORS:
+        if isinstance(fault, kind):
+            return error_terms(error, str(fault))
     if isinstance(fault, ActionError):
         given = fault.annotations
         known = any(t.__class__ is tuple and t[0] is ERROR for t in given)
-        error = () if known else ((ERROR, atom("internal_action")),)
-        return (*error, *given, *_message_unless_given(given, str(fault)))
-    if isinstance(fault, ArithmeticFault):
-        return error_terms("arithmetic_error", str(fault))
-    if isinstance(fault, SearchLimit):
-        return error_terms("search_limit", str(fault))
-    if isinstance(fault, RecursionError):
-        return error_terms("too_deep", str(fault))
-    if isinstance(fault, CyclicTerm):
-        return error_terms("cyclic_term", str(fault))
+        error_term = () if known else ((ERROR, atom("internal_action")),)
+        return (*error_term, *given, *_message_unless_given(given, str(fault)))
     if isinstance(fault, MemoryError):
         return error_terms("no_memory", "there is not enough memory")
     if isinstance(fault, InternalError):
         raise fault
-    kind = "internal_action" if isinstance(node, nodes.Constraint) else "unknown"
-    return error_terms(kind, f"{type(fault).__name__}: {fault}")
+    error = "internal_action" if isinstance(info.node, nodes.Constraint) else "unknown"
+    return error_terms(error, f"{type(fault).__name__}: {fault}")
 
 
 _MESSAGES = {
