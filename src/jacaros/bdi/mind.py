@@ -21,6 +21,7 @@ from jacaros.bdi.rules import (
     plan_terms,
     query,
     waits,
+    watched,
 )
 from jacaros.bdi.rules.answers import answer_by_plan
 from jacaros.bdi.rules.context import Context
@@ -319,7 +320,7 @@ class Mind(Circumstance):
     ) -> Posted:
         """A goal that is posted with annotations."""
         annotations = own_annotations(items, tail)
-        waits.watch(self, goal, annotations, separate)
+        watched.watch_deadline(self, goal, annotations, separate)
         return Posted(goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
@@ -337,7 +338,7 @@ class Mind(Circumstance):
             return goal
         annotations = own_annotations(annotations_of(term))
         if kind == "!":
-            waits.watch(self, goal, annotations, separate)
+            watched.watch_deadline(self, goal, annotations, separate)
         return Posted(goal, annotations)
 
     def test_goal_from(self, term: Term) -> Goal | Posted:

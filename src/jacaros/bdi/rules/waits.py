@@ -1,23 +1,17 @@
-"""What follows when a wait ends, or its intention is dropped, suspended or resumed: one function each.  Goals that have
-to be achieved in time (``!g[hard_deadline(Ms)]``) are watched here too.
-"""
+"""What follows when a wait ends, or its intention is dropped, suspended or resumed: one function each."""
 
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from jacaros.bdi.explaining.failure_reason import nowhere
-from jacaros.bdi.rules import failure, goals, meta_events
+from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.clr_int import pop_finished
 from jacaros.bdi.rules.failure import error_terms, step_failure
 from jacaros.bdi.rules.goal_failure import fail_intention
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.condition_waits import ConditionObserver, ConditionWait
 from jacaros.bdi.state.event import EVENT_GOAL, Event, event_literal
-from jacaros.bdi.state.intention import Intention
-from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import Failure
-from jacaros.bdi.state.triggers import Goal
 from jacaros.bdi.state.waiting import (
     OWN_SUSPENSION,
     ActWait,
@@ -34,7 +28,7 @@ from jacaros.bdi.state.waiting import (
 from jacaros.errors import InternalError
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
-from jacaros.terms.values import Term, atom, bare, functor
+from jacaros.terms.values import Term, atom, functor
 
 ERROR = functor("error", 1)
 
@@ -248,39 +242,3 @@ def _holds(agent: Circumstance, wait: ConditionWait) -> bool:
         return False
     del agent.trail[:]
     return True
-
-
-HARD_DEADLINE = functor("hard_deadline", 1)
-
-
-def watch(agent: Circumstance, goal: Goal, annotations: tuple[Term, ...], separate: bool) -> None:
-    """Fail a goal that is still pursued when its deadline has come; goals without one are let be."""
-    for annotation in annotations:
-        inner = bare(annotation)
-        if inner.__class__ is tuple and inner[0] is HARD_DEADLINE and inner[1].__class__ is float:
-            _set(agent, rename(literal_of(goal, ())), inner[1] / 1000.0, None if separate else agent.current)
-
-
-def _set(agent: Circumstance, goal: Term, delay: float, intention: Intention | None) -> None:
-    height = len(intention.frames) - 1 if intention is not None else 0
-    set_alarm(agent, delay, _pass, goal, intention, height)
-
-
-def _pass(agent: Circumstance, goal: Term, intention: Intention | None, height: int) -> None:
-    agent.do_soon(_fail, goal, intention, height)
-    agent.architecture.ready()
-
-
-def _fail(agent: Circumstance, goal: Term, intention: Intention | None, height: int) -> None:
-    if intention is None or _pursues(agent, intention, goal, height):
-        goals.fail_goal(
-            agent, goal, nowhere(*error_terms("deadline_reached", "the goal was not achieved in time"))
-        )
-
-
-def _pursues(agent: Circumstance, intention: Intention, goal: Term, height: int) -> bool:
-    """Whether an intention still has the goal where it was posted, or above."""
-    if intention.dropped:
-        return False
-    index = goals.frame_of(agent, intention, goal, height)
-    return index is not None or intention in goals.intentions_for(agent, goal)
