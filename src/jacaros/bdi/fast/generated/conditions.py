@@ -18,12 +18,17 @@ from typing import Any, cast
 from jacaros.asl import nodes
 from jacaros.asl.walk import names_in, operands
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.fast.generated.answers import loop_binding, loop_over_answers, undoing
 from jacaros.bdi.fast.generated.building import as_name, build, is_number, is_static, tuple_of
 from jacaros.bdi.fast.generated.function import TOP, FunctionBuilder
-from jacaros.bdi.fast.generated.internal_actions import internal_action
-from jacaros.bdi.fast.generated.matching import MAX_DEPTH, Then, match
-from jacaros.bdi.fast.generated.queries import TRUTHS, literal, query
+from jacaros.bdi.fast.generated.matching import (
+    MAX_DEPTH,
+    Then,
+    loop_binding,
+    loop_over_answers,
+    match,
+    undoing,
+)
+from jacaros.bdi.fast.generated.queries import TRUTHS, internal_action, literal, query
 from jacaros.bdi.fast.generated.relations import comparison, relation
 from jacaros.terms.operators import BINARY
 

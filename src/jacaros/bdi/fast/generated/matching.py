@@ -1,4 +1,4 @@
-"""Code that matches a pattern with a value: heads of plans and rules, rows of beliefs.
+"""Code that matches a pattern with a value (heads of plans and rules, rows of beliefs) and loops over answers.
 
 Everything is written in continuation style: ``match(fn, pattern, value, then)`` writes the test, and inside it
 whatever *then* writes.  A pattern that meets a structure is taken apart in place; whatever is rarer (an unbound
@@ -198,3 +198,40 @@ def settle_fresh(fn: FunctionBuilder, names: list[str]) -> None:
             settled = fn.local("v")
             fn.line(f"{settled} = deref({fn.values[name]})")
             fn.values[name] = settled
+
+
+# --- loops over answers ------------------------------------------------------------------------------------
+
+
+def loop_over_answers(fn: FunctionBuilder, generator: str, targets: list[str], then: Then) -> None:
+    """A loop over the answers of a generator expression, whose values go to *targets*."""
+    if fn.trampoline:
+        source, answer = fn.local("g"), fn.local("r")
+        fn.line(f"{source} = {generator}")
+        with fn.writer.block(f"while ({answer} := (yield {source})) is not None:"):
+            if targets:
+                fn.line(f"{tuple_of(targets)} = {answer}")
+            then()
+    else:
+        with fn.writer.block(f"for {tuple_of(targets) if targets else '_'} in {generator}:"):
+            then()
+
+
+def loop_binding(fn: FunctionBuilder, generator: str, names: list[str], then: Then) -> None:
+    """A loop over answers that bind variables in place."""
+
+    def settled() -> None:
+        settle_fresh(fn, names)
+        then()
+
+    loop_over_answers(fn, generator if fn.trampoline else f"run({generator}, agent.rule_depth)", [], settled)
+
+
+def undoing(fn: FunctionBuilder, test: str, names: list[str], then: Then) -> None:
+    """A test that may bind variables; the bindings are taken back when the search goes on."""
+    mark = fn.local("n")
+    fn.line(f"{mark} = len(t)")
+    with fn.writer.block(f"if {test}:"):
+        settle_fresh(fn, names)
+        then()
+    fn.line(f"if len(t) > {mark}: undo(t, {mark})")

@@ -2,10 +2,9 @@
 
 from jacaros.asl import nodes
 from jacaros.asl.walk import names_in
-from jacaros.bdi.fast.generated.answers import undoing
 from jacaros.bdi.fast.generated.building import as_name, build, is_number, tuple_of
 from jacaros.bdi.fast.generated.function import FunctionBuilder
-from jacaros.bdi.fast.generated.matching import Then, match_all
+from jacaros.bdi.fast.generated.matching import Then, match_all, undoing
 from jacaros.terms.operators import BINARY
 
 
