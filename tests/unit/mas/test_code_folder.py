@@ -260,6 +260,12 @@ def test_nothing_is_kept_when_it_is_turned_off(
     assert not (program.parent / "cache").exists()
 
 
+def test_nothing_is_kept_where_files_have_no_owners(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "geteuid")
+    assert run_project(program).lines == ["[robot] 2"]
+    assert not (program.parent / "cache").exists()
+
+
 def test_it_is_in_the_folder_for_caches_of_the_user(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("JACAROS_CACHE")
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
