@@ -19,6 +19,7 @@ from jacaros.bdi.rules.interpreter import Interpreter
 from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import CodeCache, Every, Select
+from jacaros.bdi.state.intention import NextStep
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import Answers, Rule
@@ -87,7 +88,7 @@ class Compiler(Interpreter):
         except TOO_LARGE:
             super().give_steps(plan)
 
-    def step_at(self, plan: Plan, position: str) -> Any:
+    def step_at(self, plan: Plan, position: str) -> NextStep:
         """The step at a position of a plan; the plan is compiled if that has not been done."""
         if position[0] == "i":
             return super().step_at(plan, position)
@@ -99,7 +100,8 @@ class Compiler(Interpreter):
                 symbol = plan.trigger_functor() or functor("plan", 0)
                 self.select(trigger_of_kind(head.operator, head.kind, symbol), [plan], plan.scope)
         first: Any = plan.first
-        return first.__globals__[f"{first.__name__.rpartition('_')[0]}_{position[1:]}"]
+        step: NextStep = first.__globals__[f"{first.__name__.rpartition('_')[0]}_{position[1:]}"]
+        return step
 
     def begin(self, agent: Circumstance) -> None:
         """An agent is about to begin: compile what is urgent, and tell what is too large.  Done for the first one."""

@@ -12,6 +12,7 @@ from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Every, Select
+from jacaros.bdi.state.intention import NextStep
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Trigger
@@ -57,7 +58,7 @@ class Interpreter:
         """Give a plan that stands for a body made at run time its steps."""
         interpreted(plan)
 
-    def step_at(self, plan: Plan, position: str) -> Any:
+    def step_at(self, plan: Plan, position: str) -> NextStep:
         """The step at a position (`jacaros.bdi.state.plan.position_of`) of a plan.
 
         Raises:

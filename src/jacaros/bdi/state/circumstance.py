@@ -208,7 +208,7 @@ class Circumstance:
         self.atomic_over = False
         self.inbox: deque[SpeechAct] = deque()
         self.percepts: deque[list[Percept]] = deque()
-        self.tasks: deque[tuple[Callable[..., None], tuple[Any, ...]]] = deque()
+        self.tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = deque()
         self.suspended_events: list[Event] = []
         self.alarms: dict[int, Alarm] = {}
         self.alarms_made = 0
@@ -233,7 +233,7 @@ class Circumstance:
         self.evaluators: Mapping[str, Callable[..., Term]] = {}
         self.context: Any = None
         self.cycles = 0
-        self.blamed: set[Any] = set()
+        self.blamed: set[object] = set()
         self.goal_depth = options.goal_depth
         self.rule_depth = options.rule_depth
         self.running = False
@@ -290,7 +290,7 @@ class Circumstance:
         """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
         return self.subplans or self.selects[kind] is not None
 
-    def do_soon(self, function: Callable[..., None], *arguments: Any) -> None:
+    def do_soon(self, function: Callable[..., None], *arguments: object) -> None:
         """Call a function with the agent and the arguments at the beginning of the next cycle."""
         self.tasks.append((function, arguments))
         self.called = True

@@ -4,16 +4,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.state.intention import Frame
+from jacaros.bdi.state.intention import Frame, NextStep
+from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Term
 
-Select = Callable[[Any, Goal, Any], Frame | None]
+Select = Callable[[Any, Goal, EventAnnotations], Frame | None]
 """``select(agent, goal, annotations)``: the frame of the first applicable plan."""
-Every = Callable[[Any, Goal, Any], Iterator[Frame]]
+Every = Callable[[Any, Goal, EventAnnotations], Iterator[Frame]]
 """The same for the frames of all applicable plans."""
 
 
@@ -63,7 +64,7 @@ class Engine(Protocol):
     def give_steps(self, plan: Plan) -> None:
         """Give a plan that stands for a body made at run time its steps."""
 
-    def step_at(self, plan: Plan, position: str) -> Any:
+    def step_at(self, plan: Plan, position: str) -> NextStep:
         """The step at a position (`jacaros.bdi.state.plan.position_of`) of a plan, which is compiled if necessary."""
 
     def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
