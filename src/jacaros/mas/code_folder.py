@@ -29,8 +29,11 @@ _DIGEST = 32
 
 
 def code_folder() -> "CodeFolder | None":
-    """Return the user's folder, ``plans`` in `kept_files`; None if nothing is to be kept, or nothing is compiled."""
-    root = None if is_plain() else kept_files()
+    """Return the user's folder, ``plans`` in `kept_files`; None if nothing is to be kept, or nothing is compiled.
+
+    A system whose files have no owners keeps nothing: nothing there can be trusted.
+    """
+    root = None if is_plain() or not hasattr(os, "geteuid") else kept_files()
     return None if root is None else CodeFolder(root / "plans")
 
 

@@ -98,7 +98,7 @@ class Units:
             return syntax.restored(entry)
         made = write()
         code = made.unit.code()
-        with suppress(NotStorable, RecursionError, ValueError):
+        with suppress(NotStorable, LookupError, RecursionError, ValueError):
             self._cache.put(key, syntax.entry(made, code))
         return _installed(made.name, made.unit.globals, code, made.bodies, made.conditions)
 
@@ -156,12 +156,12 @@ class _Syntax:
         self._functions: dict[int, str] = {}
         self.text = repr(self._written_out(roots)) + repr(self._declared())
 
-    def _written_out(self, roots: Sequence[nodes.Node]) -> list[Any]:
+    def _written_out(self, roots: Sequence[nodes.Node]) -> list[object]:
         """Every node with its line, and every part of one that is not a node, in the order of the text.
 
         The class of a node says how many parts follow, so two trees that are written out alike are alike.
         """
-        out: list[Any] = []
+        out: list[object] = []
         file = None
         stack: list[Any] = [tuple(roots)]
         while stack:
@@ -186,12 +186,12 @@ class _Syntax:
                 stack += part.parts()[::-1]
         return out
 
-    def _declared(self) -> list[Any]:
+    def _declared(self) -> list[object]:
         """What is declared of the internal actions that are called."""
         names = sorted({node.name for node in self._nodes if isinstance(node, nodes.InternalAction)})
         return [(name, *self._declaration(name)) for name in names]
 
-    def _declaration(self, name: str) -> tuple[Any, ...]:
+    def _declaration(self, name: str) -> tuple[object, ...]:
         action = self._actions.get(name)
         if action is None:
             return ()
@@ -208,7 +208,7 @@ class _Syntax:
         """What is kept of a unit.
 
         Raises:
-            NotStorable, RecursionError, ValueError: it holds a value that cannot be kept.
+            NotStorable, LookupError, RecursionError, ValueError: it holds something that cannot be kept.
         """
         places = {id(node): place for place, node in enumerate(self._nodes)}
         number_of = self._plans.index
@@ -251,7 +251,7 @@ class _Syntax:
             [(self._plans[number], achieved) for number, achieved in conditions],
         )
 
-    def _recipe(self, value: Any) -> Recipe:
+    def _recipe(self, value: Term) -> Recipe:
         """How a constant is made."""
         kind = value.__class__
         if kind is Trigger:
@@ -264,7 +264,7 @@ class _Syntax:
             return "function", self._functions[id(value)]
         return _recipe_of_term(value)
 
-    def _value(self, recipe: Recipe) -> Any:
+    def _value(self, recipe: Recipe) -> Term:
         """The constant of a recipe."""
         kind, held = recipe
         if kind == "trigger":
@@ -276,9 +276,11 @@ class _Syntax:
         if kind == "function":
             return self._actions[held].function
         if kind == "call":
-            call: Any = self._nodes[held]
-            ask: Any = self._actions[call.name].direct
-            return ask(tuple(map(written, call.arguments)))
+            call = self._nodes[held]
+            assert isinstance(call, nodes.InternalAction)
+            direct = self._actions[call.name].direct
+            assert direct is not None
+            return direct(tuple(map(written, call.arguments)))
         return _term(recipe)
 
 
@@ -314,7 +316,7 @@ def _term(recipe: Recipe) -> Term:
     return held
 
 
-def _parts(symbol: Functor) -> tuple[Any, ...]:
+def _parts(symbol: Functor) -> tuple[str, int, bool, str | None, int]:
     return symbol.name, symbol.arity, symbol.negated, symbol.namespace, symbol.kind
 
 
