@@ -46,6 +46,9 @@ _NOTHING: tuple[Item, ...] = ()
 class Table:
     """All beliefs and rules of one functor, newest first.
 
+    Facts are found by the arguments that a question gives: an index by their places is made at the first such question, and
+    follows every change from then on.  The rules and what is faster look beliefs up by the same indexes.
+
     Attributes:
         added: the event kind of beliefs that come.
         deleted: that of beliefs that go.
