@@ -217,6 +217,12 @@ def test_a_plan_goes_when_its_last_source_takes_it_back() -> None:
     ) == ["1", "no_relevant"]
 
 
+def test_a_plan_that_is_not_there_can_be_removed() -> None:
+    assert printed(
+        "!g. @k +!a. +!g <- .remove_plan(none); .remove_plan([k, none]); .relevant_plans({+!a}, L); .print(L)."
+    ) == ["[]"]
+
+
 @pytest.mark.whole_stack
 def test_plans_of_any_width_are_compiled() -> None:
     context = " & ".join(f"X > {i}" for i in range(150))

@@ -35,12 +35,10 @@ def add_plan(ctx: Context, plan: Term, source: Term = None, where: Term = None) 
 
 
 @internal_action(".remove_plan", arity=(1, 2), changes_plans=True)
-def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> bool:
-    """``.remove_plan(Label)``: also a list of labels, or a plan term; fails when there is none."""
-    if is_list(wanted):
-        removed = [ctx.agent.remove_plan(item, _source(source)) for item in list_items(wanted)]
-        return all(removed)
-    return bool(ctx.agent.remove_plan(wanted, _source(source)))
+def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> None:
+    """``.remove_plan(Label [,Source])``: also a list of labels, or a plan term; there need not be such a plan."""
+    for item in list_items(wanted) if is_list(wanted) else (wanted,):
+        ctx.agent.remove_plan(item, _source(source))
 
 
 @internal_action(".plan_label", arity=2, backtracks=True)

@@ -113,11 +113,8 @@ def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) 
     look_at_plans(agent)
 
 
-def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
-    """Take a source off the plan of that label, or equal to that plan term; without source it goes.
-
-    False when there is no such plan.
-    """
+def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> None:
+    """Take a source off the plan of that label, or equal to that plan term, if there is one; without source it goes."""
     term = resolve(wanted)
     if term.__class__ is tuple and term[0] is PLAN:
         node = Reflection(shared=False).plan(term)
@@ -125,14 +122,13 @@ def remove_plan(agent: Circumstance, wanted: Term, source: Term = SELF) -> bool:
     else:
         found = agent.library.by_label(term)
     if found is None:
-        return False
+        return
     left = tuple(held for held in agent.library.sources(found) if held != source)
     if left:
         agent.library.set_sources(found, left)
     else:
         agent.library.remove(found)
         look_at_plans(agent)
-    return True
 
 
 def change_plans(agent: Circumstance, operator: str, term: Term) -> bool:
