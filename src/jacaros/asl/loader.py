@@ -13,7 +13,7 @@ from jacaros.asl.directives.processor import DirectiveProcessor, Read
 from jacaros.asl.labels import check_labels
 from jacaros.asl.namespaces import Namespaces
 from jacaros.asl.plan_parser import PlanParser
-from jacaros.asl.source import SourceFile
+from jacaros.asl.source import TEXT, SourceFile
 from jacaros.terms.functions import FunctionNames
 
 Result = TypeVar("Result")
@@ -91,7 +91,7 @@ def include_program(
     return section.program()
 
 
-def parse_term(text: str, name: str = "<string>", functions: Mapping[str, int] | None = None) -> nodes.Term:
+def parse_term(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Term:
     """The term in *text*; a final '.' is allowed.
 
     *functions* are the registered arithmetic functions with their numbers of arguments.  Unnamed variables
@@ -103,16 +103,12 @@ def parse_term(text: str, name: str = "<string>", functions: Mapping[str, int] |
     return _parse(text, name, functions, PlanParser.expression)
 
 
-def parse_formula(
-    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
-) -> nodes.Term:
+def parse_formula(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Term:
     """The condition in *text*; as `parse_term`."""
     return _parse(text, name, functions, PlanParser.condition)
 
 
-def parse_literal(
-    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
-) -> nodes.Literal:
+def parse_literal(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Literal:
     """The literal in *text*; as `parse_term`."""
 
     def literal(parser: PlanParser) -> nodes.Literal:
@@ -125,14 +121,12 @@ def parse_literal(
     return _parse(text, name, functions, literal)
 
 
-def parse_trigger(
-    text: str, name: str = "<string>", functions: Mapping[str, int] | None = None
-) -> nodes.Trigger:
+def parse_trigger(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Trigger:
     """The trigger in *text* (``+!g(X)``); as `parse_term`."""
     return _parse(text, name, functions, PlanParser.trigger)
 
 
-def parse_plan(text: str, name: str = "<string>", functions: Mapping[str, int] | None = None) -> nodes.Plan:
+def parse_plan(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Plan:
     """The one plan in *text*, with or without its final '.' and with or without braces around it.
 
     Raises:
@@ -153,7 +147,7 @@ def parse_plan(text: str, name: str = "<string>", functions: Mapping[str, int] |
 
 def parse_plans(
     text: str,
-    name: str = "<string>",
+    name: str = TEXT,
     functions: Mapping[str, int] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Plan, ...]:
@@ -173,7 +167,7 @@ def parse_plans(
     return tuple(section.plans)
 
 
-def parse_literals(text: str, name: str = "<string>") -> tuple[nodes.Literal, ...]:
+def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
     """The literals in *text*, with ',' between them, as in the options of project files.
 
     Raises:

@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Final, NamedTuple
+
+TEXT: Final = "<string>"
+"""The name of a text that is in no file."""
 
 
 @dataclass(frozen=True)
 class SourceFile:
-    """The text of one file; ``name`` is what diagnostics show (a path, or a made-up name)."""
+    """The text of one file; ``name`` is what diagnostics show (a path, or `TEXT`)."""
 
     name: str
     text: str = field(repr=False)

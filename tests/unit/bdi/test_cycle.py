@@ -217,6 +217,11 @@ def test_a_plan_goes_when_its_last_source_takes_it_back() -> None:
     ) == ["1", "no_relevant"]
 
 
+def test_the_label_of_a_plan_that_is_in_no_file_names_none() -> None:
+    program = '!g. +!g <- .add_plan("@k +!a."); .relevant_plans({+!a}, _, L); .print(L).'
+    assert printed(program) == ["[k[source(self)]]"]
+
+
 def test_a_plan_that_is_not_there_can_be_removed() -> None:
     assert printed(
         "!g. @k +!a. +!g <- .remove_plan(none); .remove_plan([k, none]); .relevant_plans({+!a}, L); .print(L)."

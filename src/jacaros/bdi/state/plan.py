@@ -6,6 +6,7 @@ from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import lower_value
+from jacaros.asl.source import TEXT
 from jacaros.asl.walk import names_in, nodes_in, occurrences
 from jacaros.bdi.state.intention import FIRST_SLOT
 from jacaros.bdi.state.triggers import Trigger
@@ -136,9 +137,11 @@ class Plan:
         return span.file.name if span is not None else "<run time>"
 
     def annotated_label(self, sources: Iterable[Term]) -> Term:
-        """The label as programs see it: its own annotations, a ``source`` for each source, and the ``url`` of the file."""
+        """The label as programs see it: its own annotations, a ``source`` for each source, and the ``url`` of the file, if
+        there is one."""
         span = self.node.span
-        place = () if span is None else ((URL, String(f"file:{span.file.name}")),)
+        written = span is not None and span.file.name != TEXT
+        place = ((URL, String(f"file:{self.file}")),) if written else ()
         told_by = tuple((SOURCE, source) for source in sources)
         return Annotated(self.label, annotation_set((*self.annotations, *told_by, *place)))
 
