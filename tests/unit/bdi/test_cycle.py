@@ -162,6 +162,29 @@ def test_goal_state_events_keep_their_order_and_tell_the_reason() -> None:
     ]
 
 
+def test_goal_state_events_tell_what_suspends_and_resumes_a_goal_that_waits() -> None:
+    assert printed(
+        """
+        !g.
+        +!g <- !!h; .suspend(h); .wait(5); .resume(h); .wait(5); .suspend(h); .resume(h); .wait(20); .print(end).
+        +!h <- .wait(20); .suspend.
+        ^!h[state(S)[reason(R)]] <- .print(S, " ", R).
+        """
+    ) == [
+        "pending ",
+        "suspended suspend_ia",
+        "resumed resume_ia",
+        "executing ",
+        "waiting wait(5)[time(20)]",
+        "suspended suspend_ia",
+        "resumed resume_ia",
+        "waiting wait(5)[time(20)]",
+        "executing ",
+        "suspended suspend_ia",
+        "end",
+    ]
+
+
 def test_goals_of_a_dropped_intention_are_no_desires() -> None:
     assert printed(
         """

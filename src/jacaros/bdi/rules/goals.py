@@ -20,9 +20,12 @@ from jacaros.bdi.state.event import (
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.state.literals import literal_of, own_annotations
 from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.waiting import HeldEnd
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
-from jacaros.terms.values import Term
+from jacaros.terms.values import Term, atom
+
+_BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
 
 
 def goal_literals(intention: Intention) -> list[Term]:
@@ -210,7 +213,9 @@ def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
         if event in agent.events:
             agent.events.remove(event)
             agent.suspended_events.append(event)
-            _event_state(agent, event, "suspended")
+            meta_events.goal_state(
+                agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "suspended", _BY_SUSPEND
+            )
     for intention in intentions_for(agent, goal):
         suspend_intention(agent, intention, reason)
 
@@ -223,7 +228,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
     agent.called = True
     if agent.meta:
         for frame in intention.frames:
-            meta_events.frame_state(agent, intention, frame, "suspended")
+            meta_events.frame_state(agent, intention, frame, "suspended", _BY_SUSPEND)
     event = pending_event(agent, intention)
     if event is not None and event in agent.events:
         agent.events.remove(event)
@@ -238,7 +243,7 @@ def resume_goal(agent: Circumstance, goal: Term) -> None:
         if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
             agent.suspended_events.remove(event)
             agent.queue(event)
-            _event_state(agent, event, "resumed")
+            meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "resumed", _BY_RESUME)
             agent.architecture.ready()
     for intention in intentions_for(agent, goal):
         resume_intention(agent, intention)
@@ -251,7 +256,7 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     intention.suspended = None
     if agent.meta:
         for frame in intention.frames:
-            meta_events.frame_state(agent, intention, frame, "resumed")
+            meta_events.frame_state(agent, intention, frame, "resumed", _BY_RESUME)
     held = next((e for e in agent.suspended_events if e[EVENT_INTENTION] is intention), None)
     if held is not None:
         agent.suspended_events.remove(held)
@@ -261,7 +266,10 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
         intention.parked = False
         agent.make_ready(intention)
     elif intention.waiting is not None:
-        waits.resume(agent, intention.waiting)
+        waiting = intention.waiting
+        waits.resume(agent, waiting)
+        if agent.meta and not waiting.ended and not isinstance(waiting, HeldEnd):
+            meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)
 
 
 # --- ending goals from outside -----------------------------------------------------------------------------
