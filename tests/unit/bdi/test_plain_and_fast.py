@@ -50,6 +50,20 @@ def test_a_program_prints_the_same_plain_and_fast_and_with_code_that_was_kept(pr
     assert plain.exit_code == kept.exit_code == fast.exit_code
 
 
+@pytest.mark.parametrize("plain", ["0", "1"])
+@pytest.mark.parametrize(
+    ("loop", "shown"),
+    [
+        ("for (.member(M, [1, 2])) { A = M; .print(T) }", ["f(1,B)", "f(2,B)"]),
+        ("while (k(N) & N < 2) { B = N; -+k(N+1); .print(T) }", ["f(A,0)", "f(A,1)"]),
+        ("for (.member(B, [1, 2])) { .print(T) }", ["f(A,1)", "f(A,2)"]),
+    ],
+)
+def test_loops_give_back_variables_that_stand_in_terms(plain, loop, shown, monkeypatch):
+    monkeypatch.setenv("JACAROS_PLAIN", plain)
+    assert printed(f"k(0). !s. +!s <- T = f(A, B); {loop}; .print(T).") == [*shown, "f(A,B)"]
+
+
 def test_what_is_there_for_speed_is_not_even_imported_when_it_is_left_out():
     script = (
         "import sys; from jacaros.testing import run_project; "

@@ -73,10 +73,11 @@ class Step:
         )
 
     def keep(self, frame: Frame, names: Names) -> None:
-        """Store what the step has bound."""
+        """Store the variables that the step has brought.  Those that were there keep their places: a loop around gives
+        them back without a value."""
         slots = frame[PLAN].slots
         for name in self.names:
-            if name in slots and name in names:
+            if name in slots and name in names and frame[slots[name]] is None:
                 frame[slots[name]] = deref(names[name])
 
     def go_on(self, frame: Frame, names: Names, posted: object = None) -> object:
