@@ -83,7 +83,8 @@ def test_what_is_there_for_speed_is_not_even_imported_when_it_is_left_out():
 def test_plain_and_fast_make_the_same_cycles(monkeypatch, tmp_path):
     program = tmp_path / "count.asl"
     program.write_text(
-        "!s. +!s <- !g(20); !h; .print(done); .stopMAS. +!g(0). +!g(N) : N > 0 <- +b(N); !g(N-1). "
+        "!s. !t. +!s <- !g(20); !k; !h; .print(done); .stopMAS. +!g(0). +!g(N) : N > 0 <- +b(N); !g(N-1). "
+        "@k[atomic] +!k <- +c(1); !l; -+c(2). +!l <- +c(3); +b(30). +!t <- !g(30). "
         "+b(N) <- -b(N). +!h <- !i; .print(never). +!i <- .fail. -!h."
     )
 
