@@ -54,6 +54,25 @@ def test_a_loop_around_a_fork_goes_on_in_the_branch_that_goes_on() -> None:
     ) == ["a1", "round(1)", "a2", "round(2)", "a3", "round(3)", "end"]
 
 
+@pytest.mark.parametrize("plain", ["", "1"])
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("for (p(X)) { Y = X; .print(Y) }", ["1", "2"]),
+        ("for (p(X)) { { .wait(9); Y = X } |&| { .print(b) }; .print(Y) }", ["b", "1", "b", "2"]),
+        ("for (p(X)) { Y = X; { .print(Y) } |&| { .print(b) } }", ["1", "b", "2", "b"]),
+        ("Z = f(Y); for (p(X)) { { Y = X; .print(Z) } ||| { .wait(50) } }", ["f(1)", "f(2)"]),
+        ("while (n(N) & N > 0) { { Y = N; .print(Y) } |&| { .print(b) }; -+n(N - 1) }", ["b", "2", "b", "1"]),
+    ],
+)
+def test_a_variable_that_a_round_binds_is_free_in_the_next_one(
+    body: str, expected: list[str], plain: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JACAROS_PLAIN", plain)
+    program = f"p(1). p(2). n(2). !s. +!s <- !t(Y). +!t(Y) <- {body}; .print(end, Y)."
+    assert [line.split("<")[0] for line in printed(program)] == [*expected, "endY"]
+
+
 def test_a_body_in_curly_brackets_is_a_step_and_a_branch() -> None:
     program = """
 !go.

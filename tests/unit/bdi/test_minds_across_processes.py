@@ -107,7 +107,7 @@ def continued(host: RecordingHost, program: str, plain: bool) -> object:
     return json.loads(done.stdout)
 
 
-@pytest.mark.parametrize("plain", [(False, False), (True, True), (True, False)], ids=str)
+@pytest.mark.parametrize("plain", [(False, False), (True, True), (True, False), (False, True)], ids=str)
 @pytest.mark.parametrize("milliseconds", [0, 450, 650, 1000])
 def test_a_mind_continues_in_another_process(milliseconds, plain, monkeypatch):
     monkeypatch.setenv("JACAROS_PLAIN", "1" if plain[0] else "")

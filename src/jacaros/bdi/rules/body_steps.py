@@ -17,7 +17,7 @@ from jacaros.asl.walk import names_in, nodes_in
 from jacaros.bdi.rules.calls import first_answer_of, refuse
 from jacaros.bdi.rules.forks import join_branch
 from jacaros.bdi.rules.query import answers, collecting
-from jacaros.bdi.rules.searching import Remaining, release, run
+from jacaros.bdi.rules.searching import Loop, Remaining, run
 from jacaros.bdi.state.intention import FIRST_SLOT, PLAN, STEP, Frame
 from jacaros.bdi.state.plan import FAILED, Plan, StepInfo
 from jacaros.terms.substitution import free_variables, resolve
@@ -98,36 +98,6 @@ class Round(Step):
             _while_round(self, self.node, agent, frame)
         elif isinstance(self.node, nodes.For):
             _for_round(self, self.node, agent, frame)
-
-
-class Loop:
-    """What a loop has to give back as it was at its beginning.
-
-    Attributes:
-        free: variables that had no value.
-        inner: places in the frame of variables that had none at all.
-        round: variables without value that the present round of a ``for`` has brought.
-        answers: those of a ``for`` that are still to come.
-    """
-
-    __slots__ = ("answers", "free", "inner", "round")
-
-    def __init__(self, step: Step, frame: Frame) -> None:
-        shared = [c.value for c in nodes_in(nodes.Constant, step.node)]
-        slots = frame[PLAN].slots
-        held = [frame[slot] for slot in slots.values() if frame[slot] is not None]
-        # `free_variables` takes the first element of a tuple for a functor.
-        self.free: list[Var] = free_variables((None, *held, *shared))
-        self.inner = [slots[n] for n in names_in(step.node) if n in slots and frame[slots[n]] is None]
-        self.round: list[Var] = []
-        self.answers: Remaining | None = None
-
-    def begin_round(self, frame: Frame) -> None:
-        """Take back what the last round bound."""
-        release(self.free)
-        release(self.round)
-        for slot in self.inner:
-            frame[slot] = None
 
 
 class InterpretedBody:
@@ -324,8 +294,19 @@ def _if(step: Step, node: nodes.If, agent: Any, frame: Frame) -> None:
         frame[STEP] = otherwise
 
 
+def _loop(step: Step, frame: Frame) -> Loop:
+    """What a loop that begins has to give back as it is now."""
+    shared = [c.value for c in nodes_in(nodes.Constant, step.node)]
+    slots = frame[PLAN].slots
+    held = [frame[slot] for slot in slots.values() if frame[slot] is not None]
+    inner = [slots[n] for n in names_in(step.node) if n in slots and frame[slots[n]] is None]
+    # `free_variables` takes the first element of a tuple for a functor.
+    loop = frame[step.place] = Loop(free_variables((None, *held, *shared)), inner)
+    return loop
+
+
 def _while(step: Step, node: nodes.While, agent: Any, frame: Frame) -> object:
-    frame[step.place] = Loop(step, frame)
+    _loop(step, frame)
     return step.first[0](agent, frame)  # type: ignore[misc]
 
 
@@ -341,7 +322,7 @@ def _while_round(step: Step, node: nodes.While, agent: Any, frame: Frame) -> Non
 
 
 def _for(step: Step, node: nodes.For, agent: Any, frame: Frame) -> object:
-    loop = frame[step.place] = Loop(step, frame)
+    loop = _loop(step, frame)
     slots = frame[PLAN].slots
     wanted = [name for name in step.names if name in slots and slots[name] in loop.inner]
     loop.answers = Remaining(_rounds(node, agent, step.values(frame), wanted))

@@ -6,7 +6,7 @@ last (``|&|``) or first (``|||``) goes on with the rest of the plan.
 
 from collections.abc import Sequence
 
-from jacaros.bdi.rules.searching import Remaining
+from jacaros.bdi.rules.searching import Loop, release
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, STEP, Frame, Intention, NextStep
 from jacaros.bdi.state.plan import SUSPENDED
@@ -58,22 +58,44 @@ def fork(
     return SUSPENDED
 
 
-def copied(frames: list[Frame]) -> list[Frame]:
-    """The stack with frames and free variables of its own."""
-    names: dict[Var, Var] = {}
+def copied(frames: list[Frame], names: dict[Var, Var] | None = None) -> list[Frame]:
+    """The stack with frames and free variables of its own.
+
+    Args:
+        frames: the stack.
+        names: the names of variables in the copy, if the loops on the stack have given back theirs.
+    """
+    known: dict[Var, Var] = {} if names is None else names
     copies = []
     for frame in frames:
         copy = list(frame)
         goal = frame[GOAL]
         if len(goal) > 1:
-            copy[GOAL] = (goal[0], *(rename(a, names) if a.__class__ in _HOLDERS else a for a in goal[1:]))
+            copy[GOAL] = (goal[0], *(rename(a, known) if a.__class__ in _HOLDERS else a for a in goal[1:]))
         for slot in range(FIRST_SLOT, len(copy)):
             value = copy[slot]
             if value.__class__ in _HOLDERS:
-                copy[slot] = rename(value, names)
-            elif value.__class__ is Remaining:
-                copy[slot] = value.copy()
+                copy[slot] = rename(value, known)
+            elif value.__class__ is Loop:
+                if names is None and (value.free or value.round):
+                    return _copied_with_loops(frames)
+                copy[slot] = value.copy(known)
         copies.append(copy)
+    return copies
+
+
+def _copied_with_loops(frames: list[Frame]) -> list[Frame]:
+    """The same where loops give variables back: these remain variables, although they have values."""
+    names: dict[Var, Var] = {}
+    loops = [value for frame in frames for value in frame if value.__class__ is Loop]
+    bound = [(each, each.ref) for loop in loops for each in (*loop.free, *loop.round) if each.ref is not None]
+    release(variable for variable, _ in bound)
+    copies = copied(frames, names)
+    values = [rename(value, names) for _, value in bound]
+    for (variable, value), own in zip(bound, values, strict=True):
+        variable.ref = value
+        if variable in names:
+            names[variable].ref, names[variable].at = own, variable.at
     return copies
 
 

@@ -1,6 +1,6 @@
 """Searches that generated code makes among facts and rules."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from operator import length_hint
 from typing import Any, NoReturn
 
@@ -162,7 +162,7 @@ def unify_rows(left: tuple[Term, ...], right: tuple[Term, ...], trail: Trail) ->
     return True
 
 
-def release(variables: list[Var]) -> None:
+def release(variables: Iterable[Var]) -> None:
     """Take back the values of variables that were free when a loop began."""
     for variable in variables:
         variable.ref = None
@@ -203,3 +203,35 @@ class Remaining:
         other = iter(found)
         other.__setstate__(len(found) - length_hint(self._answers))  # type: ignore[attr-defined]
         return Remaining(other, found)
+
+
+class Loop:
+    """What a loop gives back at the beginning of each round, kept in a frame behind the variables.
+
+    Attributes:
+        free: variables that had no value when the loop began.
+        inner: places in the frame of variables that get their first value inside the loop.
+        round: variables without value that the present round of a ``for`` has brought.
+        answers: those of a ``for`` that are still to come.
+    """
+
+    __slots__ = ("answers", "free", "inner", "round")
+
+    def __init__(self, free: Sequence[Var], inner: Sequence[int], answers: Remaining | None = None) -> None:
+        self.free, self.inner, self.answers = free, inner, answers
+        self.round: Sequence[Var] = ()
+
+    def begin_round(self, frame: list[Any]) -> None:
+        """Take back what the last round bound."""
+        release(self.free)
+        release(self.round)
+        for place in self.inner:
+            frame[place] = None
+
+    def copy(self, names: dict[Var, Var]) -> "Loop":
+        """The same for a copy of the intention, whose variables have other names."""
+        other = Loop(self.free, self.inner, self.answers and self.answers.copy())
+        if self.free or self.round:
+            other.free = [names.get(each, each) for each in self.free]
+            other.round = [names.get(each, each) for each in self.round]
+        return other

@@ -51,7 +51,7 @@ def _while(compiler: BodyCompiler, step: nodes.While, name: str, next_name: str)
     test_name, first = compiler.name(), compiler.name()
     enter = compiler.begin(step)
     with enter.writer.block(head(name)):
-        slot = _enter_loop(compiler, enter, step)
+        loop = _enter_loop(compiler, enter, step)
         enter.line(f"return {test_name}(agent, frame)")
     compiler.unit.add(enter.writer)
     entry = dict(frame.states)
@@ -59,8 +59,7 @@ def _while(compiler: BodyCompiler, step: nodes.While, name: str, next_name: str)
     fn = compiler.begin(step)
     with fn.writer.block(head(test_name)):
         fn.line("t = agent.trail")
-        fn.line(f"if frame[{slot}]: release(frame[{slot}])")
-        _clear_inner(compiler, fn, step, entry)
+        _begin_round(compiler, fn, step, loop)
         fn.load(frame, names_in(step.condition))
         bound = compiler.success(fn, step.condition, first if step.body.steps else test_name)
         fn.line("if t: undo(t, 0)")
@@ -74,36 +73,33 @@ def _while(compiler: BodyCompiler, step: nodes.While, name: str, next_name: str)
 def _for(compiler: BodyCompiler, step: nodes.For, name: str, next_name: str) -> None:
     frame = compiler.frame
     round_name, first = compiler.name(), compiler.name()
-    answers = frame.hidden_slot()
     enter = compiler.begin(step)
     enter.snapshot = True
     with enter.writer.block(head(name)):
-        slot = _enter_loop(compiler, enter, step)
+        loop = _enter_loop(compiler, enter, step)
         enter.line("t = Trail()")
         enter.line("t.serial = agent.trail.serial")
         new = [n for n in names_in(step.condition) if n not in enter.values]
         used = [n for n in new if n in frame.slots]
         call = question(enter, step.condition, used)
-        enter.line(f"frame[{answers}] = Remaining({call})")
+        enter.line(f"frame[{loop}].answers = Remaining({call})")
         enter.line(f"return {round_name}(agent, frame)")
     compiler.unit.add(enter.writer)
     entry = dict(frame.states)
     compiler.infos[round_name] = StepInfo(step, next_name)
     fn = compiler.begin(step)
     with fn.writer.block(head(round_name)):
-        fn.line(f"if frame[{slot}]: release(frame[{slot}])")
-        _clear_inner(compiler, fn, step, entry)
-        own = frame.hidden_slot() if used else None
-        if own is not None:
-            fn.line(f"if frame[{own}]: release(frame[{own}])")
+        _begin_round(compiler, fn, step, loop)
+        if used:
+            fn.line("if loop.round: release(loop.round)")
         targets = tuple_of([f"frame[{frame.slots[n]}]" for n in used]) if used else "_"
-        with fn.writer.block(f"for {targets} in frame[{answers}]:"):
-            if own is not None:
+        with fn.writer.block(f"for {targets} in loop.answers:"):
+            if used:
                 values = tuple_of(["None", *(f"frame[{frame.slots[n]}]" for n in used)])
-                fn.line(f"frame[{own}] = free_variables({values}) if {_any_open(frame, used)} else None")
+                fn.line(f"loop.round = free_variables({values}) if {_any_open(frame, used)} else ()")
             fn.line(f"frame[0] = {first if step.body.steps else round_name}")
             fn.line("return None")
-        fn.line(f"frame[{answers}] = None")
+        fn.line(f"frame[{loop}] = None")
         fn.line(f"frame[0] = {next_name}")
     compiler.unit.add(fn.writer)
     compiler.learn(used)
@@ -111,13 +107,18 @@ def _for(compiler: BodyCompiler, step: nodes.For, name: str, next_name: str) -> 
     frame.states = entry
 
 
-def _clear_inner(
-    compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node, entry: dict[str, str]
-) -> None:
-    """Variables that get their first value inside a loop have none at the beginning of a round nor after the loop."""
-    for variable in names_in(step):
-        if variable not in entry and variable in compiler.frame.slots:
-            fn.line(f"frame[{compiler.frame.slots[variable]}] = None")
+def _begin_round(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node, loop: int) -> None:
+    """What `Loop.begin_round` does, but for the variables that the last round of a ``for`` brought."""
+    fn.line(f"loop = frame[{loop}]")
+    fn.line("if loop.free: release(loop.free)")
+    for place in _inner(compiler, step):
+        fn.line(f"frame[{place}] = None")
+
+
+def _inner(compiler: BodyCompiler, step: nodes.Node) -> list[int]:
+    """Places of the variables that get their first value inside a loop: they have none when a round begins."""
+    frame = compiler.frame
+    return [frame.slots[n] for n in names_in(step) if n not in frame.states and n in frame.slots]
 
 
 def _free_at_entry(compiler: BodyCompiler) -> list[str]:
@@ -126,18 +127,19 @@ def _free_at_entry(compiler: BodyCompiler) -> list[str]:
 
 
 def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -> int:
-    """Remember which variables are free before a loop; returns the slot where."""
+    """Remember which variables are free before a loop; returns the place of the `Loop`."""
     frame = compiler.frame
     names = _free_at_entry(compiler)
     fn.load(frame, names)
-    slot = frame.hidden_slot()
+    loop = frame.hidden_slot()
     # `free_variables` takes the first element of a tuple for a functor.
     # Variables that a body made at run time shares with its plan.
     shared = [fn.constant(c.value) for c in nodes_in(nodes.Constant, step) if c.value.__class__ not in ATOMIC]
     values = tuple_of(["None", *(f"frame[{frame.slots[n]}]" for n in names), *shared])
     test = "True" if shared else _any_open(frame, names)
-    fn.line(f"frame[{slot}] = free_variables({values}) if {test} else None")
-    return slot
+    inner = tuple_of([str(place) for place in _inner(compiler, step)])
+    fn.line(f"frame[{loop}] = Loop(free_variables({values}) if {test} else (), {inner})")
+    return loop
 
 
 def _any_open(frame: FrameLayout, names: list[str]) -> str:

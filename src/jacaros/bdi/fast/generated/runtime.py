@@ -21,6 +21,7 @@ from jacaros.bdi.rules.calls import (
 from jacaros.bdi.rules.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
 from jacaros.bdi.rules.forks import join_branch
 from jacaros.bdi.rules.searching import (
+    Loop,
     Remaining,
     deeper,
     exists,
@@ -112,7 +113,7 @@ _FUNCTIONS = (
     unify_rows,
     unknown,
 )
-_CLASSES = (Annotated, InternalError, NextPlan, Remaining, Functor, List, String, Trail, Var)
+_CLASSES = (Annotated, InternalError, Loop, NextPlan, Remaining, Functor, List, String, Trail, Var)
 
 NAMES: Final[Mapping[str, Any]] = MappingProxyType(
     {
