@@ -15,6 +15,7 @@ TYPE_CHECKING = (
 if TYPE_CHECKING:
     from jacaros.asl.diagnostics import AslError
     from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
+    from jacaros.bdi.object_kinds import NotStorable
     from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
     from jacaros.errors import InternalError, JacarosError, UsageError
@@ -56,6 +57,7 @@ __all__ = [
     "Literal",
     "Mas",
     "Message",
+    "NotStorable",
     "OperationFailed",
     "Option",
     "Out",
@@ -78,6 +80,7 @@ __all__ = [
 _MODULES = {
     "jacaros.asl.diagnostics": "AslError",
     "jacaros.bdi.actions.internal_action": "ActionError WrongArguments",
+    "jacaros.bdi.object_kinds": "NotStorable",
     "jacaros.env.errors": "OperationFailed",
     "jacaros.env.values": "Atom Out Structure",
     "jacaros.errors": "InternalError JacarosError UsageError",

@@ -14,12 +14,15 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_kinds import NotStorable
 from jacaros.bdi.object_table import Reader, Writer
 from jacaros.bdi.rules import urgency, waits
+from jacaros.bdi.rules.belief_update import look_again
 from jacaros.bdi.rules.plan_changes import look_at_plans
 from jacaros.bdi.state.act import Completion
+from jacaros.bdi.state.belief_base import take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION
 from jacaros.bdi.state.intention import Intention
-from jacaros.terms.values import String, atom, functor
+from jacaros.bdi.state.waiting import TimedWait
+from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
 
 __all__ = ["NotStorable", "copy_mind", "knowledge", "restore", "stored"]
 
@@ -48,7 +51,6 @@ _FIELDS = (
     "next_look",
     "pending_acts",
     "pending_asks",
-    "percepts",
     "requeued",
     "suspended_events",
     "tasks",
@@ -74,7 +76,9 @@ def stored(mind: Mind) -> dict[str, Any]:
     held["event_waits"] = [wait for kind in mind.event_waits.values() for wait in kind.values()]
     held["condition_waits"] = (list(conditions.values()), list(conditions.due), list(conditions.restless))
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
+    held["percepts"] = list(mind.percepts)
     held["serial"] = mind.trail.serial
+    held["time"] = mind.architecture.now()
     writer = Writer(mind)
     version, state, gauss = mind.architecture.random.getstate()
     return {
@@ -90,13 +94,14 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     """Give a new mind, which has the same program and has not begun, what was `stored` of another.
 
     An external action that was under way fails with ``env_failure_reason(interrupted)``: its host may be gone, and to give
-    the action again could move a robot twice.  So the plan decides.  Moments remain those of the clock: a wait that was to
-    end meanwhile ends immediately.
+    the action again could move a robot twice.  So the plan decides.  Beliefs that the environment showed go without an
+    event: the new host shows them anew.  A wait that was to end meanwhile ends immediately; on a clock that has been set
+    back, it ends after the time that was left.
 
     Args:
         mind: the new mind.
         data: of the other one.
-        same_host: the host still carries out what the other mind gave it; its actions stay under way.
+        same_host: the host of the other mind serves the new one: its actions stay under way, what it showed is still there.
 
     Raises:
         ValueError: *data* has another format; or the program lacks a plan or belief that the other mind used.
@@ -105,12 +110,15 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
         raise ValueError(
             f"the stored mind has format {data.get('format')!r}; this version reads format {FORMAT}"
         )
+    mind.engine.begin(mind)
     held = Reader(mind, data["objects"]).read(data["held"])
     _learn(mind, held)
     for name in _FIELDS:
         setattr(mind, name, held[name])
     for name in _QUEUES:
         getattr(mind, name).extend(held[name])
+    for percepts in reversed(held["percepts"]):
+        mind.percepts.appendleft(percepts if same_host else [p for p in percepts if p.kind == "signal"])
     _wait_again(mind, held)
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
@@ -119,9 +127,21 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     mind.architecture.random.setstate((version, tuple(state), gauss))
     urgency.plans_changed(mind)
     if not same_host:
-        for number in list(mind.pending_acts):
-            mind.complete(number, Completion(False, annotations=_INTERRUPTED))
+        _leave_host(mind)
     mind.architecture.ready()
+
+
+def _leave_host(mind: Mind) -> None:
+    """End what only the old host knew of."""
+    for number in list(mind.pending_acts):
+        mind.complete(number, Completion(False, annotations=_INTERRUPTED))
+    mind.held_percepts.clear()
+    for table in mind.beliefs.values():
+        for entry, annotations in table.entries():
+            if SOURCE_PERCEPT in annotations:
+                take_away(table, entry, annotations, (SOURCE_PERCEPT,))
+    mind.condition_waits.due.update(mind.condition_waits)
+    mind.do_soon(look_again)
 
 
 def _wait_again(mind: Mind, held: dict[str, Any]) -> None:
@@ -132,8 +152,14 @@ def _wait_again(mind: Mind, held: dict[str, Any]) -> None:
         mind.condition_waits.add(wait, wait.number)
     mind.condition_waits.due = {number: mind.condition_waits[number] for number in due}
     mind.condition_waits.restless = {number: mind.condition_waits[number] for number in restless}
+    now = mind.architecture.now()
+    set_back = max(0.0, held["time"] - now)
+    for intention in mind.alive.values():
+        if isinstance(intention.waiting, TimedWait):
+            intention.waiting.began -= set_back
     for alarm in mind.alarms.values():
-        waits.start_alarm(mind, alarm, max(0.0, alarm.due - mind.architecture.now()))
+        alarm.due -= set_back
+        waits.start_alarm(mind, alarm, max(0.0, alarm.due - now))
 
 
 def knowledge(agent: Circumstance) -> dict[str, Any]:

@@ -85,7 +85,9 @@ def begun(milliseconds: int) -> RecordingHost:
     for performative, content in (("tell", "told(1)"), ("achieve", "asked(f(X,X))")):
         term = lower_value(parse_term(content))
         host.agent.receive(SpeechAct(performative, "bob", "tester", term, f"id_{performative}"))
-    host.agent.perceive([Percept("add", lower_value(parse_term("noticed(3)")), ((SOURCE, atom("percept")),))])
+    host.agent.perceive(
+        [Percept("signal", lower_value(parse_term("noticed(3)")), ((SOURCE, atom("percept")),))]
+    )
     return host
 
 
@@ -102,8 +104,9 @@ def continued(host: RecordingHost, program: str, plain: bool) -> object:
         "PYTHONPATH": os.pathsep.join(sys.path),
     }
     done = subprocess.run(
-        [sys.executable, __file__], input=text, capture_output=True, text=True, env=environment, check=True
+        [sys.executable, __file__], check=False, input=text, capture_output=True, text=True, env=environment
     )
+    assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jacaros.bdi.snapshot import restore
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.embedding.errors import UnknownAgent
@@ -98,6 +99,7 @@ class Mas(EmbeddedRun):
         agent_class: str | None = None,
         architectures: Sequence[str] = (),
         belief_base: str | None = None,
+        stored: Mapping[str, Any] | None = None,
     ) -> RunningAgent:
         """Make an agent, and let it begin; it has its first turn when the caller awaits something.
 
@@ -111,8 +113,12 @@ class Mas(EmbeddedRun):
             focus: artifacts that it focuses before its goals begin: names (looked for in all workspaces), paths or ids.
             options: settings such as ``verbose`` and ``events``, as in project files.
             agent_class, architectures, belief_base: Python classes of the project, as in project files.
+            stored: what `RunningAgent.stored` returned for an agent with the same program, in this process or another one.
+                The agent continues where that one was: it adopts no initial beliefs and goals.  It perceives anew what it
+                focuses.  An action that was under way fails with ``env_failure_reason(interrupted)``.
 
         Raises:
+            ValueError: *stored* has another format, or the program lacks a plan or belief that is used there.
             AslError: the program is wrong; the text shows each mistake in its line.
             UsageError: there is an agent of that name; the name is empty or has spaces or control characters; or the
                 caller is not in the thread of the run's loop.
@@ -149,8 +155,16 @@ class Mas(EmbeddedRun):
             spec = _placed(spec, self._surroundings.environment)
         tree = system.population.programs.load(spec, written)
         host = system.population.add(spec, tree)
-        begin(host, spec, tree)
-        return self.agent(spec.name)
+        agent = self.agent(spec.name)
+        if stored is None:
+            begin(host, spec, tree)
+        else:
+            try:
+                restore(agent.mind, dict(stored))
+            except (UsageError, ValueError):
+                agent.kill()
+                raise
+        return agent
 
     def _source_of(self, name: str, program: "str | Path | type[PythonAgent] | None") -> Path:
         if isinstance(program, (str, type)):

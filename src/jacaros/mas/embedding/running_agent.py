@@ -10,6 +10,7 @@ from jacaros.bdi.explaining.lost_goals import loss_of
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.watched import WatchedGoal
+from jacaros.bdi.snapshot import stored
 from jacaros.bdi.state.condition_waits import ConditionObserver, asked_by
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
@@ -126,6 +127,19 @@ class RunningAgent(OpenMind):
         ]
         told = f"it believes {', '.join(believed[:5])}" if believed else "it believes nothing of the kind"
         return f"{formula} did not hold for agent {self.name} ({told})"
+
+    def stored(self) -> dict[str, Any]:
+        """Return everything that the agent holds, as data for JSON; `Mas.add_agent` with ``stored=`` continues it.
+
+        Raises:
+            NotStorable: the agent waits for a coroutine, a term holds a Python object, or Python code awaits a goal or
+                condition of the agent.
+            UsageError: the agent is in the middle of a step.
+        """
+        mind = self.mind
+        if mind.running:
+            raise UsageError(f"agent {self.name} is in the middle of a step: store it between two turns")
+        return stored(mind)
 
     def kill(self) -> None:
         """End the agent: its operations are cancelled, the others go on."""

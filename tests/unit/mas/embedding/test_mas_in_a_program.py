@@ -1,7 +1,9 @@
 """Agents, artifacts and projects in a Python program: `async with Mas(...) as mas`."""
 
 import asyncio
+import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from embedding_lab import Counter, run
@@ -289,3 +291,97 @@ def test_a_name_that_would_forge_output_is_refused(name: str) -> None:
             mas.add_agent(name, "x.")
 
     run(test, [])
+
+
+def test_an_agent_continues_in_another_run() -> None:
+    program = "day(0). !work. +!work : day(N) <- -+day(N + 1); .print(N + 1); .wait(1000); !work."
+    lines: list[str] = []
+    kept: list[str] = []
+
+    async def first(mas: Mas) -> None:
+        bob = mas.add_agent("bob", program)
+        await mas.sleep(2.5)
+        kept.append(json.dumps(bob.stored()))
+
+    async def second(mas: Mas) -> None:
+        began = mas.clock.now()
+        bob = mas.add_agent("bob", program, stored=json.loads(kept[0]))
+        await bob.until("day(4)")
+        # Half of the wait was left, and the clock begins anew with the run.
+        assert mas.clock.now() - began == pytest.approx(0.5)
+
+    run(first, lines)
+    run(second, lines)
+    assert lines == ["[bob] 1", "[bob] 2", "[bob] 3", "[bob] 4"]
+
+
+def test_an_agent_that_continues_perceives_anew() -> None:
+    program = "+door(X) <- +last(X); .print(X)."
+    lines: list[str] = []
+    kept: list[dict[str, Any]] = []
+
+    async def first(mas: Mas) -> None:
+        bob = mas.add_agent("bob", program)
+        bob.perceive("door(open)", "door(wide)")
+        await mas.until_idle()
+        kept.append(bob.stored())
+
+    async def second(mas: Mas) -> None:
+        bob = mas.add_agent("bob", program, stored=kept[0])
+        bob.perceive("door(open)")
+        await mas.until_idle()
+        assert [each["X"] for each in bob.answers("door(X)")] == [Atom("open")]
+        bob.perceive_no_more("door(open)")
+        await mas.until_idle()
+        assert not bob.believes("door(_)")
+        assert bob.believes("last(wide)")
+
+    run(first, lines)
+    run(second, lines)
+    assert lines == ["[bob] open", "[bob] wide", "[bob] open"]
+
+
+def test_there_is_no_agent_when_what_was_stored_does_not_fit_its_program() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "!go. +!go <- .wait(1000).")
+        await mas.sleep(0.5)
+        kept = bob.stored()
+        bob.kill()
+        with pytest.raises(ValueError, match="the program has changed"):
+            mas.add_agent("bob", "+!go <- .print(other).", stored=kept)
+        with pytest.raises(UsageError, match="written in Python"):
+            mas.add_agent("ann", type("Ann", (jacaros.PythonAgent,), {}), stored=kept)
+        mas.add_agent("bob", "!go. +!go <- .wait(1000).", stored=kept)
+        assert [each.name for each in mas.agents] == ["bob"]
+
+    run(test)
+
+
+def test_an_agent_in_the_middle_of_a_step_is_not_stored() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "!go. +!go <- .print(now).")
+        refused: list[str] = []
+
+        def store(agent: str, text: str) -> None:
+            with pytest.raises(UsageError, match="agent bob is in the middle of a step") as why:
+                bob.stored()
+            refused.append(f"{agent} {text} {why.typename}")
+
+        mas.on_print(store)
+        await mas.until_idle()
+        assert refused == ["bob now UsageError"]
+
+    run(test)
+
+
+def test_an_agent_whose_goal_python_code_awaits_is_not_stored() -> None:
+    async def test(mas: Mas) -> None:
+        bob = mas.add_agent("bob", "+!go <- .wait(1000).")
+        goal = bob.achieve("go")
+        await mas.sleep(0.5)
+        with pytest.raises(jacaros.NotStorable, match="Python code awaits a goal"):
+            bob.stored()
+        await goal
+        assert bob.stored()["agent"] == "bob"
+
+    run(test)
