@@ -13,7 +13,7 @@ from jacaros.asl import nodes
 from jacaros.bdi.fast.generated.building import functor_of_literal
 from jacaros.bdi.rules.applicable_plans import Selection
 from jacaros.bdi.state.engine import Select
-from jacaros.bdi.state.intention import FIRST_SLOT, STEP, Frame
+from jacaros.bdi.state.intention import STEP, Frame
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.triggers import Goal
@@ -121,10 +121,7 @@ class _Waiting:
             self._selection = self._plans.interpreted(self._place)
         frame = self._selection(agent, goal, annotations)
         if frame is not None and self._plans.compile(self._place).__class__ is not Selection:
-            plan = self._selection.plans[0]
-            frame[STEP] = plan.first
-            behind = FIRST_SLOT + len(plan.slots)
-            frame[behind:] = [None] * (plan.size - len(plan.slots))
+            frame[STEP] = self._selection.plans[0].first
         return frame
 
 
