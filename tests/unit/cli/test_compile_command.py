@@ -51,6 +51,11 @@ def test_the_listing_is_python_and_says_what_its_names_mean(
     assert lines == shown(capsys, program, "--show")
 
 
+def test_an_internal_action_in_a_condition_is_shown(program: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path(program).write_text("+!go(L) : .member(X, L) <- .print(X).", encoding="utf-8")
+    assert any(line.endswith(": the internal action .member") for line in shown(capsys, program, "--show"))
+
+
 def test_a_join_by_an_index_is_shown(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path(program).write_text("+!go : p(X, Y, _) & p(Y, Z, _) <- .print(Z).", encoding="utf-8")
     assert any(

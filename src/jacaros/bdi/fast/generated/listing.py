@@ -104,6 +104,8 @@ def _described(value: Any) -> str:
         return f"the plan {text_of(value.label)}"
     if isinstance(value, (Functor, Trigger)):
         return repr(value)
+    if isinstance(value, InternalAction):
+        return f"the internal action {value.name}"
     if callable(value):
         return f"{value.__module__}.{value.__qualname__}"
     if value.__class__ is tuple and not (value and isinstance(value[0], Functor)):
