@@ -7,12 +7,9 @@ from jacaros.terms.values import ATOMIC, Annotated, List, Term, deref, is_list, 
 _COLLECTIONS = (SetValue, MapValue, QueueValue)
 
 
-def detached(term: Term, copies: dict[int, Term] | None = None) -> Term:
-    """The term with collections of its own; one without collections is given back as it is.
-
-    *copies* keeps the copies by the identity of their originals, for terms that share some.
-    """
-    return _copy(resolve(term), {} if copies is None else copies) if holds_collection(term) else term
+def detached(term: Term) -> Term:
+    """The term with collections of its own; one without collections is given back as it is."""
+    return _copy(resolve(term), {}) if holds_collection(term) else term
 
 
 def holds_collection(term: Term) -> bool:
