@@ -2,6 +2,7 @@
 # make test    everything, ROS 1 and ROS 2 included (installs what that needs on Debian 12)
 # make test-all    that, and all unit tests again with every other Python of the machine
 # make quick   what to run before a commit: style, types, layers, unit tests
+# make coverage   which lines the unit, contract and conformance tests run, by package; in some fifteen minutes
 # make bench   figures of speed, beside those of other engines, in some ten minutes; renews docs/benchmarks.md
 #              make bench BENCH=--quick   in some three minutes, and changes nothing; JASON=/path/to/jason takes part, too
 # make reference   the reference pages and pictures that follow from the code
@@ -12,7 +13,7 @@
 VENV := .venv
 PYTHON ?= $(shell tools/find_python.sh)
 
-.PHONY: demo test test-all quick reference bench clean
+.PHONY: demo test test-all quick coverage reference bench clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/python tools/demo.py
@@ -25,6 +26,9 @@ test-all: $(VENV)/.installed-dev
 
 quick: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/test_all.py style types layers unit
+
+coverage: $(VENV)/.installed-dev
+	$(VENV)/bin/python tools/measure_coverage.py
 
 # The reference pages that follow from the code, and the pictures.
 reference: $(VENV)/.installed

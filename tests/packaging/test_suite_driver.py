@@ -15,7 +15,11 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def driver() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("test_all_driver", ROOT / "tools" / "test_all.py")
+    return loaded("test_all")
+
+
+def loaded(tool: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(f"{tool}_driver", ROOT / "tools" / f"{tool}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -153,3 +157,21 @@ def test_properties_have_the_same_examples_in_every_run_however_slow_the_machine
 def test_unknown_parts_are_refused_with_the_known_ones(driver: ModuleType) -> None:
     with pytest.raises(SystemExit, match=r"no part nonsense; there are .*unit"):
         driver.choose(["nonsense"])
+
+
+def test_the_table_of_coverage_has_a_row_for_each_package() -> None:
+    def lines(run: int, of: int) -> dict[str, dict[str, int]]:
+        return {"summary": {"covered_lines": run, "num_statements": of}}
+
+    files = {
+        "src/jacaros/version.py": lines(1, 1),
+        "src/jacaros/bdi/mind.py": lines(3, 4),
+        "src/jacaros/bdi/rules/cycle.py": lines(1, 5),
+        "src/jacaros/bdi/rules/query.py": lines(4, 5),
+    }
+    assert loaded("measure_coverage").table(files)[2:] == [
+        "| bdi | 4 | 75 % |",
+        "| bdi/rules | 10 | 50 % |",
+        "| jacaros | 1 | 100 % |",
+        "| all | 15 | 60 % |",
+    ]
