@@ -266,6 +266,10 @@ class LookingTable(AskingTable):
     def plain(self, value: bool) -> None:
         pass
 
+    def still_holds(self, entry: Entry) -> bool:
+        """True: what is looked up is not among the entries."""
+        return True
+
     def candidates(self, arguments: Row) -> Iterable[tuple[Entry, Annotations]]:
         """The entries that are kept, then those that are looked up."""
         return [*super().candidates(arguments), *self._tables.ask_candidates(self.functor, arguments)]

@@ -64,6 +64,29 @@ def test_loops_give_back_variables_that_stand_in_terms(plain, loop, shown, monke
     assert printed(f"k(0). !s. +!s <- T = f(A, B); {loop}; .print(T).") == [*shown, "f(A,B)"]
 
 
+@pytest.mark.parametrize("plain", ["0", "1"])
+@pytest.mark.parametrize(
+    "condition", ["p(X)", "r(X)", "q(X)", "p(X)[source(self)]", "p(X) & true", "F", "r(X) & not X = 9"]
+)
+def test_a_loop_leaves_out_beliefs_that_are_deleted_before_their_turn(plain, condition, monkeypatch):
+    monkeypatch.setenv("JACAROS_PLAIN", plain)
+    assert printed(
+        f"""
+        p(1). p(2). p(3). p(4). p(5). q(1). q(2). q(3). q(4). q(5). q(X) :- X = 9. r(X) :- p(X).
+        !s. +!s <- {"F = p(X); " * (condition == "F")} for ({condition}) {{ .print(X); -p(X+2); -q(X+2) }}.
+        """
+    ) == ["1", "2", "4", "5", *(["9"] if condition == "q(X)" else [])]
+
+
+def test_an_intention_shows_the_same_variables_plain_and_fast(monkeypatch):
+    program = (
+        "!s. +!s <- .findall(H, .desire(H), L); .intention(_, _, [im(_, _, _, B)], current); .print(B, L)."
+    )
+    fast = printed(program)
+    monkeypatch.setenv("JACAROS_PLAIN", "1")
+    assert printed(program) == fast == ["[map('L',[s[source(self)]])][s[source(self)]]"]
+
+
 def test_what_is_there_for_speed_is_not_even_imported_when_it_is_left_out():
     script = (
         "import sys; from jacaros.testing import run_project; "

@@ -316,6 +316,10 @@ class _Table:
     def __init__(self, agent: _LookOnly, table: Table, budget: SearchBudget) -> None:
         self._agent, self._table, self._budget = agent, table, budget
 
+    def still_holds(self, _entry: object) -> bool:
+        """True: nothing changes while a failure is explained."""
+        return True
+
     def candidates(self, arguments: tuple[Term, ...]) -> Iterator[tuple[Any, tuple[Term, ...]]]:
         for number, (entry, annotations) in enumerate(self._table.candidates(arguments)):
             if isinstance(entry, Rule):

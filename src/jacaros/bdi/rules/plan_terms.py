@@ -57,9 +57,14 @@ def variables_of(frame: Frame) -> dict[str, Term]:
 
 
 def bindings_of(frame: Frame) -> Term:
-    """The list ``[map('Var', Value), …]`` of a frame."""
+    """The list ``[map('Var', Value), …]`` of a frame; variables without value are left out."""
+    values = ((name, resolve(value)) for name, value in variables_of(frame).items())
     return make_list(
-        [structure("map", atom(f"'{name}'"), resolve(value)) for name, value in variables_of(frame).items()]
+        [
+            structure("map", atom(f"'{name}'"), value)
+            for name, value in values
+            if bare(value).__class__ is not Var
+        ]
     )
 
 

@@ -88,10 +88,10 @@ def solve(
 ) -> Answers:
     """Answers of a predicate in the order of its base: facts by unification, rules by their functions.
 
-    *lasting* ones stay when beliefs change.
+    *lasting* ones may be taken while beliefs change.
     """
     candidates = table.candidates(arguments)
-    for entry, _ in list(candidates) if lasting else candidates:
+    for entry, _ in still_held(table, list(candidates)) if lasting else candidates:
         mark = len(trail)
         if entry.__class__ is tuple:
             if unify_rows(arguments, entry, trail):
@@ -112,7 +112,7 @@ def solve_annotated(
     trail: Trail,
 ) -> Answers:
     """Answers of a predicate that is asked with annotations."""
-    for entry, annotations in list(table.candidates(arguments)):
+    for entry, annotations in still_held(table, list(table.candidates(arguments))):
         mark = len(trail)
         if entry.__class__ is tuple:
             if unify_rows(arguments, entry, trail):
@@ -144,9 +144,9 @@ def solve_held(agent: Circumstance, table: Any, arguments: tuple[Term, ...], tra
 def facts(
     table: Table, arguments: tuple[Term, ...], trail: Trail, lasting: bool = False
 ) -> Iterator[tuple[Term, ...]]:
-    """The answers of a predicate that are facts, by unification; *lasting* ones stay when beliefs change."""
+    """The answers of a predicate that are facts, by unification; *lasting* ones may be taken while beliefs change."""
     rows = table.rows_like(arguments)
-    for row in list(rows) if lasting else rows:
+    for row in rows_still_held(table, list(rows)) if lasting else rows:
         if row.__class__ is tuple:
             mark = len(trail)
             if unify_rows(arguments, row, trail):
@@ -168,13 +168,30 @@ def release(variables: Iterable[Var]) -> None:
         variable.ref = None
 
 
-def still_held(table: Table, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term, ...]]:
-    """The rows of a loop over beliefs: one is fixed ahead, those that are deleted before their turn are left out."""
-    source = iter(rows)
-    ahead = next(source, None)
-    while ahead is not None:
+def rows_still_held(table: Table, rows: list[tuple[Term, ...]]) -> Iterator[tuple[Term, ...]]:
+    """The rows of a search that goes on while beliefs change: one is fixed ahead, those that are deleted before their turn
+    are left out."""
+    current = None
+    for ahead in rows:
+        if current is not None:
+            if ahead not in table.rows:
+                continue
+            yield current
         current = ahead
-        ahead = next((row for row in source if row in table.rows), None)
+    if current is not None:
+        yield current
+
+
+def still_held(table: Any, items: list[Any]) -> Iterator[Any]:
+    """The same for entries of all kinds with their annotations."""
+    current = None
+    for ahead in items:
+        if current is not None:
+            if not table.still_holds(ahead[0]):
+                continue
+            yield current
+        current = ahead
+    if current is not None:
         yield current
 
 

@@ -156,6 +156,10 @@ class Table:
         held = self.rows.get(row)
         return self.late.get(row) if held is None and self.late else held
 
+    def still_holds(self, entry: Entry) -> bool:
+        """Whether an entry that a search found has not been deleted meanwhile."""
+        return entry in self.rows or entry in self.late
+
     def set(self, row: Entry, annotations: tuple[Term, ...]) -> bool:
         """Replace the annotations of a row that is held; False when the base refuses."""
         (self.rows if row in self.rows else self.late)[row] = annotations

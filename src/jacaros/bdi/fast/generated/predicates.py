@@ -66,7 +66,7 @@ def _facts(fn: FunctionBuilder, symbol: Functor, given: dict[int, str]) -> None:
     fn.line(f"b = agent.beliefs[{fn.constant(symbol)}]")
     with fn.writer.block("if len(b.rows) > b.others:"):
         if not given:
-            rows = "list(reversed(b.rows))" if fn.trampoline else "reversed(b.rows)"
+            rows = "rows_still_held(b, list(reversed(b.rows)))" if fn.trampoline else "reversed(b.rows)"
             with fn.writer.block(f"for row in {rows}:"):
                 fn.line("if row.__class__ is tuple: yield row")
             return
@@ -76,7 +76,7 @@ def _facts(fn: FunctionBuilder, symbol: Functor, given: dict[int, str]) -> None:
         else:
             key = known[0] if len(known) == 1 else tuple_of(known)
             rows = f"b.find({fn.constant(tuple(given))}, {key})"
-            rows = f"list({rows})" if fn.trampoline else rows
+            rows = f"rows_still_held(b, list({rows}))" if fn.trampoline else rows
         arguments = tuple_of([given.get(i, "Var()") for i in range(symbol.arity)])
         test = " and ".join(f"{value}.__class__ in ATOMIC" for value in known)
         general = f"facts(b, {arguments}, t{', True' if fn.trampoline else ''})"

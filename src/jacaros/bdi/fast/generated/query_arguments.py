@@ -122,9 +122,8 @@ class QueryArguments:
 
     def _lasting(self, table: str, rows: str) -> str:
         """Rows that may be read while beliefs change: where answers are taken in between two steps."""
-        if self.fn.trampoline:
-            return f"list({rows})"
-        return f"still_held({table}, list({rows}))" if self.fn.snapshot else rows
+        taken_later = self.fn.trampoline or self.fn.snapshot
+        return f"rows_still_held({table}, list({rows}))" if taken_later else rows
 
     def match_rest(self, then: Then) -> None:
         """Match the read parts with their patterns."""
