@@ -57,11 +57,17 @@ def test_a_program_prints_the_same_plain_and_fast_and_with_code_that_was_kept(pr
         ("for (.member(M, [1, 2])) { A = M; .print(T) }", ["f(1,B)", "f(2,B)"]),
         ("while (k(N) & N < 2) { B = N; -+k(N+1); .print(T) }", ["f(A,0)", "f(A,1)"]),
         ("for (.member(B, [1, 2])) { .print(T) }", ["f(A,1)", "f(A,2)"]),
+        ("for (r(A)) { .print(T) }", ["f(1,B)", "f(2,B)"]),
+        ("for (r(A)) { B = A; .print(T) }", ["f(1,1)", "f(2,2)"]),
+        ("G = r(B); for (G) { A = B; .print(T) }", ["f(1,1)", "f(2,2)"]),
     ],
 )
 def test_loops_give_back_variables_that_stand_in_terms(plain, loop, shown, monkeypatch):
     monkeypatch.setenv("JACAROS_PLAIN", plain)
-    assert printed(f"k(0). !s. +!s <- T = f(A, B); {loop}; .print(T).") == [*shown, "f(A,B)"]
+    assert printed(f"k(0). p(1). p(2). r(X) :- p(X). !s. +!s <- T = f(A, B); {loop}; .print(T).") == [
+        *shown,
+        "f(A,B)",
+    ]
 
 
 @pytest.mark.parametrize("plain", ["0", "1"])

@@ -334,7 +334,10 @@ def _rounds(node: nodes.For, agent: Any, names: Names, wanted: list[str]) -> Ite
     trail = Trail()
     trail.serial = agent.trail.serial
     for _ in run(answers(agent, node.condition, names.__getitem__, trail), agent.rule_depth):
+        bound = [(variable, variable.ref) for variable in trail]
         yield tuple(deref(names[name]) for name in wanted)
+        for variable, value in bound:  # the loop gave them back, and the search goes on from there
+            variable.ref = value
 
 
 def _for_round(step: Step, node: nodes.For, agent: Any, frame: Frame) -> None:
@@ -346,7 +349,7 @@ def _for_round(step: Step, node: nodes.For, agent: Any, frame: Frame) -> None:
     for values in loop.answers:
         for slot, value in zip(wanted, values, strict=True):
             frame[slot] = value
-        loop.round = free_variables((None, *values))
+        loop.round = free_variables((None, *values, *loop.free))
         frame[STEP] = step.first[0]
         return
     frame[step.place] = None
