@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 from jacaros.sim import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
-from jacaros.testing.docking import Stay, judge_recharging
-from jacaros.testing.paths import distance, to_segment
+from jacaros.testing.paths import Stay, distance, judge_recharging, to_segment
 
 CORNERS = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 """The route, in metres, from where the robot begins."""

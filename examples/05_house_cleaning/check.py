@@ -7,8 +7,7 @@ import sys
 
 from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict, judge
-from jacaros.testing.docking import judge_recharging
-from jacaros.testing.paths import distance
+from jacaros.testing.paths import distance, judge_recharging
 
 ROUND = (
     ("living_room", "vacuum carpet"),

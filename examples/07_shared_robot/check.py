@@ -12,8 +12,7 @@ from math import hypot, remainder, tau
 
 from jacaros.sim import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
-from jacaros.testing.docking import judge_recharging
-from jacaros.testing.paths import distance
+from jacaros.testing.paths import distance, judge_recharging
 
 CORNERS = ((2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0))
 """The route, in metres; the robot begins and ends at the last one."""

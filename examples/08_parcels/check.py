@@ -9,7 +9,7 @@ from math import dist
 
 from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict, judge
-from jacaros.testing.docking import judge_recharging
+from jacaros.testing.paths import judge_recharging
 
 PLACES = {"hallway": (0, 0), "living_room": (2, 0), "kitchen": (2, 2), "bathroom": (0, 2)}
 PARCELS = (

@@ -8,8 +8,7 @@ from itertools import pairwise
 
 from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict, judge
-from jacaros.testing.docking import Stay, stays
-from jacaros.testing.paths import distance
+from jacaros.testing.paths import Stay, distance, stays
 
 PLACES = {
     "robot_1": ((-1.5, 2.2), (3.2, 0.0)),

@@ -12,7 +12,7 @@ from processes import Agents, WorldProcess
 import jacaros.sim
 from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict
-from jacaros.testing.docking import stays
+from jacaros.testing.paths import stays
 
 RunWorld = Callable[..., WorldProcess]
 RunAgents = Callable[..., Agents]

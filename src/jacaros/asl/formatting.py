@@ -8,7 +8,7 @@ from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.layout.clauses import ProgramLayout
 from jacaros.asl.layout.document import render
-from jacaros.asl.layout.pieces import pieces_of
+from jacaros.asl.layout.expressions import pieces_of
 from jacaros.asl.lexer import Comment, tokenize
 from jacaros.asl.loader import load_program
 from jacaros.asl.source import SourceFile

@@ -11,7 +11,7 @@ from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
 from jacaros.asl.labels import check_labels
-from jacaros.asl.namespaces import Namespaces
+from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import TEXT, SourceFile
 from jacaros.terms.functions import FunctionNames

@@ -11,8 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.kinds import KINDS
+from jacaros.asl.diagnostics import KINDS, Diagnostic
 from jacaros.asl.lexer import Comment, Token, tokenize
 from jacaros.asl.source import SourceFile, Span
 

@@ -6,8 +6,8 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.lexer import Token
 from jacaros.asl.literal_parser import LiteralParser
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
-from jacaros.asl.spelling import close_matches
 from jacaros.terms.functions import ARITIES
 from jacaros.terms.operators import AND, BINARY, NOT, OR, PREFIX, SUM, Operator
 from jacaros.terms.text import unquoted

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.asl.diagnostics import Diagnostic, Severity, bounded
-from jacaros.asl.kinds import KINDS
+from jacaros.asl.diagnostics import KINDS, Diagnostic, Severity, bounded
 from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
 from jacaros.errors import UsageError

@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.kinds import KINDS
+from jacaros.asl.diagnostics import KINDS, Diagnostic
 from jacaros.asl.source import Span
 from jacaros.cli.version import version_of
 from jacaros.excerpts import printable

@@ -107,8 +107,7 @@ def command(
     plans are taken, and all projects called `test_...` or `..._test`.
     """  # fmt: skip
     # Imported here: with it comes all that runs a system.
-    from jacaros.testing.junit import write_junit
-    from jacaros.testing.report import failures, slowest, summary
+    from jacaros.testing.report import failures, slowest, summary, write_junit
     from jacaros.testing.suites import collect
     from jacaros.testing.trial import TrialOptions
 

@@ -12,7 +12,7 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses as clauses_of
 from jacaros.asl.declaration import UNDECLARED
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.spelling import close_matches
+from jacaros.asl.slips import close_matches
 from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.body.actions import keys

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Final
 
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
-from jacaros.asl.spelling import close_matches
 from jacaros.bdi.state.options import Options
 
 _EVENT: Final = re.compile(r"(\w+::)?~?[a-z]\w*")

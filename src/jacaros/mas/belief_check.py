@@ -16,7 +16,7 @@ from jacaros.asl.checks.beliefs import Beliefs, beliefs_of, is_misspelt
 from jacaros.asl.checks.formulas import parts_of
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.formatter import format_term
-from jacaros.asl.spelling import Slips
+from jacaros.asl.slips import Slips
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.text_files import file_bytes
 

@@ -6,7 +6,7 @@ from contextlib import suppress
 from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.mas.ports import Mailbox
-from jacaros.terms.detaching import detached, holds_collection
+from jacaros.terms.collections import detached, holds_collection
 from jacaros.terms.substitution import is_ground, rename
 
 

@@ -9,8 +9,8 @@ from jacaros.artifacts.mapping.declared import MappingFile
 from jacaros.artifacts.mapping.file import find_mapping, read_with_problems, shipped_mappings
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import SourceFile, Span
-from jacaros.asl.spelling import close_matches
 from jacaros.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
 from jacaros.yaml_nodes import Problem
 

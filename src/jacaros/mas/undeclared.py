@@ -55,7 +55,7 @@ class UndeclaredParameters:
 
 
 def _text(unknown: Sequence[str], known: Sequence[str]) -> str:
-    from jacaros.asl.spelling import close_matches  # here: only for mistakes
+    from jacaros.asl.slips import close_matches  # here: only for mistakes
 
     several = len(unknown) > 1
     listed = ", ".join(unknown[:_FEW]) + (f" and {len(unknown) - _FEW} more" if len(unknown) > _FEW else "")

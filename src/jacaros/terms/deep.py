@@ -3,11 +3,25 @@
 The functions on terms call themselves; where Python's stack ends, they hand the rest over to a loop with a list of its
 own, so that the depth of a term is limited by memory alone.  A cycle always leads through a bound variable: a term that
 contains itself is found by a variable that is met again inside its own value.
+
+People see an `excerpt` of a long term.
 """
 
 from collections.abc import Callable
 
-from jacaros.terms.values import CONS, NIL, Annotated, List, Term, Var, make_list
+from jacaros.terms.values import (
+    CONS,
+    NIL,
+    PLAN,
+    Annotated,
+    List,
+    Term,
+    Var,
+    deref,
+    is_list,
+    make_list,
+    parts_of_list,
+)
 
 _COMPOUND = frozenset({tuple, List, Annotated})
 MANY_TURNS = 100_000
@@ -155,3 +169,56 @@ class Turns:
         self._count += 1
         if self._count == self._limit:
             self._mark, self._limit = variable, self._limit * 2
+
+
+MOST_PARTS = 150
+"""So many names, numbers and brackets are kept: more than a line has room for."""
+REST = Var("...")
+"""Stands for what was left out."""
+
+
+def excerpt(term: Term, parts: int = MOST_PARTS) -> Term:
+    """The term, with dots in place of what comes after its first *parts* parts.
+
+    Variables that have values are replaced by them; arithmetic stays as it is.  A term that contains itself has an
+    excerpt, too.  Plans and their bodies stay whole.
+
+    Where parts are shared, as in ``f(T,T)`` with such a ``T``, the text of a small term can be longer than any memory;
+    and a list of all ranges of a laser is more than anybody reads.
+    """
+    return _Excerpt(parts).of(term)
+
+
+class _Excerpt:
+    """Takes parts until there are enough; each level takes one, so it is not deeper than that."""
+
+    def __init__(self, parts: int) -> None:
+        self._left = parts
+
+    def of(self, term: Term) -> Term:
+        term = deref(term)
+        kind = term.__class__
+        if kind is not tuple and kind is not Annotated and kind is not List:
+            self._left -= 1
+            return term
+        if self._left <= 0:
+            return REST
+        self._left -= 1
+        if kind is Annotated:
+            annotations = tuple(self.of(each) for each in term.annotations)
+            return Annotated(self.of(term.term), annotations, term.tail)
+        if is_list(term):
+            return self._list(term)
+        if term[0].kind == PLAN:
+            return term
+        return (term[0], *(self.of(argument) for argument in term[1:]))
+
+    def _list(self, cell: Term) -> Term:
+        elements: list[Term] = []
+        while is_list(cell) and cell is not NIL:
+            if self._left <= 0:
+                return make_list(elements, REST)
+            first, cell = parts_of_list(cell)
+            elements.append(self.of(first))
+            cell = deref(cell)
+        return make_list(elements, self.of(cell))

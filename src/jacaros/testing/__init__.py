@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from jacaros.testing.fake_graph import FakeGraph
     from jacaros.testing.harness import AgentHarness
     from jacaros.testing.judging import Verdict, judge
-    from jacaros.testing.junit import write_junit
     from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
     from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
+    from jacaros.testing.report import write_junit
     from jacaros.testing.run import RunResult, run_project
     from jacaros.testing.suites import AgentTest, Suite, collect, suite_of
     from jacaros.testing.trial import TrialOptions, run_suite, run_suites

@@ -11,7 +11,7 @@ from processes import Agents, WorldProcess, wait_until
 
 from jacaros.sim import GroundTruth
 from jacaros.testing import Verdict
-from jacaros.testing.docking import judge_recharging, stays
+from jacaros.testing.paths import judge_recharging, stays
 
 CORNERS = {"0": (0.0, 0.0), "1": (1.0, 0.0), "2": (1.0, 1.0), "3": (0.0, 1.0)}
 """Corners of the patrol in the yard."""

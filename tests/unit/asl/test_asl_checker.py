@@ -8,8 +8,8 @@ from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.loader import read_program
+from jacaros.asl.slips import is_slip_of
 from jacaros.asl.source import SourceFile
-from jacaros.asl.spelling import is_slip_of
 from jacaros.asl.suppression import Suppressions, wanted
 
 STANDARD = {

@@ -2,7 +2,7 @@
 
 from jacaros.sim import GroundTruth, World
 from jacaros.testing import Verdict
-from jacaros.testing.docking import judge_recharging, stays
+from jacaros.testing.paths import judge_recharging, stays
 
 WORLD = """
 name: hall

@@ -8,7 +8,7 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import conditions, parts_of
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.spelling import MOST_ASKED, close_matches, is_slip_of
+from jacaros.asl.slips import MOST_ASKED, close_matches, is_slip_of
 from jacaros.terms.functions import ARITIES
 
 _PERFORMATIVES: Final = (

@@ -8,7 +8,7 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses, in_order, parts_of
 from jacaros.asl.declaration import UNDECLARED, Declaration
-from jacaros.asl.spelling import is_slip_of
+from jacaros.asl.slips import is_slip_of
 from jacaros.asl.walk import walk
 
 _WORD: Final = re.compile(r"\w+")

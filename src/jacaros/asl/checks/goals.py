@@ -9,7 +9,7 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.spelling import MOST_ASKED, close_matches
+from jacaros.asl.slips import MOST_ASKED, close_matches
 
 _Signature = tuple[str | nodes.Variable | None, str, int]
 

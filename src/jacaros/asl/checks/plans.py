@@ -7,7 +7,7 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.checks.formulas import contradiction, is_true
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.spelling import is_slip_of
+from jacaros.asl.slips import is_slip_of
 from jacaros.asl.walk import walk
 
 _LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency")

@@ -8,7 +8,7 @@ from typing import Final
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import Clause, in_order
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.spelling import MOST_ASKED, close_matches
+from jacaros.asl.slips import MOST_ASKED, close_matches
 from jacaros.asl.walk import walk
 from jacaros.terms.operators import BINARY
 

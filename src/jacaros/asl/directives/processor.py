@@ -15,16 +15,16 @@ from jacaros.asl.directives.goal_patterns import (
     maintenance,
     open_minded,
     relativised,
+    sequenced,
     single_minded,
 )
 from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
 from jacaros.asl.directives.pattern import PatternCall, PatternError
-from jacaros.asl.directives.sequenced import sequenced
-from jacaros.asl.namespaces import Namespaces
+from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.program_parser import ProgramParser
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import SourceFile, Span
-from jacaros.asl.spelling import close_matches
 
 Read = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError."""

@@ -28,8 +28,7 @@ from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.rule import Answers, Rule
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.arithmetic import RUNNING
-from jacaros.terms.deep import CyclicTerm
-from jacaros.terms.excerpt import excerpt
+from jacaros.terms.deep import CyclicTerm, excerpt
 from jacaros.terms.functions import FUNCTIONS
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve

@@ -16,7 +16,7 @@ from jacaros.bdi.state.intention import GOAL, Intention
 from jacaros.bdi.state.rule import OpenFact
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.errors import InternalError
-from jacaros.terms.detaching import detached, holds_collection
+from jacaros.terms.collections import detached, holds_collection
 from jacaros.terms.substitution import is_key
 from jacaros.terms.values import Functor, Term, arguments_of, functor_of
 

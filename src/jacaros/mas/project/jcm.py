@@ -7,7 +7,7 @@ artifacts, lists and structures as such, ``parent:`` of workspaces, workspaces n
 from contextlib import suppress
 from typing import Final
 
-from jacaros.asl.spelling import close_matches
+from jacaros.asl.slips import close_matches
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
 from jacaros.mas.project.jcm_agents import KEYS as AGENT_KEYS
 from jacaros.mas.project.jcm_agents import JcmAgents

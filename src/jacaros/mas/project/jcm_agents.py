@@ -2,8 +2,8 @@
 
 from typing import Final
 
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
-from jacaros.asl.spelling import close_matches
 from jacaros.mas.project.cursor import Token, text_of
 from jacaros.mas.project.jcm_values import NAME, JcmValues
 from jacaros.mas.project.parts import AgentPart, FocusPart, JoinPart

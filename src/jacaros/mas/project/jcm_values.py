@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterable
 from typing import Final
 
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
-from jacaros.asl.spelling import close_matches
 from jacaros.env.values import Atom, Structure
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
 from jacaros.mas.project.parts import AgentName, ProjectPart, Written

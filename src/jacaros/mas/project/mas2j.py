@@ -3,8 +3,8 @@
 from contextlib import suppress
 from typing import Final, NoReturn
 
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
-from jacaros.asl.spelling import close_matches
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, text_of
 from jacaros.mas.project.parts import AgentPart, ProjectPart

@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.slips import close_matches
 from jacaros.asl.source import Span
-from jacaros.asl.spelling import close_matches
 
 
 class Remarks:

@@ -7,7 +7,7 @@ from typing import Final
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.loader import parse_literals
 from jacaros.asl.lowering import lower_value
-from jacaros.asl.spelling import close_matches
+from jacaros.asl.slips import close_matches
 from jacaros.extension.literal import Literal, literal_of
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import Run
