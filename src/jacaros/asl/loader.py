@@ -10,10 +10,10 @@ from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
-from jacaros.asl.labels import check_labels
 from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import TEXT, SourceFile
+from jacaros.asl.walk import shape
 from jacaros.terms.functions import FunctionNames
 
 Result = TypeVar("Result")
@@ -59,7 +59,7 @@ def read_program(
     known = {} if functions is None else functions
     names = Names(count(1), count(1), count(1), known=known, actions={} if actions is None else actions)
     section = DirectiveProcessor(read, names, diagnostics).read_file(file)
-    check_labels(section.plans, diagnostics)
+    _check_labels(section.plans, diagnostics)
     return section.program(), _ordered(diagnostics)
 
 
@@ -86,7 +86,7 @@ def include_program(
     diagnostics: list[Diagnostic] = []
     processor = DirectiveProcessor(lambda inner, _: read(inner), _names_with(functions, actions), diagnostics)
     section = processor.read_file(SourceFile(name, text), Namespaces(namespace))
-    check_labels(section.plans, diagnostics)
+    _check_labels(section.plans, diagnostics)
     _settled(diagnostics)
     return section.program()
 
@@ -240,3 +240,42 @@ def _ordered(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
         return (-1, 0, 0) if span is None else (files[span.file.name], span.line, span.column)
 
     return sorted(diagnostics, key=place)
+
+
+def _check_labels(plans: list[nodes.Plan], diagnostics: list[Diagnostic]) -> None:
+    """Report labels that two different plans have; repetitions of one and the same plan are taken out.
+
+    Repetitions come about when a file is included twice.  *plans* is changed in place.
+    """
+    known: dict[tuple[object, str], nodes.Plan] = {}
+    repeated: list[int] = []
+    for index, plan in enumerate(plans):
+        if plan.subplans:
+            _check_labels(list(plan.subplans), diagnostics)
+        if not isinstance(plan.label, nodes.Literal):
+            continue
+        first = known.setdefault((plan.label.namespace, plan.label.functor), plan)
+        if first is plan:
+            continue
+        if shape(first) == shape(plan):
+            repeated.append(index)
+        else:
+            diagnostics.append(_two_plans(first, plan))
+    for index in reversed(repeated):
+        del plans[index]
+
+
+def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
+    assert isinstance(second.label, nodes.Literal)
+    where = ""
+    if first.span is not None:
+        file = first.span.file.name
+        elsewhere = second.span is None or second.span.file.name != file
+        where = f"; the first one is at {f'{file}, ' if elsewhere else ''}line {first.span.line}"
+    return Diagnostic(
+        "error",
+        f"two different plans have one label, @{second.label.functor}{where}",
+        second.label.span or second.span,
+        "give one of them another label",
+        "duplicate-label",
+    )

@@ -1,4 +1,4 @@
-"""All nodes of a tree, and its variables."""
+"""All nodes of a tree, its variables, and its shape."""
 
 from collections.abc import Iterator
 from typing import TypeVar
@@ -72,3 +72,17 @@ def operands(node: nodes.And | nodes.Or) -> list[nodes.Node]:
         else:
             found.append(node_)
     return found
+
+
+def shape(node: object, names: dict[str, int] | None = None) -> object:
+    """The tree without places and with variables numbered, to be compared: equal for trees that differ in the names
+    of their variables only."""
+    names = {} if names is None else names
+    if isinstance(node, nodes.Variable):
+        number = names.setdefault(node.name, len(names))
+        return (number, shape(node.annotations, names), shape(node.namespace, names), node.negated)
+    if isinstance(node, tuple):
+        return tuple([shape(part, names) for part in node])
+    if isinstance(node, nodes.Node):
+        return (type(node).__name__, *[shape(part, names) for part in node.parts()])
+    return node

@@ -1,10 +1,10 @@
 """Changes of the plan library and of rules at run time, and the loading of plans."""
 
 from jacaros.asl import nodes
-from jacaros.asl.labels import shape
 from jacaros.asl.loader import parse_plans
 from jacaros.asl.lowering import fresh_names, lower
 from jacaros.asl.reflection import Reflection
+from jacaros.asl.walk import shape
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.rules import belief_update, urgency
 from jacaros.bdi.rules.functions import known_names
