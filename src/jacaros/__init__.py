@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from jacaros.extension.belief_base import BeliefBase
     from jacaros.extension.conversation import ReceivedMessage
     from jacaros.extension.declaring import arithmetic_function, internal_action
-    from jacaros.extension.errors import UnknownAgent
     from jacaros.extension.literal import Literal
     from jacaros.extension.python_agent import PythonAgent
     from jacaros.extension.views import EventView as Event
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from jacaros.extension.views import PerceptView as Percept
     from jacaros.extension.views import PlanView as Plan
     from jacaros.mas.deployment import ProjectError
-    from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded
+    from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
     from jacaros.mas.embedding.main import run
     from jacaros.mas.embedding.mas import Mas
     from jacaros.mas.options import RunOptions
@@ -89,12 +88,11 @@ _MODULES = {
     "jacaros.extension.belief_base": "BeliefBase",
     "jacaros.extension.conversation": "ReceivedMessage",
     "jacaros.extension.declaring": "arithmetic_function internal_action",
-    "jacaros.extension.errors": "UnknownAgent",
     "jacaros.extension.literal": "Literal",
     "jacaros.extension.python_agent": "PythonAgent",
     "jacaros.extension.views": "Event=EventView Intention=IntentionView Message Option Percept=PerceptView Plan=PlanView",
     "jacaros.mas.deployment": "ProjectError",
-    "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded",
+    "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded UnknownAgent",
     "jacaros.mas.embedding.main": "run",
     "jacaros.mas.embedding.mas": "Mas",
     "jacaros.mas.options": "RunOptions",

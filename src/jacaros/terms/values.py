@@ -367,7 +367,6 @@ SOURCE_SELF = (SOURCE, SELF)
 SOURCE_PERCEPT = (SOURCE, PERCEPT)
 BY_SELF = (SOURCE_SELF,)
 """The annotations of most beliefs and goals, one shared object."""
-NO_ANNOTATIONS: tuple[Term, ...] = ()
 
 
 def make_list(items: Iterable[Term], tail: Term = NIL) -> Term:
