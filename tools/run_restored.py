@@ -21,7 +21,7 @@ from jacaros.mas.agent_host import AgentHost
 CHANCE = 0.2
 """How likely a mind is exchanged after a few cycles."""
 FEW = 6
-KEPT = ("accepts", "evaluators", "goal_observer", "on_finish", "on_lost", "project_functions")
+KEPT = ("goal_observer", "on_lost", "project")
 """What the host has given to the mind."""
 
 random = Random(os.environ.get("JACAROS_RESTORED_SEED", "1"))
@@ -53,7 +53,7 @@ def exchange(host: AgentHost, old: Mind) -> None:
             with open(os.environ["JACAROS_NOT_RESTORED"], "a", encoding="utf-8") as report:
                 report.write(f"{old.name}: {why}\n")
         return
-    for alarm in old.alarms.values():
+    for alarm in old.waits.alarms.values():
         alarm.timer.cancel()
     new = Mind(old.name, old.program, host, old.options, old.actions)
     for name in KEPT:

@@ -1,7 +1,6 @@
 """The agent: a mind with a program.  It is given things, makes cycles, and reaches out through its architecture."""
 
 from collections.abc import Iterable, Mapping
-from functools import partial
 from typing import Any
 
 from jacaros.asl import nodes
@@ -79,6 +78,7 @@ class Mind(Circumstance):
         "_beginning",
         "_ended_at_once",
         "_namespaces",
+        "face",
         "messages",
         "program",
     )
@@ -97,13 +97,13 @@ class Mind(Circumstance):
         super().__init__(name, architecture, known, options or Options(), made)
         self.program = program
         self.context = Context(self)
+        self.face: object = None
         self.selections = Fair(self)
         self._acts = 0
         self._beginning = 0
         self._ended_at_once: Completion | None = None
         self.messages = 0
         self._namespaces = 0
-        self.call_own = partial(functions.call_own, self)
         self.register_functions(program.functions)
         plan_changes.look_at_plans(self)
 
@@ -212,6 +212,11 @@ class Mind(Circumstance):
         del killer
         return True
 
+    def accepts(self, message: SpeechAct) -> bool:
+        """Whether a message is acceptable; agent classes of projects may say no."""
+        del message
+        return True
+
     def receive(self, message: SpeechAct) -> None:
         """Take a message; it is looked at in a later cycle.
 
@@ -244,7 +249,7 @@ class Mind(Circumstance):
         if act_id == self._beginning:
             self._beginning, self._ended_at_once = 0, completion
             return
-        waiting = self.pending_acts.pop(act_id, None)
+        waiting = self.waits.acts.pop(act_id, None)
         if waiting is None:
             return
         if not completion.success:
@@ -273,6 +278,7 @@ class Mind(Circumstance):
         """The agent will be ended after so many milliseconds; its plans may prepare for it."""
         meta_events.shutting_down(self, milliseconds)
 
+    observe_rest = meta_events.observe_rest  # pyright: ignore[reportAssignmentType]
     drop_wait = waits.drop  # pyright: ignore[reportAssignmentType]
     notify_event_waits = waits.notify_event_waits  # pyright: ignore[reportAssignmentType]
 
@@ -292,6 +298,7 @@ class Mind(Circumstance):
     collect_formula = query.collect_formula
     drop_desire = goals.drop_desire
     call_function = functions.call_function
+    call_own = functions.call_own  # pyright: ignore[reportAssignmentType]
 
     def change_mind(self, operator: str, term: Term) -> Raised:
         """A belief operator whose operand is known only at run time: a literal, a plan or a rule.
@@ -376,7 +383,7 @@ class Mind(Circumstance):
         if (
             completion is not None
             and completion.success
-            and not self.meta
+            and not self.features.meta
             and (not completion.outputs or self._take_outputs(completion) is None)
         ):
             # It would be made ready in the next cycle before all others: it may as well be ready now.
@@ -384,7 +391,7 @@ class Mind(Circumstance):
             return None
         waiting = ActWait(intention, (ACTION, (symbol, *arguments) if arguments else symbol), number)
         waiting.attach(intention.frames[-1], next_step)
-        self.pending_acts[number] = waiting
+        self.waits.acts[number] = waiting
         if completion is not None:
             self.complete(number, completion)
         return SUSPENDED

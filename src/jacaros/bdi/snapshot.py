@@ -32,31 +32,22 @@ FORMAT = 2
 _FIELDS = (
     "_acts",
     "_namespaces",
-    "abandoned_asks",
-    "alarms",
-    "alarms_made",
     "alive",
     "asleep",
     "atomic",
     "atomic_over",
-    "blamed",
     "called",
     "cycles",
     "drowsy",
-    "held_percepts",
     "inbox",
     "intentions_made",
     "messages",
     "next_count",
     "next_look",
-    "pending_acts",
-    "pending_asks",
-    "requeued",
-    "suspended_events",
     "tasks",
 )
+_WAITS = ("abandoned", "acts", "alarms", "alarms_made", "questions", "requeued", "suspended_events")
 _QUEUES = ("events", "intentions", "crowd")
-_KNOWLEDGE = ("functions", "namespace_properties", "plans_made")
 _INTERRUPTED = (
     (functor("env_failure_reason", 1), atom("interrupted")),
     (functor("error_msg", 1), String("the agent was stored and restored while the action was under way")),
@@ -69,11 +60,13 @@ def stored(mind: Mind) -> dict[str, Any]:
     Raises:
         NotStorable: the mind holds a live object.
     """
-    conditions = mind.condition_waits
+    conditions = mind.waits.conditions
     held = knowledge(mind)
     held |= {name: getattr(mind, name) for name in _FIELDS}
+    held |= {name: getattr(mind.waits, name) for name in _WAITS}
+    held["held_percepts"], held["blamed"] = mind.beliefs.held_percepts, mind.library.blamed
     held |= {name: list(getattr(mind, name)) for name in _QUEUES}
-    held["event_waits"] = [wait for kind in mind.event_waits.values() for wait in kind.values()]
+    held["event_waits"] = [wait for kind in mind.waits.events.values() for wait in kind.values()]
     held["condition_waits"] = (list(conditions.values()), list(conditions.due), list(conditions.restless))
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
     held["percepts"] = list(mind.percepts)
@@ -115,6 +108,9 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     _learn(mind, held)
     for name in _FIELDS:
         setattr(mind, name, held[name])
+    for name in _WAITS:
+        setattr(mind.waits, name, held[name])
+    mind.beliefs.held_percepts, mind.library.blamed = held["held_percepts"], held["blamed"]
     for name in _QUEUES:
         getattr(mind, name).extend(held[name])
     for percepts in reversed(held["percepts"]):
@@ -133,31 +129,31 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
 
 def _leave_host(mind: Mind) -> None:
     """End what only the old host knew of."""
-    for number in list(mind.pending_acts):
+    for number in list(mind.waits.acts):
         mind.complete(number, Completion(False, annotations=_INTERRUPTED))
-    mind.held_percepts.clear()
+    mind.beliefs.held_percepts.clear()
     for table in mind.beliefs.values():
         for entry, annotations in table.entries():
             if SOURCE_PERCEPT in annotations:
                 take_away(table, entry, annotations, (SOURCE_PERCEPT,))
-    mind.condition_waits.due.update(mind.condition_waits)
+    mind.waits.conditions.due.update(mind.waits.conditions)
     mind.do_soon(look_again)
 
 
 def _wait_again(mind: Mind, held: dict[str, Any]) -> None:
     for wait in sorted(held["event_waits"], key=lambda each: each.number):
-        mind.event_waits.add(wait, wait.number)
+        mind.waits.events.add(wait, wait.number)
     conditions, due, restless = held["condition_waits"]
     for wait in conditions:
-        mind.condition_waits.add(wait, wait.number)
-    mind.condition_waits.due = {number: mind.condition_waits[number] for number in due}
-    mind.condition_waits.restless = {number: mind.condition_waits[number] for number in restless}
+        mind.waits.conditions.add(wait, wait.number)
+    mind.waits.conditions.due = {number: mind.waits.conditions[number] for number in due}
+    mind.waits.conditions.restless = {number: mind.waits.conditions[number] for number in restless}
     now = mind.architecture.now()
     set_back = max(0.0, held["time"] - now)
     for intention in mind.alive.values():
         if isinstance(intention.waiting, TimedWait):
             intention.waiting.began -= set_back
-    for alarm in mind.alarms.values():
+    for alarm in mind.waits.alarms.values():
         alarm.due -= set_back
         waits.start_alarm(mind, alarm, max(0.0, alarm.due - now))
 
@@ -167,7 +163,11 @@ def knowledge(agent: Circumstance) -> dict[str, Any]:
 
     ``beliefs`` has a functor, the entries with their annotations, oldest first, and those behind all others.
     """
-    held: dict[str, Any] = {name: getattr(agent, name) for name in _KNOWLEDGE}
+    held: dict[str, Any] = {
+        "functions": agent.functions,
+        "namespace_properties": agent.beliefs.namespace_properties,
+        "plans_made": agent.library.plans_made,
+    }
     held["beliefs"] = [
         (symbol, list(table.rows.items()), list(table.late.items()))
         for symbol, table in agent.beliefs.items()
@@ -183,8 +183,9 @@ def _learn(mind: Mind, held: dict[str, Any]) -> None:
         for entries, last in ((rows, False), (late, True)):
             for entry, annotations in entries:
                 mind.beliefs[symbol].add(entry, annotations, last)
-    for name in _KNOWLEDGE:
-        setattr(mind, name, held[name])
+    mind.functions = held["functions"]
+    mind.beliefs.namespace_properties = held["namespace_properties"]
+    mind.library.plans_made = held["plans_made"]
     if held["plans"] is not None:
         mind.library.take_parts(*held["plans"])
     look_at_plans(mind)

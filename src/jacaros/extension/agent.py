@@ -127,7 +127,7 @@ class Agent:
         formula = lower(parse_formula(query), names.__getitem__)
         mark = len(mind.trail)
         answers = []
-        for _ in run(mind.solve_formula(formula, mind.trail), mind.rule_depth):
+        for _ in run(mind.solve_formula(formula, mind.trail), mind.options.rule_depth):
             answers.append(
                 {name: to_value(resolve(variable)) for name, variable in names.items() if name[:1] != "_"}
             )

@@ -47,11 +47,14 @@ class CustomMind(Mind):
         give_face(self, face)
         if any(overridden(face, name) for name in _SELECTION_FUNCTIONS):
             self.selections = Chosen(self, face)
-        if (accepts := overridden(face, "soc_acc")) is not None:
-            self.accepts = lambda message: ask(self, accepts, bool, True, Message(message))
         self._revises = overridden(face, "brf")
         self.usual_events = self.usual_events and self._revises is None
         self._notices = overridden(face, "buf")
+
+    def accepts(self, message: SpeechAct) -> bool:
+        """Whether the class accepts a message."""
+        accepts = overridden(self.look(), "soc_acc")
+        return accepts is None or ask(self, accepts, bool, True, Message(message))
 
     def perceive(self, percepts: list[Percept]) -> None:
         """Take note of the changes in the environment that the class lets through."""

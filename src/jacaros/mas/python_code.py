@@ -122,8 +122,7 @@ class PythonCode:
 
     def serve(self, agent: Circumstance) -> None:
         """Let an agent evaluate the functions of the project, also in what it reads at run time."""
-        agent.project_functions = self.functions
-        agent.evaluators = self.evaluators
+        agent.project = self
 
 
 def _refused(actions: Mapping[str, InternalAction]) -> dict[str, InternalAction]:

@@ -86,7 +86,7 @@ def test_a_condition_costs_the_changes_of_other_beliefs_nothing(
             "+!change <- for (.range(I, 1, 100)) { +c(-I, I); .wait(0); +d(I) }."
         )
         host.run()
-        assert len(host.agent.condition_waits) == waits
+        assert len(host.agent.waits.conditions) == waits
         host.agent.post_goal(atom("change"))
         return calls_of(host.run)
 
@@ -99,6 +99,6 @@ def test_nothing_is_left_of_waits_that_are_over() -> None:
         "+!wait <- .wait(c(1, X) & not d(X) & .count(e(X), 5) & .intend(go), 10000)."
     )
     host.run(seconds=1)
-    waits = host.agent.condition_waits
+    waits = host.agent.waits.conditions
     assert "done[source(self)]" in believed(host, "done")
     assert (waits, waits.restless, waits.due, waits._index) == ({}, {}, {}, {})

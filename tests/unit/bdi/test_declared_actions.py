@@ -47,8 +47,8 @@ def test_a_formula_of_run_time_collects() -> None:
 def test_a_wait_follows_the_condition() -> None:
     host = mind("p(1). !g.\n+!g <- .wait(.total(X, p(X), 3)); .print(done).")
     host.run()
-    assert host.agent.condition_waits
-    assert not host.agent.condition_waits.restless
+    assert host.agent.waits.conditions
+    assert not host.agent.waits.conditions.restless
 
 
 def test_a_failure_is_explained_with_the_value() -> None:

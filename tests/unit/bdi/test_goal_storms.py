@@ -146,13 +146,13 @@ class Storm:
         """Every action that has begun is pending, has ended or was cancelled, and only one of them."""
         ended = [*self.completed, *self.host.cancelled]
         assert len(ended) == len(set(ended))
-        assert sorted(self.agent.pending_acts) == sorted(self.under_way())
+        assert sorted(self.agent.waits.acts) == sorted(self.under_way())
         agent = self.agent
         waits = [
-            *agent.pending_acts.values(),
-            *agent.condition_waits.values(),
+            *agent.waits.acts.values(),
+            *agent.waits.conditions.values(),
         ]
-        waits += [each for held in agent.event_waits.values() for each in held.values()]
+        waits += [each for held in agent.waits.events.values() for each in held.values()]
         assert not any(waiting.intention.dropped for waiting in waits)
         ready = [intention for intention in agent.intentions if not intention.dropped]
         assert len(ready) == len(set(ready))
@@ -182,10 +182,10 @@ def emptiness(storm: Storm) -> dict[str, object]:
         "alive": [(i, [text_of(frame) for frame in i.frames]) for i in agent.alive.values()],
         "intentions": [i for i in agent.intentions if not i.dropped],
         "events": list(agent.events),
-        "suspended events": agent.suspended_events,
-        "acts": agent.pending_acts,
-        "event waits": agent.event_waits,
-        "condition waits": agent.condition_waits,
+        "suspended events": agent.waits.suspended_events,
+        "acts": agent.waits.acts,
+        "event waits": agent.waits.events,
+        "condition waits": agent.waits.conditions,
         "tasks": list(agent.tasks),
         "atomic": agent.atomic,
         "trail": list(agent.trail),

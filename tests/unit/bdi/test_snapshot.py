@@ -45,7 +45,7 @@ def restored(host: RecordingHost) -> Mind:
     """A new mind in the place of that of the host."""
     old = host.agent
     text = json.dumps(stored(old))
-    for alarm in old.alarms.values():
+    for alarm in old.waits.alarms.values():
         alarm.timer.cancel()
     host.agent = Mind(old.name, old.program, host, old.options, old.actions)
     restore(host.agent, json.loads(text), same_host=True)

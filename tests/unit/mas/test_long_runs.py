@@ -64,7 +64,7 @@ def kept(folder: Path, program: str, count: int) -> tuple[dict[str, int], dict[s
         entries = {
             "references": len(surroundings._references._kept),
             "annotations": len(surroundings._writer._annotations),
-            "held percepts": len(host.mind.held_percepts),
+            "held percepts": len(host.mind.beliefs.held_percepts),
             "beliefs": sum(map(len, host.mind.beliefs.values())),
             "pending": len(host.body.pending),
             "intentions": len(host.mind.alive),

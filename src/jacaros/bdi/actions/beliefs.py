@@ -217,7 +217,7 @@ def _properties(ctx: Context, namespace: Term) -> dict[Term, Term]:
     """The properties of a namespace, by key; a change of them stays."""
     if not isinstance(namespace, Functor):
         raise WrongArguments(f"the first argument must be the name of a namespace, not {text(namespace)}")
-    found: dict[Term, Term] = ctx.agent.namespace_properties.setdefault(namespace.name, {})
+    found: dict[Term, Term] = ctx.agent.beliefs.namespace_properties.setdefault(namespace.name, {})
     return found
 
 

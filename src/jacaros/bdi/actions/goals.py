@@ -280,9 +280,9 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
         if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):
             yield
     for _ in goals.goal_events(ctx.agent, goal):
-        if any(goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.suspended_events) and ctx.unify(
-            reason, atom("suspended")
-        ):
+        if any(
+            goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.waits.suspended_events
+        ) and ctx.unify(reason, atom("suspended")):
             yield
             return
 

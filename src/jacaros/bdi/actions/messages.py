@@ -158,7 +158,7 @@ def _ask(
     for name in receivers:
         message_id = ctx.agent.next_message_id()
         waiting.ids.append(message_id)
-        ctx.agent.pending_asks[message_id] = waiting
+        ctx.agent.waits.questions[message_id] = waiting
         _say(ctx.agent, name, act, content, None, message_id)
     if len(rest) > 1:
         if rest[1].__class__ is not float:

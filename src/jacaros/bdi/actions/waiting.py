@@ -39,13 +39,13 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     waiting: EventWait | ConditionWait
     if found is not None:
         waiting = EventWait(intention, _reason(intention, rename(found[1])), elapsed, began, *found[:2])
-        agent.event_waits.add(waiting)
+        agent.waits.events.add(waiting)
     elif ctx.succeeds(what):
         return None if elapsed is None else ctx.unify(elapsed, 0.0)
     else:
         asked = asked_by(what, agent.beliefs, agent.actions)
         waiting = ConditionWait(intention, _reason(intention, rename(what)), elapsed, began, what, asked)
-        agent.condition_waits.add(waiting)
+        agent.waits.conditions.add(waiting)
         agent.called = True
     if limit is not None:
         waiting.alarm = waits.set_alarm(agent, limit / 1000.0, waits.time_out, waiting)

@@ -214,14 +214,14 @@ class _LookOnly:
         self.actions = _Actions(agent)
         self.context = _Silent(agent, self)
         self.architecture = agent.architecture
-        self.rule_depth = agent.rule_depth
+        self.options = agent.options
         self._agent = agent
         self._repeatable: dict[int, nodes.Node] = {}
 
     def answers(self, formula: Term, trail: Trail) -> Iterator[Any]:
         """The answers of a formula."""
         view = cast("Circumstance", self)
-        return run(solve_formula(view, formula, trail), self.rule_depth)
+        return run(solve_formula(view, formula, trail), self.options.rule_depth)
 
     def refuse_effects(self, formula: nodes.Node) -> None:
         """Look through a formula for what may have an effect.

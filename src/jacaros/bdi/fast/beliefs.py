@@ -35,11 +35,11 @@ def add_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotations) 
         posted: Raised = agent.add_belief(symbol, row, annotations)
         return posted
     new = table.add(row, annotations)
-    if new is not BY_SELF or agent.condition_waits:
+    if new is not BY_SELF or agent.waits.conditions:
         return own_event(agent, symbol, row, new)
     kind = table.added
     if agent.selects[kind] is None and not (
-        agent.events or agent.intentions or agent.event_waits or agent.subplans
+        agent.events or agent.intentions or agent.waits.events or agent.features.subplans
     ):
         return None
     return (kind, *row)
@@ -56,9 +56,9 @@ def replace_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotatio
         return posted
     if table.remove(newest) and (
         agent.selects[table.deleted] is not None
-        or agent.event_waits
-        or agent.condition_waits
-        or agent.subplans
+        or agent.waits.events
+        or agent.waits.conditions
+        or agent.features.subplans
     ):
         external_change(agent, "-", symbol, newest, BY_SELF)
     return add_belief(agent, symbol, row, annotations)
@@ -105,10 +105,20 @@ def take_percepts(agent: Circumstance) -> None:
 
 def _take_in(agent: Circumstance, percepts: list[Percept]) -> None:
     """Take in what was noticed in one step, where its events go into the queue as they are."""
-    if agent.event_waits or agent.condition_waits or agent.subplans or not _has_room(agent, len(percepts)):
+    if (
+        agent.waits.events
+        or agent.waits.conditions
+        or agent.features.subplans
+        or not _has_room(agent, len(percepts))
+    ):
         perceiving.take_in(agent, percepts)
         return
-    beliefs, holders, selects, events = agent.beliefs, agent.held_percepts, agent.selects, agent.events
+    beliefs, holders, selects, events = (
+        agent.beliefs,
+        agent.beliefs.held_percepts,
+        agent.selects,
+        agent.events,
+    )
     for percept in percepts:
         literal, annotations, kind = percept.literal, percept.annotations, percept.kind
         symbol, row, change, event = percept.kept or _kept(agent, percept)
@@ -138,8 +148,8 @@ def _has_room(agent: Circumstance, count: int) -> bool:
     return (
         agent.options.events == "discard"
         and agent.selections.urgencies is None
-        and len(agent.events) + count <= agent.event_limit
-        and len(agent.alive) < agent.intention_limit
+        and len(agent.events) + count <= agent.options.event_limit
+        and len(agent.alive) < agent.options.intention_limit
     )
 
 

@@ -72,7 +72,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                 intention = select_intention(agent)
             if intention is not None:
                 try:
-                    if agent.event_waits:
+                    if agent.waits.events:
                         execute(agent, intention)
                         fuel -= 1
                     elif agent.atomic is not None:
@@ -84,16 +84,18 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                 except Exception as fault:
                     fuel -= 1
                     failure.give_up(agent, agent.current or intention, fault)
-                if agent.requeued:
-                    events.extendleft(reversed(agent.requeued))
-                    agent.requeued.clear()
-                elif not (events or intentions or agent.crowd or agent.called or agent.edges):
+                if agent.waits.requeued:
+                    events.extendleft(reversed(agent.waits.requeued))
+                    agent.waits.requeued.clear()
+                elif not (events or intentions or agent.crowd or agent.called or agent.features.edges):
                     # That was all: the next cycle would find nothing to do.
                     agent.cycles += begun - fuel
                     return False
             elif (events and agent.atomic is None) or agent.inbox:
                 fuel -= 1
-            elif not (agent.percepts or agent.tasks or (agent.edges and meta_events.fall_asleep(agent))):
+            elif not (
+                agent.percepts or agent.tasks or (agent.features.edges and meta_events.fall_asleep(agent))
+            ):
                 if not events and agent.atomic is None:
                     agent.cycles += begun - fuel
                     return False
@@ -113,7 +115,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts and one message, if there is nothing else."""
     if (
         agent.tasks
-        or (agent.condition_waits and agent.condition_waits.want_a_look())
+        or (agent.waits.conditions and agent.waits.conditions.want_a_look())
         or (agent.inbox and not agent.selections.plain)
         or agent.options.percept_interval != 1
     ):
@@ -199,7 +201,7 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
     if made is None:
         return go_without(agent, intention, goal, annotations, None)
     frames = intention.frames
-    if agent.atomic is None and not made[4].atomic and len(frames) < agent.goal_depth:
+    if agent.atomic is None and not made[4].atomic and len(frames) < agent.options.goal_depth:
         if (
             frames
             and (caller := frames[-1])[0] is None
@@ -248,7 +250,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
     events, intentions = agent.events, agent.intentions
     option_filter, depth, tail_calls = (
         agent.selections.option_filter,
-        agent.goal_depth,
+        agent.options.goal_depth,
         agent.options.tail_calls,
     )
     urgencies = agent.selections.urgencies
@@ -305,7 +307,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
         annotations: EventAnnotations = BY_SELF
         if goal.__class__ is not tuple:
             if goal is SUSPENDED:
-                if agent.meta:
+                if agent.features.meta:
                     tell_waiting(agent, intention)
                 break
             if goal is FAILED:

@@ -88,7 +88,7 @@ class Searches(dict[int, Search]):
             for place, value in zip(places, given, strict=True):
                 arguments[place] = value
             found = solve(agent, predicate, tuple(arguments), trail, lasting=deep)
-            return found if deep else run(found, agent.rule_depth)
+            return found if deep else run(found, agent.options.rule_depth)
 
         return search
 

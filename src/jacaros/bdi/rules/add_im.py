@@ -16,7 +16,7 @@ def select_plan(
     """Rules RelPl, ApplPl and SelAppl: the frame of the plan that is taken, sub-plans of *intention* first."""
     trail = agent.trail
     trail.serial += 1
-    if agent.subplans and intention is not None:
+    if agent.features.subplans and intention is not None:
         inner = subplans.select_in_scope(agent, intention, goal, annotations)
         if inner is not None:
             trail.clear()
@@ -50,7 +50,7 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
         and caller[PLAN].replaceable
     ):
         frames[-1] = frame
-        if agent.meta:
+        if agent.features.meta:
             meta_events.observe(agent, intention, caller, "replaced")
         if agent.atomic is intention and not intention.is_atomic():
             agent.atomic_over = True
@@ -58,9 +58,9 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
         frames.append(frame)
     if plan.atomic:
         agent.atomic, agent.atomic_over = intention, False
-    if agent.meta and trigger.kind and not trigger.failing:
+    if agent.features.meta and trigger.kind and not trigger.failing:
         meta_events.frame_state(agent, intention, frame, "executing")
-    return len(frames) <= agent.goal_depth or has_room(agent, intention)
+    return len(frames) <= agent.options.goal_depth or has_room(agent, intention)
 
 
 def go_without(
@@ -82,7 +82,7 @@ def go_without(
         agent.post(event)
         return False
     agent.note(posted.goal[0])
-    if agent.event_waits:
+    if agent.waits.events:
         agent.notify_event_waits(event)
     return push(agent, intention, posted.goal, posted.annotations)
 
@@ -90,15 +90,15 @@ def go_without(
 def is_alone(agent: Circumstance) -> bool:
     """Whether nothing else wants the next cycle."""
     if agent.atomic is not None:
-        return not agent.goal_conditions
+        return not agent.features.goal_conditions
     return not (
         agent.events
         or agent.intentions
         or agent.inbox
         or agent.tasks
         or agent.percepts
-        or (agent.condition_waits and agent.condition_waits.restless)
-        or agent.goal_conditions
+        or (agent.waits.conditions and agent.waits.conditions.restless)
+        or agent.features.goal_conditions
     )
 
 

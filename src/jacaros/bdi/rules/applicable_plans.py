@@ -70,7 +70,7 @@ class Selection:
                 yield _frame(plan, goal, annotations, names, agent.trail.serial)
                 return
             context = answers(agent, plan.node.context, names.__getitem__, agent.trail)
-            for _ in run(context, agent.rule_depth):
+            for _ in run(context, agent.options.rule_depth):
                 yield _frame(plan, goal, annotations, names, agent.trail.serial)
         except InternalError:
             raise

@@ -71,11 +71,11 @@ def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: boo
     """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
     unplanned = agent.selects[goal[0]] is None and not _is_kept(agent, goal[0])
     if apart or agent.options.new_focus:
-        if unplanned and not agent.event_waits:
+        if unplanned and not agent.waits.events:
             return None
         agent.post((_apart(goal), None, annotations, None))
         return None
-    if unplanned and not (agent.events or agent.intentions or agent.event_waits):
+    if unplanned and not (agent.events or agent.intentions or agent.waits.events):
         # Nothing comes in between: the event would only be taken up and passed over.
         return None
     return goal if annotations is BY_SELF else Posted(goal, annotations)
@@ -94,7 +94,7 @@ def _apart(goal: Goal) -> Goal:
 
 def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
     """A belief changed: the agent looks again at the awaited conditions that ask for such beliefs."""
-    if agent.condition_waits and agent.condition_waits.changed(symbol, row):
+    if agent.waits.conditions and agent.waits.conditions.changed(symbol, row):
         agent.do_soon(look_again)
 
 
@@ -156,7 +156,7 @@ def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotatio
     row = tuple(map(resolve, arguments))
     if not all(map(is_key, row)):
         return False
-    held = agent.held_percepts.get((symbol, *row) if row else symbol)
+    held = agent.beliefs.held_percepts.get((symbol, *row) if row else symbol)
     if held is None:
         return False
     return _OBSERVABLE_PROPERTY in (held[0][0] if held.__class__ is list else held)
@@ -255,7 +255,7 @@ def external_change(
     """Raise the external event of a belief change, if anybody cares."""
     table = agent.beliefs[symbol]
     kind = table.added if operator == "+" else table.deleted
-    if agent.selects[kind] is not None or agent.event_waits or _is_kept(agent, kind):
+    if agent.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
     note_change(agent, symbol, row)
 
@@ -293,7 +293,7 @@ def _abolish_entry(
 
 def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
     """Add a rule at run time; rules raise no events."""
-    if agent.condition_waits:
-        agent.condition_waits.depend_on_rules(head)
+    if agent.waits.conditions:
+        agent.waits.conditions.depend_on_rules(head)
         agent.do_soon(look_again)
     agent.beliefs[head].add(rule, rule.head_annotations(), last)

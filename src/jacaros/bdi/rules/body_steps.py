@@ -206,7 +206,7 @@ class GoalCondition:
 
 def holds(agent: Any, condition: nodes.Node, names: Names, trail: Trail) -> bool:
     """Whether a condition has an answer; the bindings of the first one stay."""
-    for _ in run(answers(agent, condition, names.__getitem__, trail), agent.rule_depth):
+    for _ in run(answers(agent, condition, names.__getitem__, trail), agent.options.rule_depth):
         return True
     return False
 
@@ -333,7 +333,7 @@ def _rounds(node: nodes.For, agent: Any, names: Names, wanted: list[str]) -> Ite
     """What the variables of a ``for`` are in each round."""
     trail = Trail()
     trail.serial = agent.trail.serial
-    for _ in run(answers(agent, node.condition, names.__getitem__, trail), agent.rule_depth):
+    for _ in run(answers(agent, node.condition, names.__getitem__, trail), agent.options.rule_depth):
         bound = [(variable, variable.ref) for variable in trail]
         yield tuple(deref(names[name]) for name in wanted)
         for variable, value in bound:  # the loop gave them back, and the search goes on from there

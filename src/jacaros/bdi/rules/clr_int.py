@@ -28,7 +28,7 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
             del frames[index:]
         else:
             frames.pop()
-        if agent.meta and trigger.kind:
+        if agent.features.meta and trigger.kind:
             meta_events.observe(agent, intention, frame, "recovered" if trigger.failing else "achieved")
             meta_events.goal_state(agent, frame[GOAL], frame[2], "achieved")
             meta_events.frame_state(agent, intention, frame, "finished")
@@ -66,8 +66,8 @@ def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
         raise
     except Exception as fault:
         undo(agent.trail, 0)
-        if frame[PLAN] not in agent.blamed:
-            agent.blamed.add(frame[PLAN])
+        if frame[PLAN] not in agent.library.blamed:
+            agent.library.blamed.add(frame[PLAN])
             failure.passed_over(agent, f"the goal condition of plan {text(frame[PLAN].label)}", fault)
         return False
 
@@ -75,7 +75,7 @@ def _is_achieved(agent: Circumstance, frame: Frame) -> bool:
 def pending_event(agent: Circumstance, intention: Intention) -> Event | None:
     """The event of the queue that an intention waits for, if any."""
     return next(
-        (e for e in (*agent.events, *agent.suspended_events) if e[EVENT_INTENTION] is intention), None
+        (e for e in (*agent.events, *agent.waits.suspended_events) if e[EVENT_INTENTION] is intention), None
     )
 
 
@@ -83,7 +83,7 @@ def remove_event(agent: Circumstance, event: Event) -> None:
     kept = [e for e in agent.events if e is not event]
     agent.events.clear()
     agent.events.extend(kept)
-    agent.suspended_events = [e for e in agent.suspended_events if e is not event]
+    agent.waits.suspended_events = [e for e in agent.waits.suspended_events if e is not event]
 
 
 def cut(agent: Circumstance, intention: Intention, index: int) -> None:
@@ -106,7 +106,7 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
 
 def achieve(agent: Circumstance, intention: Intention, index: int) -> None:
     """Cut a stack at a goal that ends as achieved; the goals that served it are dropped."""
-    if agent.meta:
+    if agent.features.meta:
         for place, frame in reversed(list(enumerate(intention.frames))[index:]):
             state = "achieved" if place == index else "dropped"
             tell = meta_events.observe if frame[GOAL][0].failing else meta_events.frame_state

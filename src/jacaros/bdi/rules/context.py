@@ -45,13 +45,15 @@ class Context:
     Attributes:
         agent: the agent, for actions about its beliefs, goals and plans.
         trail: where bindings are noted.
+        parsed: texts that were read lately, by text and number of functions.
     """
 
-    __slots__ = ("agent", "trail")
+    __slots__ = ("agent", "parsed", "trail")
 
     def __init__(self, agent: Circumstance) -> None:
         self.agent: Any = agent
         self.trail: Trail = agent.trail
+        self.parsed: dict[tuple[str, int], Parsed] = {}
 
     @property
     def architecture(self) -> Architecture:
@@ -83,7 +85,7 @@ class Context:
 
     def answers(self, formula: Term) -> Iterator[None]:
         """The answers of a formula; its bindings hold until the next one is asked for."""
-        for _ in run(solve_formula(self.agent, formula, self.trail), self.agent.rule_depth):
+        for _ in run(solve_formula(self.agent, formula, self.trail), self.agent.options.rule_depth):
             yield
 
     def succeeds(self, formula: Term) -> bool:
@@ -98,13 +100,13 @@ class Context:
         """
         agent = self.agent
         key = text, len(agent.functions)
-        known: Parsed | None = agent.parsed.get(key)
+        known: Parsed | None = self.parsed.get(key)
         if known is None:
             known = Parsed(parse_term(text, functions=known_names(agent)))
             if len(text) <= _SHORT:
-                if len(agent.parsed) >= _KEPT:
-                    agent.parsed.clear()
-                agent.parsed[key] = known
+                if len(self.parsed) >= _KEPT:
+                    self.parsed.clear()
+                self.parsed[key] = known
         return known.term if known.term is not None else lower_value(known.node, self._names().__getitem__)
 
     def _names(self) -> Names:

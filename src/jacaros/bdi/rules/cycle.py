@@ -75,7 +75,7 @@ def deliberate(agent: Circumstance) -> bool:
     """A reasoning cycle after its look at what has come."""
     if agent.events:
         _take_up_event(agent)
-    if agent.goal_conditions:
+    if agent.features.goal_conditions:
         end_achieved_goals(agent)
     intention = select_intention(agent)
     if intention is None:
@@ -87,9 +87,9 @@ def deliberate(agent: Circumstance) -> bool:
     except Exception as fault:
         failure.give_up(agent, agent.current or intention, fault)
     agent.cycles += 1
-    if agent.requeued:
-        agent.events.extendleft(reversed(agent.requeued))
-        agent.requeued.clear()
+    if agent.waits.requeued:
+        agent.events.extendleft(reversed(agent.waits.requeued))
+        agent.waits.requeued.clear()
     return True
 
 
@@ -105,12 +105,12 @@ def _waits(agent: Circumstance) -> bool:
     if (agent.events and agent.atomic is None) or agent.inbox:
         agent.cycles += 1
         return True
-    return bool(agent.percepts or agent.tasks or (agent.edges and meta_events.fall_asleep(agent)))
+    return bool(agent.percepts or agent.tasks or (agent.features.edges and meta_events.fall_asleep(agent)))
 
 
 def is_done(agent: Circumstance) -> bool:
     """Whether the next cycle would find nothing to do."""
-    return not (agent.events or agent.intentions or agent.crowd or agent.called or agent.edges)
+    return not (agent.events or agent.intentions or agent.crowd or agent.called or agent.features.edges)
 
 
 def has_work(agent: Circumstance) -> bool:
@@ -134,7 +134,7 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         agent.inbox
         or agent.percepts
         or agent.tasks
-        or agent.condition_waits.want_a_look()
+        or agent.waits.conditions.want_a_look()
         or agent.special
         or not agent.selections.plain
     )

@@ -51,7 +51,7 @@ def execute(agent: Circumstance, intention: Intention) -> None:
     if agent.stopped or intention.dropped:
         pass
     elif posted is SUSPENDED:
-        if agent.meta:
+        if agent.features.meta:
             tell_waiting(agent, intention)
     elif posted is not None:
         _pursue(agent, intention, posted)
@@ -106,9 +106,9 @@ def _report(agent: Circumstance, fault: Exception) -> None:
 
 def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
     """Tell those who wait for a goal or event that it has been posted."""
-    if agent.event_waits:
+    if agent.waits.events:
         agent.notify_event_waits((goal, intention, annotations, None))
-    if agent.meta and goal[0].operator == "+" and goal[0].kind:
+    if agent.features.meta and goal[0].operator == "+" and goal[0].kind:
         meta_events.goal_state(agent, goal, annotations, "pending")
 
 

@@ -192,7 +192,7 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
             continue
         kind = trigger.on_fail
         if kind is not None and (
-            selects[kind] is not None or (agent.subplans and handles(agent, intention, index, kind))
+            selects[kind] is not None or (agent.features.subplans and handles(agent, intention, index, kind))
         ):
             goal = frame[1]
             release_bindings(goal, frame[3])

@@ -39,7 +39,7 @@ def fork(
     """Begin the branches; the intention that forks is replaced by theirs."""
     parent = agent.current
     assert parent is not None
-    if len(agent.alive) + len(firsts) > agent.intention_limit:
+    if len(agent.alive) + len(firsts) > agent.options.intention_limit:
         agent.budgets["intention_limit"].refuse(len(agent.alive))
     point = Fork(operator == "and", len(parent.frames) - 1, next_step, len(firsts))
     del frame

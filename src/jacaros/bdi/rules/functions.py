@@ -31,7 +31,7 @@ class RegisteredFunction(NamedTuple):
 def known_names(agent: Circumstance) -> FunctionNames:
     """The functions that what is read at run time may call, for the parser."""
     registered = {name: function.arity for name, function in agent.functions.items()}
-    return FunctionNames(registered, agent.project_functions)
+    return FunctionNames(registered, agent.project.functions)
 
 
 def call_function(agent: Circumstance, term: Term) -> Term:
@@ -50,7 +50,7 @@ def call_own(agent: Circumstance, term: Term) -> Term:
     standard = OF_AGENT.get(name)
     if standard is not None:
         return standard.evaluate(agent, term)
-    evaluator = agent.evaluators.get(name)
+    evaluator = agent.project.evaluators.get(name)
     if evaluator is not None:
         return evaluator(*term[1:])
     function = agent.functions.get(name)
@@ -97,7 +97,7 @@ def _call_registered(agent: Circumstance, function: RegisteredFunction, term: Te
     trail = agent.trail
     mark = len(trail)
     formula = (_symbol(function), *term[1:], value)
-    for _ in run(solve_formula(agent, formula, trail), agent.rule_depth):
+    for _ in run(solve_formula(agent, formula, trail), agent.options.rule_depth):
         found = settle(value)
         undo(trail, mark)
         if found.__class__ is float:

@@ -33,7 +33,7 @@ def unplanned(
 
 def has_room(agent: Circumstance, intention: Intention) -> bool:
     """Whether the plan just put on a full stack may stay: handlers have some room of their own, to deal with that."""
-    depth = agent.goal_depth
+    depth = agent.options.goal_depth
     is_handler = intention.frames[-1][GOAL][0].failing
     return is_handler and len(intention.frames) <= depth + depth // 10 + 100
 
@@ -43,7 +43,7 @@ def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
     frame = intention.frames.pop()
     goal, annotations = frame[GOAL], frame[ANNOTATIONS]
     failure.release_bindings(goal, frame[SERIAL])
-    reason = failure.too_deep(goal, annotations, intention.frames[-1], agent.goal_depth)
+    reason = failure.too_deep(goal, annotations, intention.frames[-1], agent.options.goal_depth)
     if goal[0].failing:
         # Handlers of handlers without end: nobody is left who could deal with it.
         intention.handlers.clear()
@@ -72,7 +72,7 @@ def fail_goal(
         agent, intention, len(intention.frames), trigger.on_fail
     ):
         intention.handlers.append(len(intention.frames))
-        if agent.meta:
+        if agent.features.meta:
             _tell_unplanned(agent, intention, (goal, annotations, number), reason)
             meta_events.observe_goal(agent, intention, goal, number, "executing")
             meta_events.goal_state(agent, goal, annotations, "executing", _HAS_FAILURE_PLAN)
@@ -99,7 +99,7 @@ def fail_intention(
             return None
     posted = failure.handler_event(agent, intention, reason)
     if posted is not None:
-        if agent.meta:
+        if agent.features.meta:
             _tell_unplanned(agent, intention, unplanned, reason, over=True)
             index = intention.handlers[-1]
             observe_failed(agent, intention, index + 1, reason)
@@ -118,7 +118,7 @@ def fail_intention(
         count = budget.note_loss() if budget is not None else 1
         if count:
             _tell_people(agent, lost_goals.loss(agent, intention, reason, goal), count)
-    if agent.meta:
+    if agent.features.meta:
         _tell_unplanned(agent, intention, unplanned, reason, over=True)
         _tell_failed(agent, intention, reason)
     agent.finish(intention)
@@ -133,7 +133,7 @@ def _tell_unplanned(
     over: bool = False,
 ) -> None:
     """Tell that a goal without a frame has failed, after it was found out why; *over*: no plan of its own saves it."""
-    if unplanned is None or not agent.meta:
+    if unplanned is None or not agent.features.meta:
         return
     goal, annotations, number = unplanned
     why = lost_goals.why(reason) if agent.goal_observer is not None else ""

@@ -104,14 +104,14 @@ def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
     """Events of new goals (without intention) that match."""
     return [
         e
-        for e in (*agent.events, *agent.suspended_events)
+        for e in (*agent.events, *agent.waits.suspended_events)
         if e[EVENT_INTENTION] is None and _is_goal(e) and matches(agent, goal, event_literal(e))
     ]
 
 
 def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
     """All goals: of pending events and of intentions, with the id of the intention."""
-    for event in (*agent.events, *agent.suspended_events):
+    for event in (*agent.events, *agent.waits.suspended_events):
         if _is_goal(event):
             owner = event[EVENT_INTENTION]
             yield event_literal(event), owner.id if owner else None
@@ -131,7 +131,7 @@ def intended(agent: Circumstance, include_suspended: bool = False) -> Iterator[t
 
 def drop_intention(agent: Circumstance, intention: Intention) -> None:
     """An intention vanishes without failure events; what it waits for is cancelled."""
-    if agent.meta:
+    if agent.features.meta:
         for frame in intention.frames:
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "dropped")
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "finished")
@@ -170,7 +170,7 @@ def drop_desire(agent: Circumstance, goal: Term) -> None:
 
 def drop_all_intentions(agent: Circumstance) -> None:
     """All but the running one; what ``.at`` is to post does not come either."""
-    for alarm in list(agent.alarms.values()):
+    for alarm in list(agent.waits.alarms.values()):
         if alarm.function is post_external:
             waits.cancel_alarm(agent, alarm)
     for intention in list(agent.alive.values()):
@@ -180,7 +180,7 @@ def drop_all_intentions(agent: Circumstance) -> None:
 
 def drop_all_goal_events(agent: Circumstance) -> None:
     """All pending events of goals; intentions that posted them vanish."""
-    for event in (*agent.events, *agent.suspended_events):
+    for event in (*agent.events, *agent.waits.suspended_events):
         if _is_goal(event):
             remove_event(agent, event)
             if (intention := event[EVENT_INTENTION]) is not None:
@@ -193,13 +193,13 @@ def drop_all_events(agent: Circumstance) -> None:
         if (intention := event[EVENT_INTENTION]) is not None:
             drop_intention(agent, intention)
     agent.events.clear()
-    agent.requeued.clear()
-    agent.suspended_events.clear()
+    agent.waits.requeued.clear()
+    agent.waits.suspended_events.clear()
 
 
 def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
     """Tell what becomes of a goal that has not begun: it is an event yet."""
-    if agent.meta:
+    if agent.features.meta:
         for state in states:
             meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], state)
 
@@ -212,7 +212,7 @@ def suspend_goal(agent: Circumstance, goal: Term, reason: Term) -> None:
     for event in goal_events(agent, goal):
         if event in agent.events:
             agent.events.remove(event)
-            agent.suspended_events.append(event)
+            agent.waits.suspended_events.append(event)
             meta_events.goal_state(
                 agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "suspended", _BY_SUSPEND
             )
@@ -226,22 +226,22 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
         return
     intention.suspended = reason
     agent.called = True
-    if agent.meta:
+    if agent.features.meta:
         for frame in intention.frames:
             meta_events.frame_state(agent, intention, frame, "suspended", _BY_SUSPEND)
     event = pending_event(agent, intention)
     if event is not None and event in agent.events:
         agent.events.remove(event)
-        agent.suspended_events.append(event)
+        agent.waits.suspended_events.append(event)
     if intention.waiting is not None:
         waits.suspend(agent, intention.waiting)
 
 
 def resume_goal(agent: Circumstance, goal: Term) -> None:
     """The reverse of `suspend_goal`."""
-    for event in list(agent.suspended_events):
+    for event in list(agent.waits.suspended_events):
         if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
-            agent.suspended_events.remove(event)
+            agent.waits.suspended_events.remove(event)
             agent.queue(event)
             meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "resumed", _BY_RESUME)
             agent.architecture.ready()
@@ -254,12 +254,12 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     if intention.suspended is None:
         return
     intention.suspended = None
-    if agent.meta:
+    if agent.features.meta:
         for frame in intention.frames:
             meta_events.frame_state(agent, intention, frame, "resumed", _BY_RESUME)
-    held = next((e for e in agent.suspended_events if e[EVENT_INTENTION] is intention), None)
+    held = next((e for e in agent.waits.suspended_events if e[EVENT_INTENTION] is intention), None)
     if held is not None:
-        agent.suspended_events.remove(held)
+        agent.waits.suspended_events.remove(held)
         agent.queue(held)
         agent.architecture.ready()
     elif intention.parked:
@@ -268,7 +268,7 @@ def resume_intention(agent: Circumstance, intention: Intention) -> None:
     elif intention.waiting is not None:
         waiting = intention.waiting
         waits.resume(agent, waiting)
-        if agent.meta and not waiting.ended and not isinstance(waiting, HeldEnd):
+        if agent.features.meta and not waiting.ended and not isinstance(waiting, HeldEnd):
             meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)
 
 

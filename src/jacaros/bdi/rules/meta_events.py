@@ -3,7 +3,6 @@ about the agent itself: it falls asleep, awakes, is to be shut down.
 """
 
 from collections.abc import Callable
-from functools import partial
 
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.state.circumstance import Circumstance
@@ -93,7 +92,7 @@ def shared(agent: Circumstance, intention: Intention) -> int:
 
 def post_new_goal(agent: Circumstance, event: Event) -> None:
     """Queue the event of a new goal; it is pending from now on."""
-    if agent.meta:
+    if agent.features.meta:
         goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "pending")
     agent.post(event)
 
@@ -124,8 +123,7 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     branches of a fork.
     """
     agent.goal_observer = observer
-    agent.on_finish = partial(observe_rest, agent)
-    agent.meta = agent.special = agent.called = True
+    agent.features.meta = agent.special = agent.called = True
 
 
 SLEEPING = trigger("+", "", functor("jag_sleeping", 0))

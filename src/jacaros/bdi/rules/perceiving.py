@@ -70,14 +70,14 @@ def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -
 
     None when the base has no room for it.
     """
-    known = agent.held_percepts.get(percept.literal)
+    known = agent.beliefs.held_percepts.get(percept.literal)
     if known is not None:
         return _believe_apart(agent, symbol, row, percept, known)
     refusals = agent.beliefs.refusals
     insert(agent, symbol, row, percept.annotations)
     if agent.beliefs.refusals != refusals:
         return None
-    agent.held_percepts[percept.literal] = percept.annotations
+    agent.beliefs.held_percepts[percept.literal] = percept.annotations
     return row
 
 
@@ -93,7 +93,7 @@ def _believe_apart(
         return None
     holders: list[Holder] = known if known.__class__ is list else [(known, row)]
     holders.append((percept.annotations, belief))
-    agent.held_percepts[percept.literal] = holders
+    agent.beliefs.held_percepts[percept.literal] = holders
     return row
 
 
@@ -102,13 +102,13 @@ def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) ->
 
     None when the belief is not held any more.
     """
-    known = agent.held_percepts.pop(percept.literal, None)
+    known = agent.beliefs.held_percepts.pop(percept.literal, None)
     holders: list[Holder] = known if known.__class__ is list else [] if known is None else [(known, row)]
     # Of two properties of one artifact the annotations are equal, too: either may go.
     place = next((i for i, holder in enumerate(holders) if holder[0] == percept.annotations), None)
     entry = row if place is None else holders.pop(place)[1]
     if holders:
-        agent.held_percepts[percept.literal] = holders
+        agent.beliefs.held_percepts[percept.literal] = holders
     return row if _take_away(agent, symbol, entry, percept) else None
 
 
@@ -138,12 +138,12 @@ def _believe_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Pe
     if agent.beliefs[symbol].add(belief, percept.annotations) is None:
         return None
     # The arguments are kept with it: their identities stay theirs.
-    agent.held_percepts[_identity(symbol, row)] = belief, row, own
+    agent.beliefs.held_percepts[_identity(symbol, row)] = belief, row, own
     return own
 
 
 def _forget_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    belief, _, own = agent.held_percepts.pop(_identity(symbol, row), (None, row, row))
+    belief, _, own = agent.beliefs.held_percepts.pop(_identity(symbol, row), (None, row, row))
     return own if belief is not None and _take_away(agent, symbol, belief, percept) else None
 
 

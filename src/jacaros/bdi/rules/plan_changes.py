@@ -44,13 +44,15 @@ def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
 def look_at_plans(agent: Circumstance) -> None:
     """What the mind needs to know of its plans as a whole, those included that have been removed: they may still run."""
     agent.selects = agent.library.selects
-    agent.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
-    agent.subplans = agent.subplans or agent.library.has_subplans()
-    agent.goal_conditions = agent.goal_conditions or agent.library.has_goal_conditions()
-    agent.special = agent.meta or agent.subplans or agent.goal_conditions
+    agent.features.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
+    agent.features.subplans = agent.features.subplans or agent.library.has_subplans()
+    agent.features.goal_conditions = agent.features.goal_conditions or agent.library.has_goal_conditions()
+    agent.special = agent.features.meta or agent.features.subplans or agent.features.goal_conditions
     agent.called = True
-    agent.edges = agent.subplans or any(agent.selects[kind] is not None for kind in (SLEEPING, AWAKING))
-    if not agent.edges:
+    agent.features.edges = agent.features.subplans or any(
+        agent.selects[kind] is not None for kind in (SLEEPING, AWAKING)
+    )
+    if not agent.features.edges:
         # Nobody would notice, and an agent that gets such a plan later is awake then.
         agent.drowsy = agent.asleep = False
     urgency.plans_changed(agent)
@@ -104,11 +106,11 @@ def _add_node(agent: Circumstance, node: nodes.Plan, source: Term, first: bool) 
             if source not in sources:
                 agent.library.set_sources(held, (*sources, source))
             return
-    agent.plans_made += 1
-    plan = Plan(node, label_of(node, agent.plans_made), agent.library.by_name)
+    agent.library.plans_made += 1
+    plan = Plan(node, label_of(node, agent.library.plans_made), agent.library.by_name)
     if agent.library.by_label(plan.label) is not None:
         raise _label_taken(plan.label)
-    agent.library.add(with_subplans(plan, agent.plans_made), first)
+    agent.library.add(with_subplans(plan, agent.library.plans_made), first)
     agent.library.set_sources(plan, (source,))
     look_at_plans(agent)
 

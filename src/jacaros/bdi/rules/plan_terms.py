@@ -152,7 +152,7 @@ def _run_body(agent: Circumstance, term: Term, frame: Frame, next_step: NextStep
 
 def plan_of_body(agent: Circumstance, term: Term) -> Plan:
     """A body as a plan; one that is run often is made once."""
-    known = agent.bodies.get(id(term))
+    known = agent.library.bodies.get(id(term))
     if known is not None and known[0] is term:
         plan: Plan = known[1]
         return plan
@@ -162,7 +162,7 @@ def plan_of_body(agent: Circumstance, term: Term) -> Plan:
     plan.body_term = term
     plan.keep_all_variables()
     agent.engine.give_steps(plan)
-    if len(agent.bodies) > 256:
-        agent.bodies.clear()
-    agent.bodies[id(term)] = (term, plan)
+    if len(agent.library.bodies) > 256:
+        agent.library.bodies.clear()
+    agent.library.bodies[id(term)] = (term, plan)
     return plan

@@ -53,11 +53,11 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
     try:
         if (
             message.in_reply_to is None
-            and agent.accepts is None
             and agent.selects[RECEIVED] is None
             and (action := _ACTIONS.get(message.performative)) is not None
         ):
-            action(agent, message)
+            if agent.accepts(message):
+                action(agent, message)
         else:
             _process(agent, message)
     except InternalError:
@@ -72,7 +72,7 @@ def _process(agent: Circumstance, message: SpeechAct) -> None:
     """A message that may be an answer, refused, or taken up by a plan for ``+!kqml_received``, which comes first."""
     if message.in_reply_to is not None and _answers_question(agent, message):
         return
-    if agent.accepts is not None and not agent.accepts(message):
+    if not agent.accepts(message):
         return
     if agent.selects[RECEIVED] is not None and _handled_by_program(agent, message):
         return
@@ -88,18 +88,18 @@ def _process(agent: Circumstance, message: SpeechAct) -> None:
 def _answers_question(agent: Circumstance, message: SpeechAct) -> bool:
     """Whether the message is the answer to a question of the agent: who asked has it then, or nobody wants it any more."""
     question = message.in_reply_to
-    if question in agent.pending_asks:
-        take_answer(agent, agent.pending_asks[question], message)
+    if question in agent.waits.questions:
+        take_answer(agent, agent.waits.questions[question], message)
         return True
-    if question in agent.abandoned_asks:
-        agent.abandoned_asks.remove(question)
+    if question in agent.waits.abandoned:
+        agent.waits.abandoned.remove(question)
         return True
     return False
 
 
 def take_answer(agent: Circumstance, waiting: AnswerWait, message: SpeechAct) -> None:
     """An answer to a question of this agent has come, or the question was not delivered."""
-    agent.pending_asks.pop(str(message.in_reply_to), None)
+    agent.waits.questions.pop(str(message.in_reply_to), None)
     if message.performative == "undelivered":
         waits.forget(agent, waiting)
         waits.fail(agent, waiting, *nobody_there(message.sender))
@@ -211,7 +211,7 @@ def _achieved(symbol: Functor) -> Trigger:
 
 
 def _achieve(agent: Circumstance, message: SpeechAct) -> None:
-    if message.flat and not agent.meta:
+    if message.flat and not agent.features.meta:
         # As above.
         content = message.content
         symbol, row = (content[0], content[1:]) if content.__class__ is tuple else (content, ())
@@ -279,7 +279,7 @@ def _each_belief(agent: Circumstance, query: Term) -> Iterator[Term]:
         return
     tail = Var()
     question = Annotated((symbol, *arguments) if arguments else symbol, annotations, tail)
-    for _ in run(solve_formula(agent, question, agent.trail), agent.rule_depth):
+    for _ in run(solve_formula(agent, question, agent.trail), agent.options.rule_depth):
         found = resolve(question)
         rest = tuple(a for a in annotations_of(found) if a != SOURCE_SELF)
         inner = rename(bare(found))

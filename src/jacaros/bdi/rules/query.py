@@ -94,7 +94,7 @@ def _any(agent: Circumstance, formulae: list[nodes.Node], lookup: Lookup, trail:
 
 
 def _none(agent: Circumstance, formula: nodes.Node, lookup: Lookup, trail: Trail) -> Answers:
-    if not exists(run(answers(agent, formula, lookup, trail), agent.rule_depth), trail):
+    if not exists(run(answers(agent, formula, lookup, trail), agent.options.rule_depth), trail):
         yield ()
 
 
@@ -215,7 +215,7 @@ def _logic(agent: Circumstance, name: str, formula: Term, trail: Trail) -> Answe
             search = solve_formula(agent, side, trail)
             while (yield search) is not None:
                 yield ()
-    elif not exists(run(solve_formula(agent, formula[1], trail), agent.rule_depth), trail):
+    elif not exists(run(solve_formula(agent, formula[1], trail), agent.options.rule_depth), trail):
         yield ()
 
 
@@ -280,7 +280,7 @@ def _collect(
 ) -> bool:
     mark = len(trail)
     found = []
-    for _ in run(search, agent.rule_depth):
+    for _ in run(search, agent.options.rule_depth):
         found.append(rename(template))
     undo(trail, mark)
     return unify(target, action.function(found), trail)

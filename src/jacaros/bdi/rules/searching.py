@@ -61,7 +61,7 @@ def run(question: Answers, limit: int, allowed: int | None = None) -> Iterator[t
 
 def deeper(agent: Circumstance, trail: Trail, question: Answers) -> Iterator[tuple[Term, ...]]:
     """The rest of a search that is nested too deeply to go on by Python's stack."""
-    return run(question, trail.room, agent.rule_depth)
+    return run(question, trail.room, agent.options.rule_depth)
 
 
 def too_many_open(limit: int) -> NoReturn:

@@ -76,7 +76,7 @@ def pass_over(agent: Circumstance, event: Event, fault: Exception) -> None:
 def begin_intention(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
     goal, _, annotations, _ = event
-    reacted = agent.subplans and goal[0].kind == "" and _react(agent, event)
+    reacted = agent.features.subplans and goal[0].kind == "" and _react(agent, event)
     return begin_with(agent, event, select_plan(agent, goal, annotations), reacted)
 
 
@@ -89,7 +89,7 @@ def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: 
             if agent.options.verbose > 1 and not reacted and agent.selects[trigger] is not None:
                 log_inapplicable(agent, goal, annotations)
             if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
-                agent.requeued.append(event)
+                agent.waits.requeued.append(event)
             return reacted
         intention = agent.new_intention(cause)
         posted = unplanned(agent, intention, goal, annotations)
@@ -102,7 +102,7 @@ def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: 
         intention.handlers.append(0)
     if frame[PLAN].atomic:
         agent.atomic, agent.atomic_over = intention, False
-    if agent.meta:
+    if agent.features.meta:
         meta_events.frame_state(agent, intention, frame, "executing")
     if len(agent.intentions) >= CROWD and annotations is BY_SELF and trigger.kind:
         agent.line_up(intention)

@@ -96,6 +96,6 @@ def _passes(agent: Circumstance, frame: Frame, intention: Intention | None) -> b
 
 def _holds(agent: Circumstance, question: Term) -> bool:
     mark = len(agent.trail)
-    holds = any(True for _ in run(solve_formula(agent, question, agent.trail), agent.rule_depth))
+    holds = any(True for _ in run(solve_formula(agent, question, agent.trail), agent.options.rule_depth))
     undo(agent.trail, mark)
     return holds

@@ -59,7 +59,7 @@ def handles(agent: Circumstance, intention: Intention, index: int, kind: Trigger
     """Whether there is a plan for an event kind, as seen from a frame of an intention."""
     if agent.selects[kind] is not None:
         return True
-    if not agent.subplans:
+    if not agent.features.subplans:
         return False
     frame: Frame | None = intention.frames[index - 1] if index else None
     while frame is not None:

@@ -37,9 +37,9 @@ ERROR = functor("error", 1)
 
 def set_alarm(agent: Circumstance, delay: float, function: Callable[..., None], *arguments: Any) -> Alarm:
     """Call *function* with the agent and the arguments after *delay* seconds of the run's clock."""
-    agent.alarms_made += 1
-    alarm = Alarm(agent.alarms_made, agent.architecture.now() + delay, function, arguments)
-    agent.alarms[alarm.number] = alarm
+    agent.waits.alarms_made += 1
+    alarm = Alarm(agent.waits.alarms_made, agent.architecture.now() + delay, function, arguments)
+    agent.waits.alarms[alarm.number] = alarm
     start_alarm(agent, alarm, delay)
     return alarm
 
@@ -51,12 +51,12 @@ def start_alarm(agent: Circumstance, alarm: Alarm, delay: float) -> None:
 
 def cancel_alarm(agent: Circumstance, alarm: Alarm) -> None:
     """Take an alarm back; nothing happens if it has rung."""
-    if agent.alarms.pop(alarm.number, None) is not None:
+    if agent.waits.alarms.pop(alarm.number, None) is not None:
         alarm.timer.cancel()
 
 
 def _ring(agent: Circumstance, alarm: Alarm) -> None:
-    del agent.alarms[alarm.number]
+    del agent.waits.alarms[alarm.number]
     alarm.function(agent, *alarm.arguments)
 
 
@@ -109,7 +109,7 @@ def _continue(agent: Circumstance, waiting: Waiting) -> None:
     assert frame is not None
     if waiting.failure is None:
         frame[0] = waiting.next_step
-        if agent.meta and waiting.reason is not OWN_SUSPENSION:
+        if agent.features.meta and waiting.reason is not OWN_SUSPENSION:
             meta_events.top_goal_state(agent, intention, "executing")
         if pop_finished(agent, intention):
             agent.make_ready(intention)
@@ -139,16 +139,16 @@ def forget(agent: Circumstance, waiting: Waiting) -> None:
     if waiting.alarm is not None:
         cancel_alarm(agent, waiting.alarm)
     if isinstance(waiting, ActWait):
-        if agent.pending_acts.pop(waiting.number, None) is not None:
+        if agent.waits.acts.pop(waiting.number, None) is not None:
             agent.architecture.cancel_act(waiting.number)
     elif isinstance(waiting, EventWait):
-        agent.event_waits.remove(waiting)
+        agent.waits.events.remove(waiting)
     elif isinstance(waiting, ConditionWait):
-        agent.condition_waits.remove(waiting)
+        agent.waits.conditions.remove(waiting)
     elif isinstance(waiting, AnswerWait):
         for message_id in waiting.ids:
-            if agent.pending_asks.pop(message_id, None) is not None:
-                agent.abandoned_asks.add(message_id)
+            if agent.waits.questions.pop(message_id, None) is not None:
+                agent.waits.abandoned.add(message_id)
     elif isinstance(waiting, CoroutineWait):
         waiting.task.cancel()
 
@@ -199,7 +199,7 @@ def time_out(agent: Circumstance, waiting: TimedWait) -> None:
 
 def notify_event_waits(agent: Circumstance, event: Event) -> None:
     """Resume the intentions that wait for this event."""
-    for wait in agent.event_waits.candidates(event[EVENT_GOAL][0]):
+    for wait in agent.waits.events.candidates(event[EVENT_GOAL][0]):
         mark = len(agent.trail)
         if unify(wait.pattern, rename(event_literal(event)), agent.trail):
             # What the wait was for is bound for good, whatever becomes of the search that the event leads to.
@@ -211,9 +211,9 @@ def notify_event_waits(agent: Circumstance, event: Event) -> None:
 
 def check_conditions(agent: Circumstance) -> None:
     """Resume the intentions whose awaited condition holds now."""
-    for wait in agent.condition_waits.take_due():
+    for wait in agent.waits.conditions.take_due():
         if wait.ended:
-            agent.condition_waits.remove(wait)
+            agent.waits.conditions.remove(wait)
             continue
         try:
             held = wait.holds() if isinstance(wait, ConditionObserver) else _holds(agent, wait)
@@ -221,7 +221,7 @@ def check_conditions(agent: Circumstance) -> None:
             raise
         except Exception as fault:
             undo(agent.trail, 0)
-            agent.condition_waits.remove(wait)
+            agent.waits.conditions.remove(wait)
             if isinstance(wait, ConditionObserver):
                 wait.fail(failure.told(fault))
             else:
@@ -229,7 +229,7 @@ def check_conditions(agent: Circumstance) -> None:
                 fail(agent, wait, failure.told(fault))
         else:
             if held:
-                agent.condition_waits.remove(wait)
+                agent.waits.conditions.remove(wait)
                 if isinstance(wait, ConditionObserver):
                     wait.resume()
                 else:

@@ -100,7 +100,7 @@ class Table:
 
     def search(self, pattern: int, agent: Any, trail: Trail) -> Callable[..., Answers]:
         """The generator function for a search that begins here; *pattern* tells which arguments are given."""
-        trail.room = agent.rule_depth
+        trail.room = agent.options.rule_depth
         assert self.searches is not None
         found: Callable[..., Answers] = self.searches[pattern]
         return found
@@ -365,6 +365,9 @@ class BeliefTables(dict[Functor, Table]):
         refusals: how many beliefs from outside were refused (`jacaros.bdi.state.bounded_beliefs`).
         budget: how much may be searched; None for any amount.
         engine: carries out the rules.
+        held_percepts: for each literal that is perceived the annotations of the property that shows it, or a list of pairs
+            of annotations and entries when several do (decision 22).
+        namespace_properties: properties that programs give to namespaces.
     """
 
     refusals = 0
@@ -374,6 +377,8 @@ class BeliefTables(dict[Functor, Table]):
         super().__init__()
         self.engine = engine
         self.searching = 0
+        self.held_percepts: dict[Term, Any] = {}
+        self.namespace_properties: dict[str, dict[Term, Term]] = {}
         self.next_call = itertools.count(1).__next__
 
     def __missing__(self, functor: Functor) -> Table:

@@ -2,7 +2,8 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Final, NamedTuple, Protocol
 
 from jacaros.asl.source import Span
 from jacaros.bdi.actions.internal_action import InternalAction
@@ -29,6 +30,84 @@ CROWD = 2000
 """Intentions that take turns.  With more of them, goals that the agent sets itself (``!!g``) begin one by one."""
 
 
+class ProjectFunctions(Protocol):
+    """The arithmetic functions of a project.
+
+    Attributes:
+        functions: their least and greatest numbers of arguments, by name.
+        evaluators: what computes them, by name; None stands for a value that is not known yet.
+    """
+
+    @property
+    def functions(self) -> Mapping[str, tuple[int, int | None]]: ...
+
+    @property
+    def evaluators(self) -> Mapping[str, Callable[..., Term]]: ...
+
+
+class _NoFunctions(NamedTuple):
+    functions: Mapping[str, tuple[int, int | None]] = MappingProxyType({})
+    evaluators: Mapping[str, Callable[..., Term]] = MappingProxyType({})
+
+
+NO_FUNCTIONS: Final = _NoFunctions()
+
+
+class Waits:
+    """What the intentions of an agent wait for, and what has been put off.
+
+    Attributes:
+        events: those who wait for an event.
+        conditions: those who wait for a condition.
+        acts: those who wait for an external action, by its number.
+        questions: those who wait for an answer, by the id of the question.
+        abandoned: ids of questions that nobody waits for any more: an answer that still comes is thrown away.
+        alarms: calls that are due at a moment, by number.
+        alarms_made: number of alarms so far.
+        suspended_events: goal events whose goal was suspended before it became an intention.
+        requeued: external events without plan that are to be tried again (``events=requeue``).
+    """
+
+    __slots__ = (
+        "abandoned",
+        "acts",
+        "alarms",
+        "alarms_made",
+        "conditions",
+        "events",
+        "questions",
+        "requeued",
+        "suspended_events",
+    )
+
+    def __init__(self) -> None:
+        self.events = EventWaits()
+        self.conditions = ConditionWaits()
+        self.acts: dict[int, ActWait] = {}
+        self.questions: dict[str, AnswerWait] = {}
+        self.abandoned: set[str | None] = set()
+        self.alarms: dict[int, Alarm] = {}
+        self.alarms_made = 0
+        self.suspended_events: list[Event] = []
+        self.requeued: list[Event] = []
+
+
+class Features:
+    """What the plans of an agent make it look at in each cycle.
+
+    Attributes:
+        meta: plans or an observer want to hear of changes of goal states.
+        goal_conditions: plans have goal conditions, which are tested in every cycle.
+        subplans: plans have plans of their own.
+        edges: there may be plans for falling asleep and awaking.
+    """
+
+    __slots__ = ("edges", "goal_conditions", "meta", "subplans")
+
+    def __init__(self) -> None:
+        self.meta = self.goal_conditions = self.subplans = self.edges = False
+
+
 class Circumstance:
     """All that an agent holds.
 
@@ -40,11 +119,9 @@ class Circumstance:
         events: the queue of events, oldest first.
         usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
             intentions that made them, and no agent class is asked about these changes.
-        requeued: external events without plan that are to be tried again (``events=requeue``).
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
         crowd: intentions for goals that the agent set itself beside `CROWD` others that can run: they join these as others
             end, and one in each turn anyway, so that an agent that sets itself more and more goals keeps its other plans.
-        event_limit, intention_limit: how many events and intentions there may be.
         budgets: what refuses more than a limit allows, by the name of the option.
         next_count: number of the cycle after which beliefs are counted, and unused names dropped, next; a look at what
             comes in counts as one.
@@ -55,122 +132,76 @@ class Circumstance:
         atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
         inbox, percepts: what was received and noticed, and not yet looked at.
         tasks: housekeeping for the beginning of the next cycle: functions, and their arguments behind the agent.
-        suspended_events: goal events whose goal was suspended before it became an intention.
-        alarms: calls that are due at a moment, by number.
-        alarms_made: number of alarms so far.
-        event_waits: those who wait for an event.
-        condition_waits: those who wait for a condition.
-        pending_acts: those who wait for an external action, by its number.
-        pending_asks: those who wait for an answer, by the id of the question.
-        abandoned_asks: ids of those that nobody waits for any more: an answer that still comes is thrown away.
-        meta: whether plans or an observer want to hear of changes of goal states.
         goal_observer: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
-        parsed: texts that were read lately (`jacaros.bdi.rules.context.Parsed`), by text and number of functions.
-        on_finish: called with each intention that ends with goals on its stack, or None.
         on_lost: called with what people are told of each lost goal (first line, further lines, place), or None.
         intentions_made: number of intentions so far.
-        plans_made: number of plans so far, for the labels of those that have none.
-        bodies: compiled forms of plan bodies held by variables.
-        goal_conditions: whether plans have goal conditions, which are tested in every cycle.
-        subplans: whether plans have plans of their own.
-        special: whether any of `meta`, `goal_conditions` and `subplans` is true.
+        special: whether `features` has more than `edges`.
         called: something may want to be looked at besides `events` and `intentions`: `inbox`, `percepts`, `tasks`,
-            restless `condition_waits`, a suspension, or because the agent is `special` or its
+            restless conditions that intentions wait for, a suspension, or because the agent is `special` or its
             `selections` are not plain.  Whoever adds to one of
             them sets it.
         outer_frame: frame of the plan whose sub-plans are being tried.
         context: the view of itself that it gives to internal actions.
-        namespace_properties: properties that programs give to namespaces.
         functions: arithmetic functions that its program registers, by name.
-        project_functions: those of the project, with their least and greatest numbers of arguments.
-        evaluators: what computes them, by name; None stands for a value that is not known yet.
-        call_own: evaluates a call of a function inside a term for this agent.
         cycles: number of steps made.
         next_look: number of the cycle in which percepts and messages are looked at next.
-        blamed: plans whose goal condition cannot be evaluated, as people have been told.
-        goal_depth: how many plans may be on the stack of an intention.
-        rule_depth: how many rules and conditions may be open at the same time in one search.
         running: the agent has its turn: whoever gave it finds out at its end whether there is more to do.
         stopped: the agent is over.
-        accepts: asked whether a message is acceptable; None accepts all.
-        face: what the project's Python code sees of the agent; made when it is first asked for.
         engine: carries out plans and rules.
-        edges: there may be plans for falling asleep and awaking.
         drowsy: it has had nothing to do since it last awoke, and has been told so.
         asleep: it is drowsy, and has done what its plans do before sleep.
+        waits: what intentions wait for, and what has been put off.
+        features: what its plans make it look at in each cycle.
+        project: the arithmetic functions of the project.
     """
 
     __slots__ = (
-        "abandoned_asks",
-        "accepts",
         "actions",
-        "alarms",
-        "alarms_made",
         "alive",
         "architecture",
         "asleep",
         "atomic",
         "atomic_over",
         "beliefs",
-        "blamed",
-        "bodies",
         "budgets",
-        "call_own",
         "called",
-        "condition_waits",
         "context",
         "crowd",
         "current",
         "cycles",
         "drowsy",
-        "edges",
         "engine",
-        "evaluators",
-        "event_limit",
-        "event_waits",
         "events",
-        "face",
+        "features",
         "functions",
-        "goal_conditions",
-        "goal_depth",
         "goal_observer",
-        "held_percepts",
         "inbox",
-        "intention_limit",
         "intentions",
         "intentions_made",
         "library",
-        "meta",
         "name",
-        "namespace_properties",
         "next_count",
         "next_look",
-        "on_finish",
         "on_lost",
         "options",
         "outer_frame",
-        "parsed",
-        "pending_acts",
-        "pending_asks",
         "percepts",
-        "plans_made",
-        "project_functions",
-        "requeued",
-        "rule_depth",
+        "project",
         "running",
         "selections",
         "selects",
         "special",
         "stopped",
-        "subplans",
-        "suspended_events",
         "tasks",
         "trail",
         "usual_events",
+        "waits",
     )
 
     selections: Selections
+    accepts: Callable[[SpeechAct], bool]
     call_own: Callable[[Term], Term]
+    observe_rest: Callable[[Intention], None]
     drop_wait: Callable[[Waiting], None]
     notify_event_waits: Callable[[Event], None]
 
@@ -192,14 +223,12 @@ class Circumstance:
         self.engine = plans.engine
         self.beliefs: BeliefTables = plans.engine.belief_base(self, options.belief_limit)
         self.next_count = INTERVAL
-        self.event_limit, self.intention_limit = options.event_limit, options.intention_limit
         if options.search_limit:
             self.beliefs.budget = SearchBudget(options.search_limit)
         self.usual_events = options.events == "discard" and not options.new_focus
         self.library = PlanLibrary(plans)
         self.selects = self.library.selects
         self.events: deque[Event] = deque()
-        self.requeued: list[Event] = []
         self.next_look = 0
         self.intentions: deque[Intention] = deque()
         self.crowd: deque[Intention] = deque()
@@ -209,43 +238,21 @@ class Circumstance:
         self.inbox: deque[SpeechAct] = deque()
         self.percepts: deque[list[Percept]] = deque()
         self.tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = deque()
-        self.suspended_events: list[Event] = []
-        self.alarms: dict[int, Alarm] = {}
-        self.alarms_made = 0
-        self.event_waits = EventWaits()
-        self.condition_waits = ConditionWaits()
-        self.pending_acts: dict[int, ActWait] = {}
-        self.pending_asks: dict[str, AnswerWait] = {}
-        self.abandoned_asks: set[str | None] = set()
-        self.meta = False
         self.goal_observer: Callable[[str, str, int, int, str], None] | None = None
-        self.on_finish: Callable[[Intention], None] | None = None
-        self.parsed: dict[tuple[str, int], Any] = {}
         self.on_lost: Callable[[str, Sequence[str], Span | None], None] | None = None
-        self.goal_conditions = False
-        self.subplans = False
+        self.waits = Waits()
+        self.features = Features()
+        self.project: ProjectFunctions = NO_FUNCTIONS
         self.special = False
         self.called = False
         self.outer_frame: Any = None
-        self.namespace_properties: dict[str, dict[Term, Term]] = {}
         self.functions: dict[str, Any] = {}
-        self.project_functions: Mapping[str, tuple[int, int | None]] = {}
-        self.evaluators: Mapping[str, Callable[..., Term]] = {}
         self.context: Any = None
         self.cycles = 0
-        self.blamed: set[object] = set()
-        self.goal_depth = options.goal_depth
-        self.rule_depth = options.rule_depth
         self.running = False
         self.stopped = False
-        self.accepts: Callable[[SpeechAct], bool] | None = None
-        self.face: object = None
-        self.edges = False
         self.drowsy = False
         self.asleep = False
-        self.held_percepts: dict[Term, Any] = {}
-        self.plans_made = len(plans.plans)
-        self.bodies: dict[int, tuple[Term, Any]] = {}
         self.intentions_made = 0
 
     def warn_of_operand(self, what: str, value: Term) -> None:
@@ -273,8 +280,8 @@ class Circumstance:
         """An intention is over; what it waits for is cancelled."""
         intention.dropped = True
         if intention.frames:
-            if self.on_finish is not None:
-                self.on_finish(intention)
+            if self.goal_observer is not None:
+                self.observe_rest(intention)
             intention.frames.clear()
         if intention.handlers:
             intention.handlers.clear()
@@ -288,7 +295,7 @@ class Circumstance:
 
     def may_handle(self, kind: Trigger) -> bool:
         """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
-        return self.subplans or self.selects[kind] is not None
+        return self.features.subplans or self.selects[kind] is not None
 
     def do_soon(self, function: Callable[..., None], *arguments: object) -> None:
         """Call a function with the agent and the arguments at the beginning of the next cycle."""
@@ -309,13 +316,13 @@ class Circumstance:
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and resume those who wait for it."""
         if (
-            len(self.events) >= self.event_limit or len(self.alive) >= self.intention_limit
+            len(self.events) >= self.options.event_limit or len(self.alive) >= self.options.intention_limit
         ) and not self._admits(event):
             return
         if self.selections.urgencies is not None:
             self.note(event[EVENT_GOAL][0])
         self.events.append(event)
-        if self.event_waits:
+        if self.waits.events:
             self.notify_event_waits(event)
 
     def _admits(self, event: Event) -> bool:
@@ -326,7 +333,7 @@ class Circumstance:
         """
         if event[EVENT_INTENTION] is not None:
             return True
-        if len(self.events) >= self.event_limit:
+        if len(self.events) >= self.options.event_limit:
             self.budgets["event_limit"].refuse(len(self.events))
         else:
             self.budgets["intention_limit"].refuse(len(self.alive))

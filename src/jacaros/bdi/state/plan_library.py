@@ -142,13 +142,30 @@ class PlanLibrary:
         program: the plans that it began with; as long as no other plan concerns an event, their select function is shared
             with all agents of the program.
         selects: the select functions; as long as no plan has come or gone they are those of the program.
+        plans_made: number of plans so far, for the labels of those that have none.
+        bodies: plan bodies held by variables, as plans.
+        blamed: plans whose goal condition cannot be evaluated, as people have been told.
     """
 
-    __slots__ = ("_every", "_sources", "own", "plans", "program", "removed", "selects")
+    __slots__ = (
+        "_every",
+        "_sources",
+        "blamed",
+        "bodies",
+        "own",
+        "plans",
+        "plans_made",
+        "program",
+        "removed",
+        "selects",
+    )
 
     def __init__(self, program: ProgramPlans) -> None:
         self.program = program
         self.plans: list[Plan] = program.plans
+        self.plans_made = len(program.plans)
+        self.bodies: dict[int, tuple[Term, Plan]] = {}
+        self.blamed: set[Plan] = set()
         self.own: list[Plan] = []
         self.removed: list[Plan] = []
         self.selects: Selects = program.selects

@@ -151,7 +151,7 @@ class RunningAgent(OpenMind):
 
 
 class _Awaited(ConditionObserver):
-    """A condition that Python code waits for, among those that the agent looks at (`Circumstance.condition_waits`)."""
+    """A condition that Python code waits for, among those that the agent looks at (`Circumstance.waits.conditions`)."""
 
     def __init__(self, mind: Mind, formula: str) -> None:
         self.future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
@@ -160,7 +160,7 @@ class _Awaited(ConditionObserver):
         self._term, self._names = question(formula)
         self._found: dict[str, Any] = {}
         self.asked = asked_by(self._term, mind.beliefs, mind.actions)
-        mind.condition_waits.add(self)
+        mind.waits.conditions.add(self)
         mind.called = True
         mind.architecture.ready()
 
@@ -189,7 +189,7 @@ class _Awaited(ConditionObserver):
             self.future.set_exception(UsageError(f"{self._formula} cannot be evaluated: {message}"))
 
     def forget(self) -> None:
-        self._mind.condition_waits.remove(self)
+        self._mind.waits.conditions.remove(self)
 
 
 class Goal(PursuedGoal):
@@ -229,13 +229,13 @@ class Goal(PursuedGoal):
                 raise AgentEnded(f"{self._not_achieved()}: agent {self._mind.name} has ended")
         elif not self._watched.ended:
             self._waiting.append(future)
-            self._mind.condition_waits.add(dropped)
+            self._mind.waits.conditions.add(dropped)
             self._mind.called = True
             self._mind.architecture.ready()
             try:
                 await self._waits.wait(future, self._not_achieved, timeout, self._mind.name)
             finally:
-                self._mind.condition_waits.remove(dropped)
+                self._mind.waits.conditions.remove(dropped)
         if not self.achieved:
             raise self._failure()
 

@@ -43,7 +43,7 @@ def test_a_condition_that_does_not_come_in_time_tells_what_there_is() -> None:
             == "count(X) & X > 2 did not hold for agent bob (it believes count(1)) within 1.5 s"
         )
         assert mas.clock.now() - began == pytest.approx(1.5)
-        assert not bob.mind.condition_waits
+        assert not bob.mind.waits.conditions
         with pytest.raises(AslError):
             await bob.until("count(X")
 
@@ -60,7 +60,7 @@ def test_a_cancelled_wait_leaves_nothing_behind() -> None:
             task.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await task
-        assert not bob.mind.condition_waits
+        assert not bob.mind.waits.conditions
         assert bob.goals == ["long"]
 
     run(test)

@@ -172,7 +172,7 @@ def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
 def _called(fn: FunctionBuilder, name: str, captured: list[str]) -> str:
     """The call of a function that searches on behalf of this one."""
     if fn.depth == TOP:
-        fn.line("t.room = agent.rule_depth")
+        fn.line("t.room = agent.options.rule_depth")
     return f"{name}(agent, t, {fn.depth}{''.join(f', {fn.values[c]}' for c in captured)})"
 
 
@@ -202,7 +202,7 @@ def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> s
     with inner.writer.block(f"def {name}(agent, t, d{''.join(f', v_{c}' for c in captured)}):"):
         inner.line("found = []")
         inner.line("room = t.room")
-        inner.line("if d <= 0: t.room = agent.rule_depth")  # what asks counts its rules by itself
+        inner.line("if d <= 0: t.room = agent.options.rule_depth")  # what asks counts its rules by itself
 
         def found() -> None:
             value = as_name(inner, build(inner, template))

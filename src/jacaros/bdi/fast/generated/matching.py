@@ -224,7 +224,9 @@ def loop_binding(fn: FunctionBuilder, generator: str, names: list[str], then: Th
         settle_fresh(fn, names)
         then()
 
-    loop_over_answers(fn, generator if fn.trampoline else f"run({generator}, agent.rule_depth)", [], settled)
+    loop_over_answers(
+        fn, generator if fn.trampoline else f"run({generator}, agent.options.rule_depth)", [], settled
+    )
 
 
 def undoing(fn: FunctionBuilder, test: str, names: list[str], then: Then) -> None:

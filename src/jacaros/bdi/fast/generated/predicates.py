@@ -47,7 +47,7 @@ def compile_search(
     with fn.writer.block(f"def {name}({', '.join(['agent', 't', 'd', *given.values()])}):"):
         if not trampoline:
             fn.line("t.room -= 1")
-            fn.line("if t.room < 0: too_many_open(agent.rule_depth)")
+            fn.line("if t.room < 0: too_many_open(agent.options.rule_depth)")
         for rule in before:
             _rule(fn, rule, given)
         fn.at((*before, *after)[0])

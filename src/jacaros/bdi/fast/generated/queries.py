@@ -59,7 +59,7 @@ def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
         _trampolined_rows(fn, arguments, rows, deep, test, then)
         return
     if fn.snapshot:
-        source = f"{rows} if {test} else run({deep}, agent.rule_depth)"
+        source = f"{rows} if {test} else run({deep}, agent.options.rule_depth)"
     else:
         source = _rows_at_once(fn, table, arguments, rows)
     with fn.writer.block(f"for {arguments.target} in ({source}):"):
@@ -122,7 +122,7 @@ def _rows_with_annotations(
     test = " and ".join([f"{table}.plain", *arguments.tests])
     rows = arguments.rows_and_annotations(table)
     with fn.writer.block(
-        f"for {arguments.target}, {held} in ({rows} if {test} else run({general}, agent.rule_depth)):"
+        f"for {arguments.target}, {held} in ({rows} if {test} else run({general}, agent.options.rule_depth)):"
     ):
         arguments.match_rest(lambda: each_match(fn, patterns, held, then))
 
