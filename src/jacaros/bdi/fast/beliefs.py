@@ -14,8 +14,8 @@ from jacaros.bdi.state.belief_base import BeliefTables, Row, Table
 from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs, BoundedTable
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Engine
-from jacaros.bdi.state.event import Event, Raised
-from jacaros.bdi.state.triggers import Trigger
+from jacaros.bdi.state.event import Raised
+from jacaros.bdi.state.mixed_beliefs import discard
 from jacaros.errors import InternalError
 from jacaros.terms.substitution import ATOMIC, is_key
 from jacaros.terms.unifier import undo
@@ -24,8 +24,8 @@ from jacaros.terms.values import BY_SELF, Functor, Term, arguments_of, functor_o
 Annotations = tuple[Term, ...]
 SMALL = 100_000
 """Limits up to this one are kept from the beginning."""
-Kept = tuple[Functor, Row | None, Trigger, Event]
-"""Functor and arguments of a percept, the kind of its event, and the event."""
+Kept = list[Any]
+"""Functor and arguments of a percept (None unless they are flat), the kind of its event, and the event once it is made."""
 
 
 def add_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
@@ -120,26 +120,28 @@ def _take_in(agent: Circumstance, percepts: list[Percept]) -> None:
         agent.events,
     )
     for percept in percepts:
-        literal, annotations, kind = percept.literal, percept.annotations, percept.kind
-        symbol, row, change, event = percept.kept or _kept(agent, percept)
+        kept = percept.kept or _keep(agent, percept)
+        symbol, row, change, event = kept
         table = beliefs[symbol]
-        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
-        if row is None or table.__class__ is not Table:
+        if row is None or not table.plain or table.indexes or table.__class__ is not Table:
             perceiving.take(agent, percept)
             continue
-        if kind == "add":
-            if literal in holders or row in table.rows or table.late:
+        # Nearly all percepts are structures that only one property shows: that needs a look into two tables.
+        rows, literal, annotations = table.rows, percept.literal, percept.annotations
+        if percept.kind == "add":
+            if literal in holders or row in rows:
                 perceiving.take(agent, percept)
                 continue
-            table.add(row, annotations)
-            holders[literal] = annotations
-        elif kind == "remove":
-            if holders.get(literal) is not annotations or table.rows.get(row) is not annotations:
+            rows[row] = holders[literal] = annotations
+        elif percept.kind == "remove":
+            if holders.get(literal) is not annotations or rows.get(row) is not annotations:
                 perceiving.take(agent, percept)
                 continue
-            table.remove(row)
+            discard(rows, row)
             del holders[literal]
         if selects[change] is not None:
+            if event is None:
+                event = kept[3] = ((change, *row), None, annotations, percept.cause)
             events.append(event)
 
 
@@ -153,15 +155,24 @@ def _has_room(agent: Circumstance, count: int) -> bool:
     )
 
 
-def _kept(agent: Circumstance, percept: Percept) -> Kept:
-    """What is kept with a percept for all minds that share it; the arguments are None when they are not flat."""
-    symbol, row = functor_of(percept.literal), arguments_of(percept.literal)
+def _keep(agent: Circumstance, percept: Percept) -> Kept:
+    """What is kept with a percept for all minds that share it."""
+    literal = percept.literal
+    symbol, row = (
+        (literal[0], literal[1:])
+        if literal.__class__ is tuple
+        else (functor_of(literal), arguments_of(literal))
+    )
     if symbol is None:
-        raise InternalError(f"a percept is no literal: {percept.literal!r}")
+        raise InternalError(f"a percept is no literal: {literal!r}")
     table = agent.beliefs[symbol]
     change = table.deleted if percept.kind == "remove" else table.added
-    event: Event = ((change, *row), None, percept.annotations, percept.cause)
-    percept.kept = kept = (symbol, row if ATOMIC.issuperset(map(type, row)) else None, change, event)
+    flat: Row | None = row
+    for argument in row:
+        if argument.__class__ not in ATOMIC:
+            flat = None
+            break
+    percept.kept = kept = [symbol, flat, change, None]
     return kept
 
 

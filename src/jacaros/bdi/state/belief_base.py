@@ -56,6 +56,7 @@ class Table:
         late: those added behind all others, in order.
         others: how many of `rows` are rules and beliefs with variables.
         unwritten: how many of `rows` and `late` are beliefs with variables that are not in the program.
+        indexes: the rows by the arguments at some places.
         plain: holds only facts without variables, in `rows` alone: compiled queries may read it directly.
         searches: generator functions for a table that is not plain, by pattern of use.
         deep: those that need no Python recursion.
@@ -63,13 +64,13 @@ class Table:
 
     __slots__ = (
         "_base",
-        "_indexes",
         "_mixed",
         "_parted",
         "added",
         "deep",
         "deleted",
         "functor",
+        "indexes",
         "late",
         "others",
         "plain",
@@ -88,7 +89,7 @@ class Table:
         self.plain = True
         self.searches: Any = None
         self.deep: Any = None
-        self._indexes: dict[tuple[int, ...], Index] = {}
+        self.indexes: dict[tuple[int, ...], Index] = {}
         self._mixed: Mixed | None = None
         self._base = base
         self._parted = 0
@@ -116,7 +117,7 @@ class Table:
 
     def find(self, positions: tuple[int, ...], key: Term) -> Iterable[Row]:
         """The rows whose arguments at *positions* are *key* (one value, or a tuple), newest first."""
-        index = self._indexes.get(positions)
+        index = self.indexes.get(positions)
         if index is None:
             index = self._build_index(positions)
         bucket = index.get(key)
@@ -134,7 +135,7 @@ class Table:
         for row in self.rows:
             if row.__class__ is tuple:
                 _put(index, key_of(row, positions), row)
-        self._indexes[positions] = index
+        self.indexes[positions] = index
         return index
 
     def aside(self, row: Row) -> "OpenFact | None":
@@ -187,7 +188,7 @@ class Table:
             return annotations
         if self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before):
             self._changed()  # no rule answers before the newest fact
-        if self._indexes:
+        if self.indexes:
             self._add_to_indexes(row)
         if self._mixed is not None:
             self._mixed.add(row)
@@ -205,7 +206,7 @@ class Table:
         self._changed()
 
     def _add_to_indexes(self, row: Row) -> None:
-        for positions, index in self._indexes.items():
+        for positions, index in self.indexes.items():
             _put(index, row[positions[0]] if len(positions) == 1 else key_of(row, positions), row)
 
     def remove(self, row: Any) -> bool:
@@ -223,7 +224,7 @@ class Table:
             self.others -= 1
             self._note(row, -1)
             return True
-        for positions, index in self._indexes.items():
+        for positions, index in self.indexes.items():
             key = key_of(row, positions)
             bucket = index[key]
             if bucket.__class__ is tuple or len(bucket) == 1:
@@ -246,7 +247,7 @@ class Table:
         if self._parted != serial:
             self._parted = serial
             self.rows, self.late = dict(self.rows), Late(self.late) if self.late else _NO_LATE
-            self._indexes, self._mixed = {}, None
+            self.indexes, self._mixed = {}, None
 
     def around(self) -> tuple[list[Entry], list[Entry]] | None:
         """The rules and beliefs with variables that answer before all facts, and those behind all facts.
