@@ -4,7 +4,7 @@ import marshal
 import os
 import stat
 import sys
-import tempfile
+import threading
 from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
@@ -163,9 +163,10 @@ def _replace(path: Path, entries: dict[bytes, bytes]) -> None:
         OSError: it cannot be written.
     """
     body = marshal.dumps(entries)
-    handle, aside = tempfile.mkstemp(dir=path.parent, suffix=".part")
+    # No other process has this number, and no other thread of this one the other.
+    aside = path.with_suffix(f".{os.getpid()}-{threading.get_ident()}.part")
     try:
-        with open(handle, "wb") as file:
+        with open(os.open(aside, os.O_CREAT | os.O_WRONLY | os.O_TRUNC | os.O_NOFOLLOW, 0o600), "wb") as file:
             file.write(_seal(path, body) + body)
         os.replace(aside, path)
     except BaseException:
