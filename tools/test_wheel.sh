@@ -18,12 +18,12 @@ find "$scratch/tree" \( -name __pycache__ -o -name '*.egg-info' \) -prune -exec 
 rm -rf "$root/runs/dist" && mkdir -p "$root/runs/dist" && cp "$scratch"/dist/*.whl "$root/runs/dist"
 ls -l "$root"/runs/dist
 
-# Everything in the package that is no Python file must be in the wheel.
+# Everything in the package must be in the wheel, but for the settings of tools.
 "$python" - "$root" "$scratch"/dist/*.whl <<'PY'
 import pathlib, sys, zipfile
 root, wheel = pathlib.Path(sys.argv[1]) / "src", sys.argv[2]
 packed = set(zipfile.ZipFile(wheel).namelist())
-files = {p.relative_to(root).as_posix() for p in (root / "jacaros").rglob("*") if p.is_file() and p.suffix != ".pyc"}
+files = {p.relative_to(root).as_posix() for p in (root / "jacaros").rglob("*") if p.is_file() and p.suffix != ".pyc" and p.name != "ruff.toml"}
 missing = sorted(files - packed)
 sys.exit(f"not in the wheel: {', '.join(missing)}" if missing else 0)
 PY
