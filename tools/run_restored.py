@@ -55,7 +55,7 @@ def exchange(host: AgentHost, old: Mind) -> None:
         return
     for alarm in old.waits.alarms.values():
         alarm.timer.cancel()
-    new = Mind(old.name, old.program, host, old.options, old.actions)
+    new = Mind(old.name, old.program, host, old.options, old.engine.actions)
     for name in KEPT:
         setattr(new, name, getattr(old, name))
     host.mind = new

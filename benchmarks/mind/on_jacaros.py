@@ -43,7 +43,7 @@ def main(project: str) -> None:
     )
     if code or not listener.marks.seconds:
         sys.exit(f"exit code {code}, {len(listener.marks.seconds)} measurements")
-    print(json.dumps(listener.marks.report() | {"cycles": sum(mind.cycles for mind in minds)}))
+    print(json.dumps(listener.marks.report() | {"cycles": sum(mind.counts.cycles for mind in minds)}))
 
 
 if __name__ == "__main__":

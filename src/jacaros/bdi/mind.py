@@ -94,7 +94,7 @@ class Mind(Circumstance):
     ) -> None:
         known = STANDARD if actions is None else actions
         made = plans or ProgramPlans(program.plans, new_engine(known))
-        super().__init__(name, architecture, known, options or Options(), made)
+        super().__init__(name, architecture, options or Options(), made)
         self.program = program
         self.context = Context(self)
         self.face: object = None
@@ -154,7 +154,7 @@ class Mind(Circumstance):
             ActionError: a label is that of another plan.
         """
         program = include_program(
-            path, self.architecture.read_program, functions.known_names(self), self.actions, namespace
+            path, self.architecture.read_program, functions.known_names(self), self.engine.actions, namespace
         )
         self.register_functions(program.functions)
         plan_changes.include_plans(self, program.plans)
@@ -168,7 +168,7 @@ class Mind(Circumstance):
     def register_functions(self, declared: tuple[nodes.RegisteredFunction, ...]) -> None:
         """Make the arithmetic functions of a program known."""
         for function in declared:
-            self.functions[function.name] = functions.RegisteredFunction(
+            self.functions.own[function.name] = functions.RegisteredFunction(
                 function.arity, function.implementation
             )
 
@@ -223,18 +223,20 @@ class Mind(Circumstance):
         Raises:
             Failure: the mailbox is full; the step that sends the message fails.
         """
-        if len(self.inbox) >= self.options.mailbox_limit:
-            raise self.budgets["mailbox_limit"].failure(len(self.inbox), f" that {self.name} has not read")
+        if len(self.incoming.messages) >= self.options.mailbox_limit:
+            raise self.budgets["mailbox_limit"].failure(
+                len(self.incoming.messages), f" that {self.name} has not read"
+            )
         self.selections.note_message(message)
-        self.inbox.append(message)
-        self.called = True
+        self.incoming.messages.append(message)
+        self.incoming.called = True
         self.architecture.ready()
 
     def perceive(self, percepts: list[Percept]) -> None:
         """Take note of changes in the environment; they are worked in before the next cycle."""
         if percepts:
-            self.percepts.append(percepts)
-            self.called = True
+            self.incoming.percepts.append(percepts)
+            self.incoming.called = True
             self.architecture.ready()
 
     def has_untaken(self, name: str) -> bool:

@@ -26,27 +26,23 @@ from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
 
 __all__ = ["NotStorable", "copy_mind", "knowledge", "restore", "stored"]
 
-FORMAT = 2
+FORMAT = 3
 """Version of the format."""
 
 _FIELDS = (
     "_acts",
     "_namespaces",
     "alive",
-    "asleep",
     "atomic",
     "atomic_over",
-    "called",
-    "cycles",
-    "drowsy",
-    "inbox",
-    "intentions_made",
     "messages",
-    "next_count",
-    "next_look",
-    "tasks",
+    "sleep",
 )
-_WAITS = ("abandoned", "acts", "alarms", "alarms_made", "questions", "requeued", "suspended_events")
+_PARTS = {
+    "waits": ("abandoned", "acts", "alarms", "alarms_made", "questions", "requeued", "suspended_events"),
+    "incoming": ("called", "messages", "tasks"),
+    "counts": ("cycles", "intentions", "next_check", "next_look"),
+}
 _QUEUES = ("events", "intentions", "crowd")
 _INTERRUPTED = (
     (functor("env_failure_reason", 1), atom("interrupted")),
@@ -63,13 +59,15 @@ def stored(mind: Mind) -> dict[str, Any]:
     conditions = mind.waits.conditions
     held = knowledge(mind)
     held |= {name: getattr(mind, name) for name in _FIELDS}
-    held |= {name: getattr(mind.waits, name) for name in _WAITS}
+    held |= {
+        part: {name: getattr(getattr(mind, part), name) for name in names} for part, names in _PARTS.items()
+    }
     held["held_percepts"], held["blamed"] = mind.beliefs.held_percepts, mind.library.blamed
     held |= {name: list(getattr(mind, name)) for name in _QUEUES}
     held["event_waits"] = [wait for kind in mind.waits.events.values() for wait in kind.values()]
     held["condition_waits"] = (list(conditions.values()), list(conditions.due), list(conditions.restless))
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
-    held["percepts"] = list(mind.percepts)
+    held["percepts"] = list(mind.incoming.percepts)
     held["serial"] = mind.trail.serial
     held["time"] = mind.architecture.now()
     writer = Writer(mind)
@@ -108,13 +106,16 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     _learn(mind, held)
     for name in _FIELDS:
         setattr(mind, name, held[name])
-    for name in _WAITS:
-        setattr(mind.waits, name, held[name])
+    for part, names in _PARTS.items():
+        for name in names:
+            setattr(getattr(mind, part), name, held[part][name])
     mind.beliefs.held_percepts, mind.library.blamed = held["held_percepts"], held["blamed"]
     for name in _QUEUES:
         getattr(mind, name).extend(held[name])
     for percepts in reversed(held["percepts"]):
-        mind.percepts.appendleft(percepts if same_host else [p for p in percepts if p.kind == "signal"])
+        mind.incoming.percepts.appendleft(
+            percepts if same_host else [p for p in percepts if p.kind == "signal"]
+        )
     _wait_again(mind, held)
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
@@ -164,7 +165,7 @@ def knowledge(agent: Circumstance) -> dict[str, Any]:
     ``beliefs`` has a functor, the entries with their annotations, oldest first, and those behind all others.
     """
     held: dict[str, Any] = {
-        "functions": agent.functions,
+        "functions": agent.functions.own,
         "namespace_properties": agent.beliefs.namespace_properties,
         "plans_made": agent.library.plans_made,
     }
@@ -183,7 +184,7 @@ def _learn(mind: Mind, held: dict[str, Any]) -> None:
         for entries, last in ((rows, False), (late, True)):
             for entry, annotations in entries:
                 mind.beliefs[symbol].add(entry, annotations, last)
-    mind.functions = held["functions"]
+    mind.functions.own = held["functions"]
     mind.beliefs.namespace_properties = held["namespace_properties"]
     mind.library.plans_made = held["plans_made"]
     if held["plans"] is not None:
@@ -214,8 +215,8 @@ def copy_mind(original: Mind, clone: Mind) -> None:
     clone.intentions.extend(held["intentions"])
     owners = [event[EVENT_INTENTION] for event in held["events"] if event[EVENT_INTENTION] is not None]
     for intention in (*owners, *held["intentions"]):
-        clone.intentions_made += 1
-        intention.id = clone.intentions_made
+        clone.counts.intentions += 1
+        intention.id = clone.counts.intentions
         clone.alive[intention.id] = intention
     clone.architecture.ready()
 

@@ -48,7 +48,7 @@ class CustomMind(Mind):
         if any(overridden(face, name) for name in _SELECTION_FUNCTIONS):
             self.selections = Chosen(self, face)
         self._revises = overridden(face, "brf")
-        self.usual_events = self.usual_events and self._revises is None
+        self.features.usual_events = self.features.usual_events and self._revises is None
         self._notices = overridden(face, "buf")
 
     def accepts(self, message: SpeechAct) -> bool:
@@ -195,7 +195,7 @@ class Chosen(Urgent):
         """The one that the class chooses."""
         if self._message is None:
             return super().select_messages()
-        return (self._choose(self._message, self._mind.inbox, Message, lambda message: True),)
+        return (self._choose(self._message, self._mind.incoming.messages, Message, lambda message: True),)
 
     def select_event(self) -> Event | None:
         """The one that the class chooses."""

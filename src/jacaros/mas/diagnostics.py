@@ -64,15 +64,15 @@ class AgentVitals:
         mind = self._host.mind
         if not isinstance(mind, Mind):
             return Status(f"agent {self._host.name}", OK, "an agent in Python")
-        waiting = len(mind.events) + len(mind.inbox) + len(mind.percepts)
+        waiting = len(mind.events) + len(mind.incoming.messages) + len(mind.incoming.percepts)
         self._grown = self._grown + 1 if waiting > self._waiting else 0
-        rate = (mind.cycles - self._cycles) / seconds
-        self._waiting, self._cycles = waiting, mind.cycles
+        rate = (mind.counts.cycles - self._cycles) / seconds
+        self._waiting, self._cycles = waiting, mind.counts.cycles
         values = {
             "intentions": str(len(mind.alive)),
             "events waiting": str(len(mind.events)),
-            "messages waiting": str(len(mind.inbox)),
-            "percepts waiting": str(len(mind.percepts)),
+            "messages waiting": str(len(mind.incoming.messages)),
+            "percepts waiting": str(len(mind.incoming.percepts)),
             "cycles per second": f"{rate:.0f}",
         }
         if self._grown >= GROWING and waiting > MANY:

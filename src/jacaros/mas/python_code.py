@@ -122,7 +122,7 @@ class PythonCode:
 
     def serve(self, agent: Circumstance) -> None:
         """Let an agent evaluate the functions of the project, also in what it reads at run time."""
-        agent.project = self
+        agent.functions.project = self
 
 
 def _refused(actions: Mapping[str, InternalAction]) -> dict[str, InternalAction]:

@@ -327,7 +327,7 @@ class Trial:
             fakes = Fakes(mind.complete, host.set_timer)
             printed = partial(self._printed_by, host.name)
             self._probes[host.name] = Probe(fakes, self._asserted, printed, self._others_in_graph)
-            mind.on_lost = partial(self._lost, host.name)
+            mind.observers.lost = partial(self._lost, host.name)
             host.intercept = fakes.begin
             host.intercept_stop = fakes.stop
 

@@ -186,7 +186,7 @@ def emptiness(storm: Storm) -> dict[str, object]:
         "acts": agent.waits.acts,
         "event waits": agent.waits.events,
         "condition waits": agent.waits.conditions,
-        "tasks": list(agent.tasks),
+        "tasks": list(agent.incoming.tasks),
         "atomic": agent.atomic,
         "trail": list(agent.trail),
     }
@@ -216,7 +216,7 @@ def test_when_all_is_dropped_nothing_runs_any_more(story: list[tuple[Any, ...]])
     goals.drop_all_events(storm.agent)
     goals.drop_all_intentions(storm.agent)
     printed, acts = len(storm.host.printed), len(storm.host.acts)
-    storm.agent.tasks.clear()
+    storm.agent.incoming.tasks.clear()
     while storm.agent.run(100) or storm.host.ring_next(storm.host.time + 1000):
         storm.check()
     assert not storm.under_way()

@@ -120,7 +120,7 @@ def test_plain_and_fast_make_the_same_cycles(monkeypatch, tmp_path):
     def cycles():
         minds = []
         run_project(program, when_started=lambda mas: minds.extend(host.mind for host in mas.directory))
-        return minds[0].cycles
+        return minds[0].counts.cycles
 
     fast = cycles()
     monkeypatch.setenv("JACAROS_PLAIN", "1")

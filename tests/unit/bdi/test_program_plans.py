@@ -45,20 +45,22 @@ def test_the_select_function_is_made_once() -> None:
     adopt(first, "greet(bob)")
     adopt(second, "greet(ann)")
     assert (first.printed, second.printed) == (["hello bob"], ["hello ann"])
-    kinds = [kind for kind in first.agent.selects if kind.functor.name == "greet" and kind.operator == "+"]
-    assert first.agent.selects[kinds[0]] is second.agent.selects[kinds[0]]
+    kinds = [
+        kind for kind in first.agent.library.selects if kind.functor.name == "greet" and kind.operator == "+"
+    ]
+    assert first.agent.library.selects[kinds[0]] is second.agent.library.selects[kinds[0]]
 
 
 def test_select_functions_are_shared_until_plans_change() -> None:
     first, second = agents("a", "b")
-    assert first.agent.selects is second.agent.selects
+    assert first.agent.library.selects is second.agent.library.selects
     assert first.agent.library.plans is second.agent.library.plans
     adopt(first, "learn")
-    assert first.agent.selects is not second.agent.selects
-    assert second.agent.selects is second.agent.library.program.selects
+    assert first.agent.library.selects is not second.agent.library.selects
+    assert second.agent.library.selects is second.agent.library.program.selects
     adopt(second, "forget")
-    assert second.agent.selects is second.agent.library.selects
-    assert second.agent.selects is not second.agent.library.program.selects
+    assert second.agent.library.selects is second.agent.library.selects
+    assert second.agent.library.selects is not second.agent.library.program.selects
     assert len(second.agent.library.program.plans) == len(second.agent.library.plans) + 1
 
 

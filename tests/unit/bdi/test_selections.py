@@ -38,7 +38,7 @@ class AllMessagesAtOnce(Fair):
     """Reads all that has come in one cycle."""
 
     def select_messages(self) -> list[SpeechAct]:
-        inbox = self.agent.inbox
+        inbox = self.agent.incoming.messages
         return [inbox.popleft() for _ in range(len(inbox))]
 
 
@@ -47,7 +47,7 @@ def with_policy(program: str, policy: type[Fair]) -> RecordingHost:
     selections: Selections = policy(host.agent)
     selections.plain = False
     host.agent.selections = selections
-    host.agent.called = True
+    host.agent.incoming.called = True
     return host
 
 
@@ -74,7 +74,7 @@ def test_a_policy_decides_how_many_messages_are_read_in_a_cycle() -> None:
                 SpeechAct("tell", "friend", "tester", structure("told", float(number)), f"m{number}")
             )
         host.agent.run(1)
-        assert 3 - len(host.agent.inbox) == read
+        assert 3 - len(host.agent.incoming.messages) == read
 
 
 @pytest.mark.skipif(is_plain(), reason="the rules ask for every event")

@@ -47,7 +47,7 @@ def restored(host: RecordingHost) -> Mind:
     text = json.dumps(stored(old))
     for alarm in old.waits.alarms.values():
         alarm.timer.cancel()
-    host.agent = Mind(old.name, old.program, host, old.options, old.actions)
+    host.agent = Mind(old.name, old.program, host, old.options, old.engine.actions)
     restore(host.agent, json.loads(text), same_host=True)
     return host.agent
 

@@ -271,9 +271,9 @@ def test_a_burst_of_percepts_does_not_keep_an_urgent_goal_waiting() -> None:
     host = mind(program)
     host.run()
     host.agent.perceive(noticed(*map(low, range(10_000)), bump(1)))
-    before = host.agent.cycles
+    before = host.agent.counts.cycles
     host.agent.run(4)
-    assert host.agent.cycles - before == 4
+    assert host.agent.counts.cycles - before == 4
     assert host.printed == ["brake", "off", "0"]
     host.run()
     assert len(host.agent.beliefs[structure("handled", 1.0)[0]]) == 10_000
@@ -303,7 +303,7 @@ def test_messages_before_an_urgent_one_are_read_with_it_in_their_order() -> None
     host.agent.receive(SpeechAct("tell", "friend", "tester", low(101), "m102"))
     host.agent.run(2)
     assert host.printed == ["bump 1", "end of bump 1"]
-    assert len(host.agent.inbox) == 0
+    assert len(host.agent.incoming.messages) == 0
     host.run()
     assert host.printed[2:] == [f"low {number}" for number in range(1, 102)]
 

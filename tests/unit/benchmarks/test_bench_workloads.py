@@ -30,7 +30,7 @@ def run(workload: Workload, n: int, times: int, folder: Path) -> tuple[list[str]
     )
     assert (result.exit_code, result.errors) == (0, [])
     lines = [line.partition("] ")[2] for line in result.lines]
-    return lines, sum(mind.cycles for mind in minds)
+    return lines, sum(mind.counts.cycles for mind in minds)
 
 
 @pytest.mark.parametrize("workload", WORKLOADS, ids=lambda each: each.name)

@@ -80,10 +80,10 @@ def test_a_queue_that_grows_for_some_seconds_is_a_warning(tmp_path: Path) -> Non
         levels = []
         for more in (60, 60, 60, 60, 0):
             # Nobody has a turn meanwhile: the agent is busier than it can be.
-            host.mind.percepts.extend([[]] * more)
+            host.mind.incoming.percepts.extend([[]] * more)
             levels.append(vitals.look(1.0).level)
         assert levels == [OK, OK, WARN, WARN, OK]
-        host.mind.percepts.clear()
+        host.mind.incoming.percepts.clear()
 
     watched("!wait. +!wait <- .wait(60000).", tmp_path, 0.5, look)
 

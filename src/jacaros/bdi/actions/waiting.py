@@ -43,10 +43,10 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     elif ctx.succeeds(what):
         return None if elapsed is None else ctx.unify(elapsed, 0.0)
     else:
-        asked = asked_by(what, agent.beliefs, agent.actions)
+        asked = asked_by(what, agent.beliefs, agent.engine.actions)
         waiting = ConditionWait(intention, _reason(intention, rename(what)), elapsed, began, what, asked)
         agent.waits.conditions.add(waiting)
-        agent.called = True
+        agent.incoming.called = True
     if limit is not None:
         waiting.alarm = waits.set_alarm(agent, limit / 1000.0, waits.time_out, waiting)
     return waiting

@@ -211,7 +211,7 @@ class _LookOnly:
 
     def __init__(self, agent: Circumstance, budget: SearchBudget) -> None:
         self.beliefs = _Beliefs(self, agent, budget)
-        self.actions = _Actions(agent)
+        self.engine = _Actions(agent)
         self.context = _Silent(agent, self)
         self.architecture = agent.architecture
         self.options = agent.options
@@ -272,7 +272,8 @@ class _Actions:
     """The internal actions that may be called once more."""
 
     def __init__(self, agent: Circumstance) -> None:
-        self._actions = agent.actions
+        self._actions = agent.engine.actions
+        self.actions = self
 
     def get(self, name: str) -> InternalAction | None:
         """The action of a name.

@@ -31,14 +31,14 @@ Kept = list[Any]
 def add_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+b`` of a fact that is not held yet."""
     table = agent.beliefs[symbol]
-    if not (table.plain and agent.usual_events and _is_keyed(row)) or row in table.rows:
+    if not (table.plain and agent.features.usual_events and _is_keyed(row)) or row in table.rows:
         posted: Raised = agent.add_belief(symbol, row, annotations)
         return posted
     new = table.add(row, annotations)
     if new is not BY_SELF or agent.waits.conditions:
         return own_event(agent, symbol, row, new)
     kind = table.added
-    if agent.selects[kind] is None and not (
+    if agent.library.selects[kind] is None and not (
         agent.events or agent.intentions or agent.waits.events or agent.features.subplans
     ):
         return None
@@ -49,13 +49,13 @@ def replace_belief(agent: Any, symbol: Functor, row: Row, annotations: Annotatio
     """``-+b`` where the newest belief is one of the agent's own."""
     table = agent.beliefs[symbol]
     rows = table.rows
-    if not (annotations is BY_SELF and rows and table.plain and agent.usual_events) or (
+    if not (annotations is BY_SELF and rows and table.plain and agent.features.usual_events) or (
         rows[newest := next(reversed(rows))] is not BY_SELF
     ):
         posted: Raised = agent.replace_belief(symbol, row, annotations)
         return posted
     if table.remove(newest) and (
-        agent.selects[table.deleted] is not None
+        agent.library.selects[table.deleted] is not None
         or agent.waits.events
         or agent.waits.conditions
         or agent.features.subplans
@@ -69,7 +69,7 @@ def delete_belief(
 ) -> Raised:
     """``-b`` and ``--b`` where all facts that may match are the agent's own: the first match goes as a whole."""
     table = agent.beliefs[symbol]
-    if annotations is BY_SELF and table.plain and agent.usual_events:
+    if annotations is BY_SELF and table.plain and agent.features.usual_events:
         trail = agent.trail
         for fact in table.rows_like(arguments):
             if table.rows[fact] is not BY_SELF:
@@ -116,7 +116,7 @@ def _take_in(agent: Circumstance, percepts: list[Percept]) -> None:
     beliefs, holders, selects, events = (
         agent.beliefs,
         agent.beliefs.held_percepts,
-        agent.selects,
+        agent.library.selects,
         agent.events,
     )
     for percept in percepts:

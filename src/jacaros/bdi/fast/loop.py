@@ -41,24 +41,24 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
     agent.running = True
     try:
         begun = fuel
-        if agent.asleep:
+        if agent.sleep == "asleep":
             meta_events.awake(agent)
         events, intentions = agent.events, agent.intentions
         option_filter = agent.selections.option_filter
         always = options.percept_interval == 1
         while fuel > 0 and not agent.stopped:
-            if agent.called or not always:
-                look_around(agent, agent.cycles + begun - fuel)
+            if agent.incoming.called or not always:
+                look_around(agent, agent.counts.cycles + begun - fuel)
                 events, intentions = agent.events, agent.intentions
-            if agent.special or option_filter.rows or not agent.selections.plain:
-                made = agent.cycles
+            if agent.features.special or option_filter.rows or not agent.selections.plain:
+                made = agent.counts.cycles
                 goes_on = deliberate(agent)
-                made = agent.cycles - made
+                made = agent.counts.cycles - made
                 fuel, begun = fuel - made, begun - made
                 if not goes_on:
                     break
                 if is_done(agent):
-                    agent.cycles += begun - fuel
+                    agent.counts.cycles += begun - fuel
                     return False
                 events, intentions = agent.events, agent.intentions
                 continue
@@ -87,26 +87,26 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
                 if agent.waits.requeued:
                     events.extendleft(reversed(agent.waits.requeued))
                     agent.waits.requeued.clear()
-                elif not (events or intentions or agent.crowd or agent.called or agent.features.edges):
+                elif not (
+                    events or intentions or agent.crowd or agent.incoming.called or agent.features.edges
+                ):
                     # That was all: the next cycle would find nothing to do.
-                    agent.cycles += begun - fuel
+                    agent.counts.cycles += begun - fuel
                     return False
-            elif (events and agent.atomic is None) or agent.inbox:
+            elif (events and agent.atomic is None) or agent.incoming.messages:
                 fuel -= 1
-            elif not (
-                agent.percepts or agent.tasks or (agent.features.edges and meta_events.fall_asleep(agent))
-            ):
+            elif not (agent.incoming or (agent.features.edges and meta_events.fall_asleep(agent))):
                 if not events and agent.atomic is None:
-                    agent.cycles += begun - fuel
+                    agent.counts.cycles += begun - fuel
                     return False
                 break
-        agent.cycles += begun - fuel
+        agent.counts.cycles += begun - fuel
         # Without fuel it was not seen yet that nothing is left to do: that takes another look.
         return not agent.stopped and (fuel <= 0 or has_work(agent))
     finally:
         agent.running = False
         RUNNING.reset(before)
-        if agent.cycles >= agent.next_count:
+        if agent.counts.cycles >= agent.counts.next_check:
             look_at_names(agent)
             watch(agent)
 
@@ -114,24 +114,24 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - written out for
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts and one message, if there is nothing else."""
     if (
-        agent.tasks
+        agent.incoming.tasks
         or (agent.waits.conditions and agent.waits.conditions.want_a_look())
-        or (agent.inbox and not agent.selections.plain)
+        or (agent.incoming.messages and not agent.selections.plain)
         or agent.options.percept_interval != 1
     ):
         plain_cycle.look_around(agent, cycle)
         return
-    agent.next_count -= 1  # what comes in may bring new names as any step does
+    agent.counts.next_check -= 1  # what comes in may bring new names as any step does
     # What is usual: there is a message, or percepts, and nothing else.
-    if agent.percepts:
+    if agent.incoming.percepts:
         take_percepts(agent)
-        if agent.tasks:
+        if agent.incoming.tasks:
             plain_cycle.do_tasks(agent)
             plain_cycle.check_conditions(agent)
-    waiting = len(agent.inbox)
-    agent.called = waiting > 1 or agent.special or not agent.selections.plain
+    waiting = len(agent.incoming.messages)
+    agent.incoming.called = waiting > 1 or agent.features.special or not agent.selections.plain
     if waiting:
-        read_message(agent, agent.inbox.popleft())
+        read_message(agent, agent.incoming.messages.popleft())
 
 
 def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - written out for speed
@@ -158,11 +158,11 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
             # `begin_intention`, written out for what is usual.
             trail, kind = agent.trail, goal[0]
             trail.serial += 1
-            select = agent.selects[kind]
+            select = agent.library.selects[kind]
             frame: Frame | None = None if select is None else select(agent, goal, annotations)
             if trail:
                 trail.clear()
-            if frame is None and not kind.kind and agent.usual_events:
+            if frame is None and not kind.kind and agent.features.usual_events:
                 if select is not None and agent.options.verbose > 1:
                     log_inapplicable(agent, goal, annotations)
                 continue
@@ -170,7 +170,7 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
                 if begin_with(agent, event, frame, False):
                     return None
                 continue
-            agent.intentions_made = number = agent.intentions_made + 1
+            agent.counts.intentions = number = agent.counts.intentions + 1
             agent.alive[number] = intention = Intention(number, cause)
             intention.frames.append(frame)
             intentions = agent.intentions
@@ -194,7 +194,7 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
     trail = agent.trail
     trail.serial += 1
     kind = goal[0]
-    select = agent.selects[kind]
+    select = agent.library.selects[kind]
     made: Frame | None = None if select is None else select(agent, goal, annotations)
     if trail:
         trail.clear()
@@ -229,7 +229,7 @@ def execute_atomic(agent: Circumstance, intention: Intention, fuel: int) -> int:
         if (
             fuel <= 0
             or agent.atomic is not intention
-            or agent.called
+            or agent.incoming.called
             or agent.stopped
             or not intentions
             or intentions[-1] is not intention
@@ -246,7 +246,12 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
     next cycle to go on, which with empty queues comes to the same.
     """
     agent.current = intention
-    frames, handlers, trail, selects = intention.frames, intention.handlers, agent.trail, agent.selects
+    frames, handlers, trail, selects = (
+        intention.frames,
+        intention.handlers,
+        agent.trail,
+        agent.library.selects,
+    )
     events, intentions = agent.events, agent.intentions
     option_filter, depth, tail_calls = (
         agent.selections.option_filter,
@@ -278,7 +283,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
 
         if goal is None:
             if frame[0] is None:
-                if agent.special:
+                if agent.features.special:
                     if not pop_finished(agent, intention):
                         break
                 else:
@@ -295,7 +300,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
                         else:
                             agent.finish(intention)
                         break
-            if intentions or events or agent.called or fuel <= 0:
+            if intentions or events or agent.incoming.called or fuel <= 0:
                 if intention.suspended is None:
                     intentions.append(intention)
                 else:
@@ -317,7 +322,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
             goal, annotations = goal.goal, goal.annotations
         if urgencies is not None and urgencies[goal[0]]:
             agent.selections.rank()
-        if intentions or events or agent.called or option_filter.rows or fuel <= 0:
+        if intentions or events or agent.incoming.called or option_filter.rows or fuel <= 0:
             announce(agent, intention, goal, annotations)
             events.append((goal, intention, annotations, None))
             break

@@ -71,7 +71,7 @@ def go_without(
     False when the intention goes no further now.
     """
     if frame is None and goal[0].kind == "":
-        if agent.options.verbose > 1 and agent.selects[goal[0]] is not None:
+        if agent.options.verbose > 1 and agent.library.selects[goal[0]] is not None:
             log_inapplicable(agent, goal, annotations)
         return True
     posted = unplanned(agent, intention, goal, annotations) if frame is None else too_deep(agent, intention)
@@ -94,9 +94,9 @@ def is_alone(agent: Circumstance) -> bool:
     return not (
         agent.events
         or agent.intentions
-        or agent.inbox
-        or agent.tasks
-        or agent.percepts
+        or agent.incoming.messages
+        or agent.incoming.tasks
+        or agent.incoming.percepts
         or (agent.waits.conditions and agent.waits.conditions.restless)
         or agent.features.goal_conditions
     )

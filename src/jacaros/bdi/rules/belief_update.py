@@ -69,7 +69,7 @@ def own_event(
 
 def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
     """Hand the event to the step's intention, or queue it as an external one; None when nobody cares."""
-    unplanned = agent.selects[goal[0]] is None and not _is_kept(agent, goal[0])
+    unplanned = agent.library.selects[goal[0]] is None and not _is_kept(agent, goal[0])
     if apart or agent.options.new_focus:
         if unplanned and not agent.waits.events:
             return None
@@ -255,7 +255,7 @@ def external_change(
     """Raise the external event of a belief change, if anybody cares."""
     table = agent.beliefs[symbol]
     kind = table.added if operator == "+" else table.deleted
-    if agent.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):
+    if agent.library.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
     note_change(agent, symbol, row)
 

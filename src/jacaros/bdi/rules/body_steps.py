@@ -247,7 +247,7 @@ def _constraint(step: Step, node: nodes.Constraint, agent: Any, frame: Frame) ->
 def _internal_action(step: Step, node: nodes.InternalAction, agent: Any, frame: Frame) -> object:
     names = step.values(frame)
     arguments = [resolve(lower(argument, names.__getitem__)) for argument in node.arguments]
-    action = agent.actions.get(node.name)
+    action = agent.engine.actions.get(node.name)
     if action is None:
         step.keep(frame, names)
         return agent.begin_act(functor(node.name, len(arguments)), tuple(arguments), (), step.next)

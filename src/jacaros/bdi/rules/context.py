@@ -99,7 +99,7 @@ class Context:
             AslError: when the text is no term.
         """
         agent = self.agent
-        key = text, len(agent.functions)
+        key = text, len(agent.functions.own)
         known: Parsed | None = self.parsed.get(key)
         if known is None:
             known = Parsed(parse_term(text, functions=known_names(agent)))

@@ -23,8 +23,8 @@ def run(agent: Circumstance, fuel: int) -> bool:
         # Each cycle has the whole budget of searches.
         return all(run(agent, 1) for _ in range(fuel))
     with turn(agent):
-        end = agent.cycles + fuel
-        while agent.cycles < end and not agent.stopped:
+        end = agent.counts.cycles + fuel
+        while agent.counts.cycles < end and not agent.stopped:
             if not _cycle(agent):
                 return not agent.stopped and has_work(agent)
             if is_done(agent):
@@ -39,20 +39,20 @@ def turn(agent: Circumstance) -> Iterator[None]:
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
     try:
-        if agent.asleep:
+        if agent.sleep == "asleep":
             meta_events.awake(agent)
         yield
     finally:
         agent.running = False
         RUNNING.reset(before)
-        if agent.cycles >= agent.next_count:
+        if agent.counts.cycles >= agent.counts.next_check:
             look_at_names(agent)
 
 
 def look_at_names(agent: Circumstance) -> None:
     """Drop the names that the agent no longer uses."""
     agent.beliefs.forget_names()
-    agent.next_count = agent.cycles + max(INTERVAL, len(agent.beliefs))
+    agent.counts.next_check = agent.counts.cycles + max(INTERVAL, len(agent.beliefs))
 
 
 def begin_turn(agent: Circumstance) -> None:
@@ -66,8 +66,8 @@ def begin_turn(agent: Circumstance) -> None:
 
 def _cycle(agent: Circumstance) -> bool:
     """One reasoning cycle; False when there is nothing to do."""
-    if agent.called or agent.options.percept_interval != 1:
-        look_around(agent, agent.cycles)
+    if agent.incoming.called or agent.options.percept_interval != 1:
+        look_around(agent, agent.counts.cycles)
     return deliberate(agent)
 
 
@@ -86,7 +86,7 @@ def deliberate(agent: Circumstance) -> bool:
         raise
     except Exception as fault:
         failure.give_up(agent, agent.current or intention, fault)
-    agent.cycles += 1
+    agent.counts.cycles += 1
     if agent.waits.requeued:
         agent.events.extendleft(reversed(agent.waits.requeued))
         agent.waits.requeued.clear()
@@ -102,20 +102,22 @@ def _take_up_event(agent: Circumstance) -> None:
 
 def _waits(agent: Circumstance) -> bool:
     """No intention can make a step: whether there may be one in the next cycle."""
-    if (agent.events and agent.atomic is None) or agent.inbox:
-        agent.cycles += 1
+    if (agent.events and agent.atomic is None) or agent.incoming.messages:
+        agent.counts.cycles += 1
         return True
-    return bool(agent.percepts or agent.tasks or (agent.features.edges and meta_events.fall_asleep(agent)))
+    return bool(agent.incoming or (agent.features.edges and meta_events.fall_asleep(agent)))
 
 
 def is_done(agent: Circumstance) -> bool:
     """Whether the next cycle would find nothing to do."""
-    return not (agent.events or agent.intentions or agent.crowd or agent.called or agent.features.edges)
+    return not (
+        agent.events or agent.intentions or agent.crowd or agent.incoming.called or agent.features.edges
+    )
 
 
 def has_work(agent: Circumstance) -> bool:
     """Whether there is something to do."""
-    if agent.inbox or agent.percepts or agent.tasks:
+    if agent.incoming:
         return True
     if agent.atomic is not None:
         return is_ready(agent, agent.atomic) or event_of(agent, agent.atomic) is not None
@@ -124,33 +126,31 @@ def has_work(agent: Circumstance) -> bool:
 
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in what has come since the last look: percepts, ends of waits, one message."""
-    agent.next_count -= 1  # what comes in may bring new names as any step does
+    agent.counts.next_check -= 1  # what comes in may bring new names as any step does
     looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
     housekeeping(agent, looks)
-    if agent.inbox and looks:
+    if agent.incoming.messages and looks:
         for message in agent.selections.select_messages():
             read_message(agent, message)
-    agent.called = bool(
-        agent.inbox
-        or agent.percepts
-        or agent.tasks
+    agent.incoming.called = bool(
+        agent.incoming
         or agent.waits.conditions.want_a_look()
-        or agent.special
+        or agent.features.special
         or not agent.selections.plain
     )
 
 
 def looks_now(agent: Circumstance, cycle: int) -> bool:
     """Whether an agent that does not look at percepts and messages in every cycle (``nrcbp``) does in this one."""
-    if cycle < agent.next_look and (agent.events or agent.intentions or agent.tasks):
+    if cycle < agent.counts.next_look and (agent.events or agent.intentions or agent.incoming.tasks):
         return False
-    agent.next_look = cycle + agent.options.percept_interval
+    agent.counts.next_look = cycle + agent.options.percept_interval
     return True
 
 
 def housekeeping(agent: Circumstance, looks: bool = True) -> None:
     """What came in since the last cycle: percepts, ends of waits, conditions that now hold."""
-    if agent.percepts and looks:
+    if agent.incoming.percepts and looks:
         take_percepts(agent)
     do_tasks(agent)
     check_conditions(agent)
@@ -158,8 +158,8 @@ def housekeeping(agent: Circumstance, looks: bool = True) -> None:
 
 def do_tasks(agent: Circumstance) -> None:
     """The housekeeping that is due."""
-    while agent.tasks:
-        function, arguments = agent.tasks.popleft()
+    while agent.incoming.tasks:
+        function, arguments = agent.incoming.tasks.popleft()
         try:
             function(agent, *arguments)
         except InternalError:

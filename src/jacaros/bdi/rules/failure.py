@@ -128,7 +128,7 @@ def no_plan(
     agent: Circumstance, goal: Goal, annotations: EventAnnotations, caller: Frame | None
 ) -> FailureReason:
     """The reason of a goal that has no relevant or no applicable plan."""
-    if agent.selects[goal[0]] is None:
+    if agent.library.selects[goal[0]] is None:
         error, told = "no_relevant", "no relevant plan"
     elif agent.selections.refused:
         agent.selections.refused = False
@@ -180,7 +180,7 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
     The failed frames stay on the stack under the handler until it ends.  A failure inside a handler goes on to the goals
     below the one it handles.
     """
-    frames, selects = intention.frames, agent.selects
+    frames, selects = intention.frames, agent.library.selects
     handlers = len(intention.handlers)
     index = len(frames) - 1
     while index >= 0:

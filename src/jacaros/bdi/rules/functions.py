@@ -30,8 +30,8 @@ class RegisteredFunction(NamedTuple):
 
 def known_names(agent: Circumstance) -> FunctionNames:
     """The functions that what is read at run time may call, for the parser."""
-    registered = {name: function.arity for name, function in agent.functions.items()}
-    return FunctionNames(registered, agent.project.functions)
+    registered = {name: function.arity for name, function in agent.functions.own.items()}
+    return FunctionNames(registered, agent.functions.project.functions)
 
 
 def call_function(agent: Circumstance, term: Term) -> Term:
@@ -50,10 +50,10 @@ def call_own(agent: Circumstance, term: Term) -> Term:
     standard = OF_AGENT.get(name)
     if standard is not None:
         return standard.evaluate(agent, term)
-    evaluator = agent.project.evaluators.get(name)
+    evaluator = agent.functions.project.evaluators.get(name)
     if evaluator is not None:
         return evaluator(*term[1:])
-    function = agent.functions.get(name)
+    function = agent.functions.own.get(name)
     return None if function is None else _call_registered(agent, function, term)
 
 

@@ -136,7 +136,7 @@ def _tell_unplanned(
     if unplanned is None or not agent.features.meta:
         return
     goal, annotations, number = unplanned
-    why = lost_goals.why(reason) if agent.goal_observer is not None else ""
+    why = lost_goals.why(reason) if agent.observers.goal is not None else ""
     meta_events.observe_goal(agent, intention, goal, number, "failed", why)
     meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
     if over:
@@ -156,7 +156,7 @@ def observe_failed(
     agent: Circumstance, intention: Intention, first: int, reason: FailureReason | None
 ) -> None:
     """Tell the observer that the goals of the frames from the one at *first* failed and are over."""
-    if agent.goal_observer is not None:
+    if agent.observers.goal is not None:
         why = lost_goals.why(reason) if reason is not None else ""
         for frame in reversed(intention.frames[first:]):
             meta_events.observe(agent, intention, frame, "failed", why)
@@ -164,7 +164,7 @@ def observe_failed(
 
 
 def _tell(agent: Circumstance, intention: Intention, frame: Frame, reason: FailureReason) -> None:
-    why = lost_goals.why(reason) if agent.goal_observer is not None else ""
+    why = lost_goals.why(reason) if agent.observers.goal is not None else ""
     meta_events.observe(agent, intention, frame, "failed", why)
     meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "failed", atom(reason.error()))
 
@@ -173,8 +173,8 @@ def _tell_people(agent: Circumstance, loss: lost_goals.Loss, count: int = 1) -> 
     """Warn of a lost goal, the *count*-th of its kind."""
     note = f"\n  {count} goals have failed for this reason" if count > 1 else ""
     agent.architecture.log("warning", loss.text() + note)
-    if agent.on_lost is not None:
-        agent.on_lost(loss.told, loss.details, loss.span)
+    if agent.observers.lost is not None:
+        agent.observers.lost(loss.told, loss.details, loss.span)
 
 
 def _lost_in_handler(

@@ -225,7 +225,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term) -
     if intention.suspended is not None:
         return
     intention.suspended = reason
-    agent.called = True
+    agent.incoming.called = True
     if agent.features.meta:
         for frame in intention.frames:
             meta_events.frame_state(agent, intention, frame, "suspended", _BY_SUSPEND)

@@ -29,7 +29,7 @@ def goal_state(
     if not kind.kind or kind.operator == "^":
         return
     meta = trigger("^", kind.kind, kind.functor)
-    if agent.selects[meta] is None:
+    if agent.library.selects[meta] is None:
         return
     told = Annotated(structure("state", atom(state)), (structure("reason", reason),))
     event = ((meta, *goal[1:]), None, annotation_set((told, *annotations_of_event(annotations))), None)
@@ -46,7 +46,7 @@ def frame_state(
 
 def observe(agent: Circumstance, intention: Intention, frame: Frame, state: str, why: str = "") -> None:
     """Tell the observer only."""
-    if agent.goal_observer is not None:
+    if agent.observers.goal is not None:
         number = _goal_number(frame)
         if number is not None:
             observe_goal(agent, intention, frame[GOAL], number, state, why)
@@ -57,8 +57,8 @@ def observe_goal(
 ) -> None:
     """Tell the observer only, of a goal that may have no frame."""
     kind = goal[0]
-    if agent.goal_observer is not None and kind.kind and kind.operator != "^":
-        agent.goal_observer(state, kind.kind + text(literal_of(goal, ())), number, intention.id, why)
+    if agent.observers.goal is not None and kind.kind and kind.operator != "^":
+        agent.observers.goal(state, kind.kind + text(literal_of(goal, ())), number, intention.id, why)
 
 
 def _goal_number(frame: Frame) -> int | None:
@@ -122,8 +122,8 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     ``dropped``, ``replaced``, and last ``finished``.  A goal keeps its number when its variables get values, and in all
     branches of a fork.
     """
-    agent.goal_observer = observer
-    agent.features.meta = agent.special = agent.called = True
+    agent.observers.goal = observer
+    agent.features.meta = agent.features.special = agent.incoming.called = True
 
 
 SLEEPING = trigger("+", "", functor("jag_sleeping", 0))
@@ -133,21 +133,21 @@ SHUTTING_DOWN = trigger("+", "", functor("jag_shutting_down", 1))
 
 def fall_asleep(agent: Circumstance) -> bool:
     """There is nothing to do: True when a plan for ``+jag_sleeping`` is to be tried before the agent sleeps."""
-    if agent.drowsy or not agent.is_idle():
-        agent.asleep = agent.drowsy
+    if agent.sleep != "awake" or not agent.is_idle():
+        agent.sleep = "awake" if agent.sleep == "awake" else "asleep"
         return False
-    agent.drowsy = agent.asleep = True
     if not agent.may_handle(SLEEPING):
+        agent.sleep = "asleep"
         return False
-    agent.asleep = False
+    agent.sleep = "drowsy"
     agent.post(((SLEEPING,), None, BY_SELF, None))
     return True
 
 
 def awake(agent: Circumstance) -> None:
     """Something has come up: ``+jag_awaking``."""
-    if agent.asleep and not agent.is_idle():
-        agent.asleep = agent.drowsy = False
+    if agent.sleep == "asleep" and not agent.is_idle():
+        agent.sleep = "awake"
         if agent.may_handle(AWAKING):
             agent.post(((AWAKING,), None, BY_SELF, None))
 

@@ -33,8 +33,8 @@ def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
 
 def take_percepts(agent: Circumstance, way: Callable[[Circumstance, list[Percept]], None] = take_in) -> None:
     """Bring the belief base in line with what was noticed; a fault skips the rest of a step."""
-    while agent.percepts:
-        percepts = agent.percepts.popleft()
+    while agent.incoming.percepts:
+        percepts = agent.incoming.percepts.popleft()
         try:
             way(agent, percepts)
         except InternalError:
@@ -160,7 +160,7 @@ def is_untaken(agent: Circumstance, name: str) -> bool:
 
     A plan that waits (for an action, a time, a condition) has had its turn.
     """
-    for percepts in agent.percepts:
+    for percepts in agent.incoming.percepts:
         for each in percepts:
             symbol = functor_of(each.literal)
             if symbol is not None and symbol.name == name:

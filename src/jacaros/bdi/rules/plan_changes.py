@@ -43,18 +43,17 @@ def _same(left: nodes.Plan, right: nodes.Plan) -> bool:
 
 def look_at_plans(agent: Circumstance) -> None:
     """What the mind needs to know of its plans as a whole, those included that have been removed: they may still run."""
-    agent.selects = agent.library.selects
-    agent.features.meta = agent.goal_observer is not None or agent.library.has_meta_plans()
+    agent.features.meta = agent.observers.goal is not None or agent.library.has_meta_plans()
     agent.features.subplans = agent.features.subplans or agent.library.has_subplans()
     agent.features.goal_conditions = agent.features.goal_conditions or agent.library.has_goal_conditions()
-    agent.special = agent.features.meta or agent.features.subplans or agent.features.goal_conditions
-    agent.called = True
+    agent.features.special = agent.features.meta or agent.features.subplans or agent.features.goal_conditions
+    agent.incoming.called = True
     agent.features.edges = agent.features.subplans or any(
-        agent.selects[kind] is not None for kind in (SLEEPING, AWAKING)
+        agent.library.selects[kind] is not None for kind in (SLEEPING, AWAKING)
     )
     if not agent.features.edges:
         # Nobody would notice, and an agent that gets such a plan later is awake then.
-        agent.drowsy = agent.asleep = False
+        agent.sleep = "awake"
     urgency.plans_changed(agent)
 
 
@@ -70,7 +69,7 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
         written = str(term).strip()
         if not written.endswith("."):
             written += "."
-        for node in parse_plans(written, functions=known_names(agent), actions=agent.actions):
+        for node in parse_plans(written, functions=known_names(agent), actions=agent.engine.actions):
             _add_node(agent, node, source, first)
         return
     if is_list(term):

@@ -53,7 +53,7 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
     try:
         if (
             message.in_reply_to is None
-            and agent.selects[RECEIVED] is None
+            and agent.library.selects[RECEIVED] is None
             and (action := _ACTIONS.get(message.performative)) is not None
         ):
             if agent.accepts(message):
@@ -74,7 +74,7 @@ def _process(agent: Circumstance, message: SpeechAct) -> None:
         return
     if not agent.accepts(message):
         return
-    if agent.selects[RECEIVED] is not None and _handled_by_program(agent, message):
+    if agent.library.selects[RECEIVED] is not None and _handled_by_program(agent, message):
         return
     action = _ACTIONS.get(message.performative)
     if action is None:
@@ -257,7 +257,7 @@ def _ask_one(agent: Circumstance, message: SpeechAct) -> None:
         answer(agent, message, found)
         return
     symbol, arguments, annotations = literal_from(message.content, message.sender)
-    if symbol is None or agent.selects[trigger("+", "?", symbol)] is None:
+    if symbol is None or agent.library.selects[trigger("+", "?", symbol)] is None:
         answer(agent, message, None)
         return
     agent.test_for(message, symbol, arguments, annotations)  # type: ignore[attr-defined]

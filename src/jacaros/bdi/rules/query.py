@@ -236,14 +236,14 @@ def _holds(name: str, left: Term, right: Term, trail: Trail) -> bool:
 
 def collecting(agent: Circumstance, node: nodes.InternalAction) -> InternalAction | None:
     """The internal action that a formula calls, if it collects the answers of one of its arguments."""
-    action = agent.actions.get(node.name)
+    action = agent.engine.actions.get(node.name)
     return action if action is not None and action.is_collecting(len(node.arguments)) else None
 
 
 def _action(agent: Circumstance, symbol: Functor, arguments: tuple[Term, ...], trail: Trail) -> Answers:
     mark = len(trail)
     context = agent.context
-    action = agent.actions.get(symbol.name)
+    action = agent.engine.actions.get(symbol.name)
     if action is None:
         unknown(context, symbol.name)
         return

@@ -86,7 +86,7 @@ def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: 
     trigger = goal[0]
     if frame is None:
         if trigger.kind == "" or trigger.operator == "^":
-            if agent.options.verbose > 1 and not reacted and agent.selects[trigger] is not None:
+            if agent.options.verbose > 1 and not reacted and agent.library.selects[trigger] is not None:
                 log_inapplicable(agent, goal, annotations)
             if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
                 agent.waits.requeued.append(event)

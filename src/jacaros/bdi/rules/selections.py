@@ -36,7 +36,7 @@ class Fair:
 
     def select_messages(self) -> Sequence[SpeechAct]:
         """The oldest one."""
-        return (self.agent.inbox.popleft(),)
+        return (self.agent.incoming.messages.popleft(),)
 
     def select_event(self) -> Event | None:
         """The oldest one."""
@@ -49,7 +49,7 @@ class Fair:
         """The first applicable plan; if the program has rules that filter plans, the first one that they let pass."""
         agent = self.agent
         if not self.option_filter.rows:
-            select = agent.selects[goal[0]]
+            select = agent.library.selects[goal[0]]
             return None if select is None else select(agent, goal, annotations)
         for frame in options(agent, goal, annotations):
             if _passes(agent, frame, intention):

@@ -57,7 +57,7 @@ def _select_function(agent: Circumstance, plan: Plan, kind: Trigger) -> Select |
 
 def handles(agent: Circumstance, intention: Intention, index: int, kind: Trigger) -> bool:
     """Whether there is a plan for an event kind, as seen from a frame of an intention."""
-    if agent.selects[kind] is not None:
+    if agent.library.selects[kind] is not None:
         return True
     if not agent.features.subplans:
         return False

@@ -78,13 +78,13 @@ class Urgent(Fair):
         """Plans have come or gone, or the queues are filled anew."""
         self._of_kinds.clear()
         self._in_order = False
-        self._urgent_messages = sum(self._of_message(message) > 0 for message in self.agent.inbox)
+        self._urgent_messages = sum(self._of_message(message) > 0 for message in self.agent.incoming.messages)
         self.rank()
 
     def rank(self) -> None:
         """Something urgent comes into the queues: from the next cycle on it goes first."""
         self._ranked, self.plain = True, False
-        self.agent.called = True
+        self.agent.incoming.called = True
 
     # --- what comes into the queues ------------------------------------------------------------------------
 
@@ -103,7 +103,7 @@ class Urgent(Fair):
 
     def select_messages(self) -> Sequence[SpeechAct]:
         """The oldest one; all up to the last about something urgent, when there is one."""
-        inbox = self.agent.inbox
+        inbox = self.agent.incoming.messages
         chosen = [inbox.popleft()]
         self._urgent_messages -= self._urgent_messages > 0 and self._of_message(chosen[0]) > 0
         while inbox and self._urgent_messages > 0:

@@ -3,10 +3,9 @@
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple, Protocol
+from typing import Any, Final, Literal, NamedTuple, Protocol
 
 from jacaros.asl.source import Span
-from jacaros.bdi.actions.internal_action import InternalAction
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import BeliefTables
@@ -52,6 +51,80 @@ class _NoFunctions(NamedTuple):
 
 NO_FUNCTIONS: Final = _NoFunctions()
 
+Sleep = Literal["awake", "drowsy", "asleep"]
+
+
+class Functions:
+    """The arithmetic functions that an agent knows beside those of the language.
+
+    Attributes:
+        own: those that its program registers, by name.
+        project: those of the project.
+    """
+
+    __slots__ = ("own", "project")
+
+    def __init__(self) -> None:
+        self.own: dict[str, Any] = {}
+        self.project: ProjectFunctions = NO_FUNCTIONS
+
+
+class Incoming:
+    """What has come in, and has not been looked at yet.
+
+    Attributes:
+        messages: received.
+        percepts: noticed, in groups that belong together.
+        tasks: housekeeping for the beginning of the next cycle: functions, and their arguments behind the agent.
+        called: something may want to be looked at besides events and intentions: what is here, restless conditions that
+            intentions wait for, a suspension, or because the agent has special features or its selections are not plain.
+            Whoever adds to one of them sets it.
+    """
+
+    __slots__ = ("called", "messages", "percepts", "tasks")
+
+    def __init__(self) -> None:
+        self.messages: deque[SpeechAct] = deque()
+        self.percepts: deque[list[Percept]] = deque()
+        self.tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = deque()
+        self.called = False
+
+    def __bool__(self) -> bool:
+        return bool(self.messages or self.percepts or self.tasks)
+
+
+class Observers:
+    """Who is told of the goals of an agent.
+
+    Attributes:
+        goal: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
+        lost: called with what people are told of each lost goal (first line, further lines, place), or None.
+    """
+
+    __slots__ = ("goal", "lost")
+
+    def __init__(self) -> None:
+        self.goal: Callable[[str, str, int, int, str], None] | None = None
+        self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
+
+
+class Counts:
+    """How much an agent has done.
+
+    Attributes:
+        cycles: number of reasoning cycles made.
+        intentions: number of intentions so far.
+        next_check: number of the cycle after which beliefs are counted, and unused names dropped, next; a look at what
+            comes in counts as one.
+        next_look: number of the cycle in which percepts and messages are looked at next.
+    """
+
+    __slots__ = ("cycles", "intentions", "next_check", "next_look")
+
+    def __init__(self) -> None:
+        self.cycles = self.intentions = self.next_look = 0
+        self.next_check = INTERVAL
+
 
 class Waits:
     """What the intentions of an agent wait for, and what has been put off.
@@ -93,19 +166,23 @@ class Waits:
 
 
 class Features:
-    """What the plans of an agent make it look at in each cycle.
+    """What the plans and options of an agent make it look at in each cycle.
 
     Attributes:
         meta: plans or an observer want to hear of changes of goal states.
         goal_conditions: plans have goal conditions, which are tested in every cycle.
         subplans: plans have plans of their own.
+        special: one of these three.
         edges: there may be plans for falling asleep and awaking.
+        usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
+            intentions that made them, and no agent class is asked about these changes.
     """
 
-    __slots__ = ("edges", "goal_conditions", "meta", "subplans")
+    __slots__ = ("edges", "goal_conditions", "meta", "special", "subplans", "usual_events")
 
-    def __init__(self) -> None:
-        self.meta = self.goal_conditions = self.subplans = self.edges = False
+    def __init__(self, options: Options) -> None:
+        self.meta = self.goal_conditions = self.subplans = self.special = self.edges = False
+        self.usual_events = options.events == "discard" and not options.new_focus
 
 
 class Circumstance:
@@ -114,87 +191,61 @@ class Circumstance:
     Attributes:
         name: of the agent.
         architecture: the port to its host.
+        options: how it handles events, and what it may use.
+        engine: carries out plans and rules.
         trail: bindings of the search under way; empty between two steps.
-        beliefs, library, selects: what it believes, its plans, and their select functions.
+        beliefs, library: what it believes, and its plans.
+        functions: its arithmetic functions.
+        features: what its plans and options make it look at.
+        incoming: what has come in, and is taken in at the beginning of the next cycle.
         events: the queue of events, oldest first.
-        usual_events: external events without a plan are passed over, events of belief changes in plans belong to the
-            intentions that made them, and no agent class is asked about these changes.
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
         crowd: intentions for goals that the agent set itself beside `CROWD` others that can run: they join these as others
             end, and one in each turn anyway, so that an agent that sets itself more and more goals keeps its other plans.
-        budgets: what refuses more than a limit allows, by the name of the option.
-        next_count: number of the cycle after which beliefs are counted, and unused names dropped, next; a look at what
-            comes in counts as one.
-        selections: which message, event, plan and intention goes first.
         alive: every intention that is not over, by id.
+        selections: which message, event, plan and intention goes first.
         current: the intention whose step is being made.
         atomic: the intention that has an atomic plan on its stack, or None.
         atomic_over: its atomic plan has ended; it still makes its next step before others have their turn.
-        inbox, percepts: what was received and noticed, and not yet looked at.
-        tasks: housekeeping for the beginning of the next cycle: functions, and their arguments behind the agent.
-        goal_observer: told of each goal that changes, or None, see `jacaros.bdi.rules.meta_events.observe_goals`.
-        on_lost: called with what people are told of each lost goal (first line, further lines, place), or None.
-        intentions_made: number of intentions so far.
-        special: whether `features` has more than `edges`.
-        called: something may want to be looked at besides `events` and `intentions`: `inbox`, `percepts`, `tasks`,
-            restless conditions that intentions wait for, a suspension, or because the agent is `special` or its
-            `selections` are not plain.  Whoever adds to one of
-            them sets it.
         outer_frame: frame of the plan whose sub-plans are being tried.
+        waits: what intentions wait for, and what has been put off.
+        budgets: what refuses more than a limit allows, by the name of the option.
+        observers: who is told of goals.
+        counts: how much it has done.
         context: the view of itself that it gives to internal actions.
-        functions: arithmetic functions that its program registers, by name.
-        cycles: number of steps made.
-        next_look: number of the cycle in which percepts and messages are looked at next.
         running: the agent has its turn: whoever gave it finds out at its end whether there is more to do.
         stopped: the agent is over.
-        engine: carries out plans and rules.
-        drowsy: it has had nothing to do since it last awoke, and has been told so.
-        asleep: it is drowsy, and has done what its plans do before sleep.
-        waits: what intentions wait for, and what has been put off.
-        features: what its plans make it look at in each cycle.
-        project: the arithmetic functions of the project.
+        sleep: ``drowsy``: it has had nothing to do since it last awoke, and has been told so; ``asleep``: and has done what
+            its plans do before sleep.
     """
 
     __slots__ = (
-        "actions",
         "alive",
         "architecture",
-        "asleep",
         "atomic",
         "atomic_over",
         "beliefs",
         "budgets",
-        "called",
         "context",
+        "counts",
         "crowd",
         "current",
-        "cycles",
-        "drowsy",
         "engine",
         "events",
         "features",
         "functions",
-        "goal_observer",
-        "inbox",
+        "incoming",
         "intentions",
-        "intentions_made",
         "library",
         "name",
-        "next_count",
-        "next_look",
-        "on_lost",
+        "observers",
         "options",
         "outer_frame",
-        "percepts",
-        "project",
         "running",
         "selections",
-        "selects",
-        "special",
+        "sleep",
         "stopped",
-        "tasks",
         "trail",
-        "usual_events",
         "waits",
     )
 
@@ -209,51 +260,37 @@ class Circumstance:
         self,
         name: str,
         architecture: Architecture,
-        actions: Mapping[str, InternalAction],
         options: Options,
         plans: ProgramPlans,
     ) -> None:
         self.name = name
         self.architecture = architecture
-        self.actions = actions
         self.options = options
         self.trail = Trail()
         self.current: Intention | None = None
         self.budgets = budgets(self)
         self.engine = plans.engine
         self.beliefs: BeliefTables = plans.engine.belief_base(self, options.belief_limit)
-        self.next_count = INTERVAL
         if options.search_limit:
             self.beliefs.budget = SearchBudget(options.search_limit)
-        self.usual_events = options.events == "discard" and not options.new_focus
         self.library = PlanLibrary(plans)
-        self.selects = self.library.selects
         self.events: deque[Event] = deque()
-        self.next_look = 0
         self.intentions: deque[Intention] = deque()
         self.crowd: deque[Intention] = deque()
         self.alive: dict[int, Intention] = {}
         self.atomic: Intention | None = None
         self.atomic_over = False
-        self.inbox: deque[SpeechAct] = deque()
-        self.percepts: deque[list[Percept]] = deque()
-        self.tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = deque()
-        self.goal_observer: Callable[[str, str, int, int, str], None] | None = None
-        self.on_lost: Callable[[str, Sequence[str], Span | None], None] | None = None
+        self.incoming = Incoming()
+        self.observers = Observers()
         self.waits = Waits()
-        self.features = Features()
-        self.project: ProjectFunctions = NO_FUNCTIONS
-        self.special = False
-        self.called = False
+        self.features = Features(options)
+        self.functions = Functions()
+        self.counts = Counts()
+        self.sleep: Sleep = "awake"
         self.outer_frame: Any = None
-        self.functions: dict[str, Any] = {}
         self.context: Any = None
-        self.cycles = 0
         self.running = False
         self.stopped = False
-        self.drowsy = False
-        self.asleep = False
-        self.intentions_made = 0
 
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Take note of an operand that is no number."""
@@ -261,8 +298,8 @@ class Circumstance:
 
     def new_intention(self, cause: Any = None) -> Intention:
         """An intention with a number of its own; it is not in any queue yet."""
-        self.intentions_made += 1
-        intention = Intention(self.intentions_made, cause)
+        self.counts.intentions += 1
+        intention = Intention(self.counts.intentions, cause)
         self.alive[intention.id] = intention
         return intention
 
@@ -280,7 +317,7 @@ class Circumstance:
         """An intention is over; what it waits for is cancelled."""
         intention.dropped = True
         if intention.frames:
-            if self.goal_observer is not None:
+            if self.observers.goal is not None:
                 self.observe_rest(intention)
             intention.frames.clear()
         if intention.handlers:
@@ -295,12 +332,12 @@ class Circumstance:
 
     def may_handle(self, kind: Trigger) -> bool:
         """Whether there may be a plan for an event kind (sub-plans are looked at when the event is taken)."""
-        return self.features.subplans or self.selects[kind] is not None
+        return self.features.subplans or self.library.selects[kind] is not None
 
     def do_soon(self, function: Callable[..., None], *arguments: object) -> None:
         """Call a function with the agent and the arguments at the beginning of the next cycle."""
-        self.tasks.append((function, arguments))
-        self.called = True
+        self.incoming.tasks.append((function, arguments))
+        self.incoming.called = True
 
     def queue(self, event: Event) -> None:
         """Put an event at the end of the queue."""
@@ -355,4 +392,4 @@ class Circumstance:
 
     def is_idle(self) -> bool:
         """Whether there is nothing to do until something comes from outside or a timer ends."""
-        return not (self.events or self.intentions or self.crowd or self.inbox or self.percepts or self.tasks)
+        return not (self.events or self.intentions or self.crowd or self.incoming)

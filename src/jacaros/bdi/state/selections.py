@@ -20,7 +20,7 @@ class Selections(Protocol):
     Attributes:
         plain: at present the first of each queue goes first, and the first applicable plan is taken (but for the rules of
             a program in `option_filter`): code that is written for speed may take them itself.  Whoever makes it False
-            sets `Circumstance.called`.
+            sets `Incoming.called`.
         option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
         urgencies: how urgent events of each kind are; None when they are all alike.
         refused: there were applicable plans for the last event, and none of them was let pass.

@@ -159,9 +159,9 @@ class _Awaited(ConditionObserver):
         self._formula = formula
         self._term, self._names = question(formula)
         self._found: dict[str, Any] = {}
-        self.asked = asked_by(self._term, mind.beliefs, mind.actions)
+        self.asked = asked_by(self._term, mind.beliefs, mind.engine.actions)
         mind.waits.conditions.add(self)
-        mind.called = True
+        mind.incoming.called = True
         mind.architecture.ready()
 
     def holds(self) -> bool:
@@ -230,7 +230,7 @@ class Goal(PursuedGoal):
         elif not self._watched.ended:
             self._waiting.append(future)
             self._mind.waits.conditions.add(dropped)
-            self._mind.called = True
+            self._mind.incoming.called = True
             self._mind.architecture.ready()
             try:
                 await self._waits.wait(future, self._not_achieved, timeout, self._mind.name)
