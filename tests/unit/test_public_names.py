@@ -8,11 +8,13 @@ from pathlib import Path
 import pytest
 
 import jacaros
+import jacaros.testing
 
 
 def test_every_public_name_can_be_imported() -> None:
-    for name in jacaros.__all__:
-        assert getattr(jacaros, name).__module__.startswith("jacaros."), name
+    for package in (jacaros, jacaros.testing):
+        for name in package.__all__:
+            assert getattr(package, name).__module__.startswith("jacaros."), name
     assert set(jacaros.__all__) <= set(dir(jacaros))
 
 

@@ -107,7 +107,7 @@ def command(
     plans are taken, and all projects called `test_...` or `..._test`.
     """  # fmt: skip
     # Imported here: with it comes all that runs a system.
-    from jacaros.testing.report import failures, slowest, summary, write_junit
+    from jacaros.testing.outcomes import failures, slowest, summary, write_junit
     from jacaros.testing.suites import collect
     from jacaros.testing.trial import TrialOptions
 
@@ -175,7 +175,7 @@ class _Progress:
         return outcomes
 
     def _run(self, suite: "SuiteOutcome") -> None:
-        from jacaros.testing.report import line_of
+        from jacaros.testing.outcomes import line_of
         from jacaros.testing.trial import run_suite
 
         if suite.suite.error is not None:

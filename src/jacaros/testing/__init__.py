@@ -10,10 +10,9 @@ if TYPE_CHECKING:
     from jacaros.mas.embedding.pursued_goal import PursuedGoal
     from jacaros.testing.fake_graph import FakeGraph
     from jacaros.testing.harness import AgentHarness
-    from jacaros.testing.judging import Verdict, judge
-    from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
+    from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome, write_junit
+    from jacaros.testing.paths import Verdict, judge
     from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
-    from jacaros.testing.report import write_junit
     from jacaros.testing.run import RunResult, run_project
     from jacaros.testing.suites import AgentTest, Suite, collect, suite_of
     from jacaros.testing.trial import TrialOptions, run_suite, run_suites
@@ -45,9 +44,8 @@ __all__ = [
 _MODULES = {
     "fake_graph": ("FakeGraph",),
     "harness": ("AgentHarness", "PursuedGoal"),
-    "judging": ("Verdict", "judge"),
-    "junit": ("write_junit",),
-    "outcomes": ("Outcome", "Problem", "SuiteOutcome"),
+    "outcomes": ("Outcome", "Problem", "SuiteOutcome", "write_junit"),
+    "paths": ("Verdict", "judge"),
     "recorded": ("ActionFailed", "RecordedAct", "SentMessage"),
     "run": ("RunResult", "run_project"),
     "suites": ("AgentTest", "Suite", "collect", "suite_of"),

@@ -24,7 +24,6 @@ from jacaros.asl.lowering import lower_value
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.watched import WatchedGoal
-from jacaros.bdi.state.act import Act
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Timer
@@ -37,7 +36,7 @@ from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import Term
 from jacaros.testing.port import HarnessPort
-from jacaros.testing.recorded import Action, RecordedAct, SentMessage
+from jacaros.testing.recorded import Action, RecordedAct
 from jacaros.text_files import file_text
 
 _QUANTUM = 50
@@ -66,8 +65,6 @@ class AgentHarness(OpenMind):
         acts: the external actions begun, oldest first.
         sent: the messages sent, oldest first.
         files: texts of the files that it would have written, by path.
-        exit_code: the code of ``.stopMAS``; None while the program has not called it.
-        mind: the agent itself, for what this class does not offer.
 
     Raises:
         AslError: the program is wrong.
@@ -86,27 +83,19 @@ class AgentHarness(OpenMind):
         seed: int = 0,
     ) -> None:
         self.name = name
-        self.others = others
-        self.prints: list[str] = []
-        self.logs: list[str] = []
-        self.acts: list[RecordedAct] = []
-        self.sent: list[SentMessage] = []
-        self.files: dict[str, str] = {}
-        self.exit_code: int | None = None
-        self._actions = dict(actions or {})
-        self._by_number: dict[int, RecordedAct] = {}
         self._asked = 0
-        self._wrong: Exception | None = None
         file = program if isinstance(program, Path) else Path(f"{name}.asl")
         written = file_text(program) if isinstance(program, Path) else program
         code = PythonCode(ProjectModules(file.parent, *folders))
         programs = Programs((file.parent, *folders), lambda told: self.logs.append(f"warning: {told}"), code)
-        self._port = HarnessPort(self, seed, programs, file)
+        port = self._port = HarnessPort(name, dict(actions or {}), others, seed, programs, file)
+        self.prints, self.logs, self.files = port.prints, port.logs, port.files
+        self.acts, self.sent = port.acts, port.sent
         tree, _ = load_program(str(file), written, programs.include, code.functions, code.actions)
         wrong = code.take_errors()
         if wrong:
             raise AslError(wrong)
-        self._mind = Mind(name, tree, self._port, Options(), code.actions)
+        self._mind = port.mind = Mind(name, tree, port, Options(), code.actions)
         code.serve(self.mind)
         self.mind.start()
 
@@ -114,6 +103,11 @@ class AgentHarness(OpenMind):
     def mind(self) -> Mind:
         """The agent itself, for what this class does not offer."""
         return self._mind
+
+    @property
+    def exit_code(self) -> int | None:
+        """The code of ``.stopMAS``; None while the program has not called it."""
+        return self._port.exit_code
 
     # ---- giving
 
@@ -137,8 +131,8 @@ class AgentHarness(OpenMind):
         What a function that answers actions raises, such as a failed ``assert``, is raised here and by `run`.
         """
         more = not self._stopped and self.mind.run(cycles)
-        if self._wrong is not None:
-            wrong, self._wrong = self._wrong, None
+        if self._port.mistake is not None:
+            wrong, self._port.mistake = self._port.mistake, None
             raise wrong
         return more
 
@@ -185,40 +179,6 @@ class AgentHarness(OpenMind):
     @property
     def _stopped(self) -> bool:
         return self.exit_code is not None
-
-    # ---- called by the port
-
-    def act_of(self, number: int) -> RecordedAct:
-        """The act of that number."""
-        return self._by_number[number]
-
-    def begin(self, act: Act) -> None:
-        """The agent begins an external action."""
-        recorded = RecordedAct(act, self.mind.complete)
-        self.acts.append(recorded)
-        self._by_number[act.id] = recorded
-        function = self._actions.get(recorded.name)
-        if function is not None:
-            try:
-                recorded.answer(function)
-            except Exception as wrong:
-                # A mistake of the test: for the agent it would be one more failed step.
-                self._wrong = self._wrong or wrong
-
-    def send(self, message: SpeechAct) -> bool:
-        """It sends a message; False when there is no such agent."""
-        if message.receiver == self.name:
-            self.mind.receive(message)
-            return True
-        if self.others is not None and message.receiver not in self.others:
-            return False
-        self.sent.append(SentMessage(message))
-        return True
-
-    def stop(self, exit_code: int) -> None:
-        """It ends the run."""
-        self.exit_code = exit_code
-        self.mind.stopped = True
 
     # ---- asking
 

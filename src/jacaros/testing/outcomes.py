@@ -1,12 +1,21 @@
-"""How tests ended, as data: for reports, files and other tools."""
+"""How tests ended: as data, as lines for people, and as a JUnit XML file."""
 
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.etree import ElementTree
 
 from jacaros.asl.diagnostics import excerpt
 from jacaros.asl.source import Span
 from jacaros.testing.probe import Assertion
 from jacaros.testing.suites import AgentTest, Suite
+
+Paint = Callable[[str, str], str]
+"""``paint(text, kind)``: *text* in the colour of *kind*, which is ``passed``, ``failed``, ``place`` or ``quiet``."""
+
+_WORTH_TELLING = 0.5
+"""Tests that took less, in seconds, are not told to be slow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,3 +105,122 @@ class SuiteOutcome:
     def passed(self) -> bool:
         """Whether the file could be run and none of its tests failed."""
         return self.suite.error is None and all(outcome.passed for outcome in self.outcomes)
+
+
+def plain(text: str, kind: str) -> str:
+    """No colours."""
+    del kind
+    return text
+
+
+def line_of(outcome: Outcome, paint: Paint = plain, timed: bool = False) -> str:
+    """The line of one test; *timed* with the time that it took."""
+    verdict = paint("ok    ", "passed") if outcome.passed else paint("FAILED", "failed")
+    took = paint(f"  {outcome.seconds:.2f} s", "quiet") if timed else ""
+    return f"  {verdict}  {outcome.test.name}{took}"
+
+
+def failures(suites: Sequence[SuiteOutcome], paint: Paint = plain) -> Iterator[str]:
+    """The lines about all that failed."""
+    for suite in suites:
+        if suite.suite.error is not None:
+            yield from ("", paint(f"{suite.path}: cannot be run", "failed"), suite.suite.error)
+        for outcome in suite.outcomes:
+            if not outcome.passed:
+                yield from ("", paint(f"{suite.path}::{outcome.test.name}", "failed"))
+                yield from (f"  {line}" for line in outcome.lines())
+
+
+def slowest(suites: Sequence[SuiteOutcome], number: int) -> Iterator[str]:
+    """The lines about the tests that took longest."""
+    outcomes = [(outcome, suite) for suite in suites for outcome in suite.outcomes]
+    outcomes.sort(key=lambda pair: -pair[0].seconds)
+    slow = [pair for pair in outcomes[:number] if pair[0].seconds >= _WORTH_TELLING]
+    if slow:
+        yield from ("", "slowest:")
+    for outcome, suite in slow:
+        simulated = f" ({outcome.simulated:.1f} s simulated)" if outcome.simulated >= 1.0 else ""
+        yield f"  {outcome.seconds:6.2f} s  {suite.path}::{outcome.test.name}{simulated}"
+
+
+def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint = plain) -> str:
+    """The last line: the counts."""
+    outcomes = [outcome for suite in suites for outcome in suite.outcomes]
+    failed = sum(not outcome.passed for outcome in outcomes)
+    errors = sum(suite.suite.error is not None for suite in suites)
+    counts = [f"{len(outcomes) - failed} passed"]
+    if failed:
+        counts.append(f"{failed} failed")
+    if errors:
+        counts.append(f"{errors} {'file' if errors == 1 else 'files'} cannot be run")
+    assertions = sum(outcome.assertions for outcome in outcomes)
+    text = f"{', '.join(counts)}; {assertions} assertions, seed {seed}"
+    return paint(text, "failed" if failed or errors else "passed")
+
+
+_UNFIT = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML cannot hold."""
+
+
+def write_junit(path: Path, suites: Sequence[SuiteOutcome]) -> None:
+    """Write *path*; its folder is made if need be.
+
+    A file whose tests could not be run is one test case with an error.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    root = ElementTree.Element("testsuites", _counts(suites), name="jacaros")
+    for suite in suites:
+        counts = _counts([suite])
+        element = ElementTree.SubElement(root, "testsuite", counts, name=str(suite.path))
+        if suite.suite.error is not None:
+            case = _case(element, suite, "the file", 0.0)
+            _text(ElementTree.SubElement(case, "error", message="the file cannot be run"), suite.suite.error)
+        for outcome in suite.outcomes:
+            _add(element, suite, outcome)
+    ElementTree.indent(root)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _counts(suites: Sequence[SuiteOutcome]) -> dict[str, str]:
+    outcomes = [outcome for suite in suites for outcome in suite.outcomes]
+    errors = sum(suite.suite.error is not None for suite in suites)
+    return {
+        "tests": str(len(outcomes) + errors),
+        "failures": str(sum(not outcome.passed for outcome in outcomes)),
+        "errors": str(errors),
+        "skipped": "0",
+        "time": f"{sum(outcome.seconds for outcome in outcomes):.3f}",
+    }
+
+
+def _add(element: ElementTree.Element, suite: SuiteOutcome, outcome: Outcome) -> None:
+    case = _case(element, suite, outcome.test.name, outcome.seconds)
+    case.set("assertions", str(outcome.assertions))
+    if outcome.test.span is not None:
+        case.set("file", outcome.test.span.file.name)
+        case.set("line", str(outcome.test.span.line))
+    if outcome.problems:
+        failure = ElementTree.SubElement(case, "failure", message=_fit(outcome.problems[0].message))
+        _text(failure, "\n".join(line for problem in outcome.problems for line in problem.lines()))
+    if outcome.output:
+        _text(ElementTree.SubElement(case, "system-out"), "\n".join(outcome.output))
+
+
+def _case(
+    element: ElementTree.Element, suite: SuiteOutcome, name: str, seconds: float
+) -> ElementTree.Element:
+    group = ".".join(part for part in suite.path.with_suffix("").parts if part not in ("/", "..", "."))
+    return ElementTree.SubElement(
+        element, "testcase", classname=group, name=name, time=f"{seconds:.3f}", file=str(suite.path)
+    )
+
+
+def _text(element: ElementTree.Element, text: str) -> None:
+    element.text = _fit(text)
+
+
+def _fit(text: str) -> str:
+    return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)

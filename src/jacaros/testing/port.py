@@ -4,7 +4,7 @@ from asyncio import CancelledError
 from collections.abc import Callable, Collection, Coroutine, Mapping, Sequence
 from pathlib import Path
 from random import Random
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.act import Act
@@ -12,44 +12,40 @@ from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Timer, VirtualClock, run
 from jacaros.mas.coroutines import Ended, without_exit
 from jacaros.mas.programs import Programs
-from jacaros.testing.recorded import RecordedAct
-
-
-class Harness(Protocol):
-    """What the port asks of the harness."""
-
-    name: str
-
-    @property
-    def mind(self) -> Mind:
-        """The agent."""
-
-    others: Collection[str] | None
-    prints: list[str]
-    logs: list[str]
-    files: dict[str, str]
-
-    def begin(self, act: Act) -> None:
-        """The agent begins an external action."""
-
-    def act_of(self, number: int) -> RecordedAct:
-        """An action that it has begun."""
-
-    def send(self, message: SpeechAct) -> bool:
-        """It sends a message; False when there is no such agent."""
-
-    def stop(self, exit_code: int) -> None:
-        """It ends the run."""
+from jacaros.testing.recorded import Action, RecordedAct, SentMessage
 
 
 class HarnessPort:
-    """The agent's port to its host, `jacaros.bdi.architecture.Architecture`."""
+    """The agent's port to its host, `jacaros.bdi.architecture.Architecture`, which keeps what the agent does.
 
-    def __init__(self, harness: Harness, seed: int, programs: Programs, file: Path) -> None:
+    Attributes:
+        mind: the agent.
+        mistake: the first exception of a function that answers actions.  For the agent it would be one more failed step.
+    """
+
+    mind: Mind
+
+    def __init__(
+        self,
+        name: str,
+        actions: Mapping[str, Action],
+        others: Collection[str] | None,
+        seed: int,
+        programs: Programs,
+        file: Path,
+    ) -> None:
         self.random = Random(seed)
         self.clock = VirtualClock()
-        self._harness = harness
+        self.prints: list[str] = []
+        self.logs: list[str] = []
+        self.acts: list[RecordedAct] = []
+        self.sent: list[SentMessage] = []
+        self.files: dict[str, str] = {}
+        self.exit_code: int | None = None
+        self.mistake: Exception | None = None
+        self._name, self._actions, self._others = name, actions, others
         self._programs, self._file = programs, file
+        self._by_number: dict[int, RecordedAct] = {}
         self._services: list[str] = []
 
     def now(self) -> float:
@@ -72,29 +68,42 @@ class HarnessPort:
         return self.clock.call_later(0.0, lambda: ended(result, error))
 
     def act(self, act: Act) -> None:
-        self._harness.begin(act)
+        recorded = self._by_number[act.id] = RecordedAct(act, self.mind.complete)
+        self.acts.append(recorded)
+        function = self._actions.get(recorded.name)
+        if function is not None:
+            try:
+                recorded.answer(function)
+            except Exception as wrong:
+                self.mistake = self.mistake or wrong
 
     def cancel_act(self, act_id: int) -> None:
-        act = self._harness.act_of(act_id)
+        act = self._by_number[act_id]
         act.pending, act.cancelled = False, True
 
     def suspend_act(self, act_id: int) -> None:
-        self._harness.act_of(act_id).paused = True
+        self._by_number[act_id].paused = True
 
     def resume_act(self, act_id: int) -> None:
-        self._harness.act_of(act_id).paused = False
+        self._by_number[act_id].paused = False
 
     def send(self, message: SpeechAct) -> bool:
-        return self._harness.send(message)
+        if message.receiver == self._name:
+            self.mind.receive(message)
+            return True
+        if self._others is not None and message.receiver not in self._others:
+            return False
+        self.sent.append(SentMessage(message))
+        return True
 
     def agent_names(self) -> Sequence[str]:
-        return (self._harness.name, *(self._harness.others or ()))
+        return (self._name, *(self._others or ()))
 
     def print(self, text: str) -> None:
-        self._harness.prints.append(text)
+        self.prints.append(text)
 
     def log(self, level: str, text: str) -> None:
-        self._harness.logs.append(f"{level}: {text}")
+        self.logs.append(f"{level}: {text}")
 
     def goal_lost(self) -> None:
         pass
@@ -104,22 +113,23 @@ class HarnessPort:
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         if delay > 0:
-            self._harness.mind.shut_down_in(delay * 1000)
-            self.clock.call_later(delay, lambda: self._harness.stop(exit_code))
+            self.mind.shut_down_in(delay * 1000)
+            self.clock.call_later(delay, lambda: self.stop_system(0.0, exit_code))
         else:
-            self._harness.stop(exit_code)
+            self.exit_code = exit_code
+            self.mind.stopped = True
 
     def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         del classes
-        self._harness.logs.append(f"info: .create_agent({name}, {source}): this test has no other agents")
+        self.log("info", f".create_agent({name}, {source}): this test has no other agents")
         return None
 
     def clone_agent(self, name: str) -> str | None:
-        self._harness.logs.append(f"info: .clone({name}): this test has no other agents")
+        self.log("info", f".clone({name}): this test has no other agents")
         return None
 
     def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        if name == self._harness.name:
+        if name == self._name:
             self.stop_system(delay, 0)
         return name in self.agent_names()
 
@@ -130,7 +140,7 @@ class HarnessPort:
         return self._programs.list_files(folder, self._file.parent)
 
     def write_file(self, path: str, text: str) -> None:
-        self._harness.files[path] = text
+        self.files[path] = text
 
     def register_service(self, service: str) -> None:
         if service not in self._services:
@@ -141,7 +151,7 @@ class HarnessPort:
             self._services.remove(service)
 
     def providers(self, service: str) -> Sequence[str]:
-        return [self._harness.name] if service in self._services else []
+        return [self._name] if service in self._services else []
 
     def subscribe_to_service(self, service: str) -> None:
         del service

@@ -11,7 +11,7 @@ from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.explaining.failure_reason import place_of_call
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.state.intention import GOAL, PLAN
-from jacaros.testing.fakes import Fakes
+from jacaros.testing.recorded import Fakes
 
 if TYPE_CHECKING:
     from jacaros.testing.fake_graph import FakeGraph

@@ -33,9 +33,9 @@ from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.terms.text import text
 from jacaros.testing.assertions import actions
-from jacaros.testing.fakes import Fakes
 from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
 from jacaros.testing.probe import Assertion, Probe
+from jacaros.testing.recorded import Fakes
 from jacaros.testing.suites import AgentTest, Suite, with_assertions
 
 if TYPE_CHECKING:
