@@ -21,9 +21,6 @@ from jacaros.mas.agent_host import AgentHost
 CHANCE = 0.2
 """How likely a mind is exchanged after a few cycles."""
 FEW = 6
-KEPT = ("goal_observer", "on_lost", "project")
-"""What the host has given to the mind."""
-
 random = Random(os.environ.get("JACAROS_RESTORED_SEED", "1"))
 reported: set[str] = set()
 
@@ -56,8 +53,7 @@ def exchange(host: AgentHost, old: Mind) -> None:
     for alarm in old.waits.alarms.values():
         alarm.timer.cancel()
     new = Mind(old.name, old.program, host, old.options, old.engine.actions)
-    for name in KEPT:
-        setattr(new, name, getattr(old, name))
+    new.observers, new.functions.project = old.observers, old.functions.project  # given by the host
     host.mind = new
     restore(new, json.loads(text), same_host=True)
 
