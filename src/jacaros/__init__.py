@@ -22,13 +22,12 @@ if TYPE_CHECKING:
     from jacaros.extension.agent import Agent
     from jacaros.extension.architecture import Action, AgentArch
     from jacaros.extension.belief_base import BeliefBase
-    from jacaros.extension.conversation import ReceivedMessage
     from jacaros.extension.declaring import arithmetic_function, internal_action
     from jacaros.extension.literal import Literal
     from jacaros.extension.python_agent import PythonAgent
     from jacaros.extension.views import EventView as Event
     from jacaros.extension.views import IntentionView as Intention
-    from jacaros.extension.views import Message, Option
+    from jacaros.extension.views import Message, Option, ReceivedMessage
     from jacaros.extension.views import PerceptView as Percept
     from jacaros.extension.views import PlanView as Plan
     from jacaros.mas.deployment import ProjectError
@@ -86,11 +85,11 @@ _MODULES = {
     "jacaros.extension.agent": "Agent",
     "jacaros.extension.architecture": "Action AgentArch",
     "jacaros.extension.belief_base": "BeliefBase",
-    "jacaros.extension.conversation": "ReceivedMessage",
     "jacaros.extension.declaring": "arithmetic_function internal_action",
     "jacaros.extension.literal": "Literal",
     "jacaros.extension.python_agent": "PythonAgent",
-    "jacaros.extension.views": "Event=EventView Intention=IntentionView Message Option Percept=PerceptView Plan=PlanView",
+    "jacaros.extension.views": "Event=EventView Intention=IntentionView Message Option Percept=PerceptView Plan=PlanView "
+    "ReceivedMessage",
     "jacaros.mas.deployment": "ProjectError",
     "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded UnknownAgent",
     "jacaros.mas.embedding.main": "run",

@@ -19,7 +19,46 @@ class Timer(Protocol):
         """Take it back."""
 
 
-class Architecture(Protocol):
+class AgentSystem(Protocol):
+    """What agents of every kind ask of the system that they live in."""
+
+    def agent_names(self) -> Sequence[str]:
+        """Names of all agents of the system, in the order of their making."""
+
+    def print(self, text: str) -> None:
+        """Show a line of the program's output."""
+
+    def log(self, level: str, text: str) -> None:
+        """Tell people about trouble; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        """End the run after *delay* seconds."""
+
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
+        """Make an agent (from the program file *source*, default NAME.asl); its final name, or None with the
+        reason logged.
+
+        *classes* are the classes of the project that it is of, by ``agentClass``, ``agentArchClass`` and
+        ``beliefBaseClass``.
+        """
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds; False when there is none of that name, or it does not accept."""
+
+    def register_service(self, service: str) -> None:
+        """Tell the directory facilitator that this agent provides a service."""
+
+    def deregister_service(self, service: str) -> None:
+        """Take that back."""
+
+    def providers(self, service: str) -> Sequence[str]:
+        """The agents that provide a service, in the order in which they registered."""
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Have this agent told of all providers of a service, those to come as well."""
+
+
+class Architecture(AgentSystem, Protocol):
     """What a mind asks of its host.  No call may enter the agent again before it returns."""
 
     @property
@@ -58,37 +97,14 @@ class Architecture(Protocol):
     def send(self, message: SpeechAct) -> bool:
         """Deliver a message; False when there is no such agent."""
 
-    def agent_names(self) -> Sequence[str]:
-        """Names of all agents of the system, in the order of their making."""
-
-    def print(self, text: str) -> None:
-        """Show a line of the program's output."""
-
-    def log(self, level: str, text: str) -> None:
-        """Tell people about trouble; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
-
     def goal_lost(self) -> None:
         """A goal failed and no plan took over; the warning comes by `log`."""
 
     def out_of_memory(self) -> None:
         """A step or an event met a `MemoryError`; the agent goes on as long as it is let."""
 
-    def stop_system(self, delay: float, exit_code: int) -> None:
-        """End the run after *delay* seconds."""
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Make an agent (from the program file *source*, default NAME.asl); its final name, or None with the
-        reason logged.
-
-        *classes* are the classes of the project that it is of, by ``agentClass``, ``agentArchClass`` and
-        ``beliefBaseClass``.
-        """
-
     def clone_agent(self, name: str) -> str | None:
         """Make an agent with a copy of this mind; its final name, or None with the reason logged."""
-
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent after *delay* seconds; False when there is none of that name, or it does not accept."""
 
     def read_program(self, path: str) -> tuple[str, str]:
         """Name and text of a program file (for ``.include``).
@@ -110,15 +126,3 @@ class Architecture(Protocol):
         Raises:
             OSError: when it cannot be written.
         """
-
-    def register_service(self, service: str) -> None:
-        """Tell the directory facilitator that this agent provides a service."""
-
-    def deregister_service(self, service: str) -> None:
-        """Take that back."""
-
-    def providers(self, service: str) -> Sequence[str]:
-        """The agents that provide a service, in the order in which they registered."""
-
-    def subscribe_to_service(self, service: str) -> None:
-        """Have this agent told of all providers of a service, those to come as well."""

@@ -1,7 +1,7 @@
 """Agent architectures of a project: what stands between a mind and its surroundings."""
 
 from collections.abc import Awaitable, Iterable
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.bdi.explaining.failure_reason import ERROR_MSG
 from jacaros.bdi.state.act import Act, Completion, Percept
@@ -45,22 +45,6 @@ class Action:
         return str(Literal(self.functor, tuple(None if isinstance(a, Out) else a for a in self.arguments)))
 
 
-class Link(Protocol):
-    """The next architecture of a chain; the last one is the host of the mind."""
-
-    def act(self, action: Action) -> bool | Awaitable[bool | None] | None:
-        """Do an action."""
-
-    def send(self, message: Message) -> bool:
-        """Send a message."""
-
-    def check_mail(self, message: Message) -> bool:
-        """Look at a message that came."""
-
-    def wake(self) -> None:
-        """Give the agent a turn."""
-
-
 class AgentArch:
     """How an agent perceives, acts, and exchanges messages; to be subclassed.
 
@@ -73,7 +57,7 @@ class AgentArch:
     """
 
     agent: Agent
-    following: Link
+    following: "AgentArch"
 
     def init(self, *arguments: Any) -> None:
         """Called before the agent begins, with the arguments of ``agentArchClass my.Arch(1)``."""

@@ -4,7 +4,7 @@ The tables of the mind stay as they are, so that compiled queries read them as f
 about, and questions where the class has beliefs of its own (`BeliefBase.candidates`).
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -28,7 +28,7 @@ class Keeper(Protocol):
     """Where beliefs are in the end."""
 
     def keep(self, belief: Literal) -> bool:
-        """Keep a belief."""
+        """Keep a belief, or give it its annotations."""
 
     def give_up(self, belief: Literal) -> bool:
         """Give a belief up; False when it is not there."""
@@ -125,24 +125,20 @@ class Tables(belief_base.BeliefTables):
         """Let the class keep a belief; whether it did."""
         literal = literal_from(table.functor, row, annotations)
         self._change = (literal, table, row, annotations, last)
-        try:
-            return bool(self.base.add(literal))
-        except FAULTS as error:
-            self._crashed("add", error)
-            table.put(row, annotations, last)
-            return True
-        finally:
-            self._change = None
+        return self._ask("add", literal, lambda: table.put(row, annotations, last))
 
     def ask_remove(self, table: "AskingTable", row: Row) -> bool:
         """Let the class give a belief up; whether it did."""
         literal = literal_from(table.functor, row, table.get(row) or ())
         self._change = (literal, table, row, (), False)
+        return self._ask("remove", literal, lambda: table.take(row))
+
+    def _ask(self, method: str, literal: Literal, default: Callable[[], None]) -> bool:
         try:
-            return bool(self.base.remove(literal))
+            return bool(getattr(self.base, method)(literal))
         except FAULTS as error:
-            self._crashed("remove", error)
-            table.take(row)
+            self._crashed(method, error)
+            default()
             return True
         finally:
             self._change = None
@@ -164,7 +160,6 @@ class Tables(belief_base.BeliefTables):
         ]
 
     def keep(self, belief: Literal) -> bool:
-        """Put a belief into its table, or give it its annotations."""
         change = self._change
         if change is not None and belief is change[0]:
             _, table, row, annotations, last = change
@@ -177,7 +172,6 @@ class Tables(belief_base.BeliefTables):
         return True
 
     def give_up(self, belief: Literal) -> bool:
-        """Take a belief out of its table; False when it is not there."""
         change = self._change
         if change is not None and belief is change[0]:
             _, table, row, _, _ = change
@@ -196,9 +190,8 @@ class Tables(belief_base.BeliefTables):
         return table
 
     def _crashed(self, method: str, error: BaseException) -> None:
-        function = getattr(self.base, method)
-        text = crash_text(f"{type(self.base).__name__}.{method}", function, error)
-        self.mind.architecture.log("error", text)
+        told = crash_text(f"{type(self.base).__name__}.{method}", getattr(self.base, method), error)
+        self.mind.architecture.log("error", told)
 
 
 class AskingTable(Table):
@@ -211,19 +204,16 @@ class AskingTable(Table):
         self._tables = tables
 
     def add(self, row: Entry, annotations: Annotations, last: bool = False) -> Annotations | None:
-        """Ask for a new row to be kept."""
         if not isinstance(row, tuple):
             return super().add(row, annotations, last)
         return annotations if self._tables.ask_add(self, row, annotations, last) else None
 
     def set(self, row: Entry, annotations: Annotations) -> bool:
-        """Ask for other annotations to be kept."""
         if not isinstance(row, tuple):
             return super().set(row, annotations)
         return self._tables.ask_add(self, row, annotations, False)
 
     def remove(self, row: Entry) -> bool:
-        """Ask for a row to be given up."""
         if not isinstance(row, tuple):
             return super().remove(row)
         return self._tables.ask_remove(self, row)

@@ -56,18 +56,19 @@ class _Callee:
 
     Attributes:
         minimum, maximum: numbers of arguments that programs may give.
+        gives_value: it declares what it returns: programs then give one more argument.
     """
 
     def __init__(self, name: str, function: Callable[..., object]) -> None:
         self.name, self.function = name, function
         self._wants_agent = _wants_agent(function)
         self._signature = _signature(function, self._wants_agent)
-        self._gives_value = _gives_value(function)
-        self.minimum = self._signature.fewest + self._gives_value
-        most = len(self._signature.parameters) + self._gives_value
+        self.gives_value = _gives_value(function)
+        self.minimum = self._signature.fewest + self.gives_value
+        most = len(self._signature.parameters) + self.gives_value
         self.maximum = None if self._signature.rest is not None else most
         self.result_hint = ""
-        if not self._gives_value and "return" not in _hints(function):
+        if not self.gives_value and "return" not in _hints(function):
             written = "Iterator[str]" if inspect.isgeneratorfunction(function) else "str"
             parameters = "..." if self._signature.parameters else ""
             self.result_hint = (
@@ -158,11 +159,6 @@ class _Callee:
         except operations.WrongArguments as wrong:
             raise WrongArguments(f"{self.name}: {wrong}") from None
         return (agent_of(ctx.agent), *bound) if self._wants_agent else bound
-
-    @property
-    def gives_value(self) -> bool:
-        """Whether it declares what it returns: programs then give one more argument."""
-        return self._gives_value
 
 
 class _Call:

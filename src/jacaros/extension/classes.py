@@ -1,21 +1,26 @@
-"""From the class names of a project file to objects: agents, belief bases and architectures."""
+"""The classes that a project file names, its own and Jason's belief bases, and how objects are made of them."""
 
+import os
+import stat
+import tempfile
 from collections.abc import Iterator
 from difflib import get_close_matches
+from pathlib import Path
 from types import ModuleType
 from typing import Generic, NamedTuple, TypeVar
 
 from jacaros.asl.diagnostics import AslError
-from jacaros.asl.loader import parse_literal
+from jacaros.asl.loader import load_program, parse_literal
 from jacaros.asl.lowering import lower_value
+from jacaros.asl.nodes import Rule
 from jacaros.body.values import to_value
+from jacaros.env.values import Atom, Out, Structure
 from jacaros.errors import JacarosError
-from jacaros.extension.agent import Agent
-from jacaros.extension.architecture import AgentArch
-from jacaros.extension.belief_base import BeliefBase
-from jacaros.extension.standard_bases import STANDARD_BASES, ChainBB
+from jacaros.extension.belief_base import BeliefBase, Keeper
+from jacaros.extension.literal import Literal, literal_of
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.values import Term, arguments_of
+from jacaros.text_files import file_text
 
 T = TypeVar("T")
 
@@ -33,31 +38,8 @@ class Made(NamedTuple, Generic[T]):
     arguments: tuple[object, ...]
 
 
-def agent_object(modules: ProjectModules, written: str) -> Made[Agent] | None:
-    """An object for ``agentClass``; None when the project has no such module."""
-    return _object(modules, written, Agent)
-
-
-def architecture_object(modules: ProjectModules, written: str) -> Made[AgentArch] | None:
-    """An object for ``agentArchClass``; None when the project has no such module."""
-    return _object(modules, written, AgentArch)
-
-
-def base_object(modules: ProjectModules, written: str) -> Made[BeliefBase] | None:
-    """An object for ``beliefBaseClass``; None when the project has no such module."""
-    name, terms = _split(written)
-    if name == f"{_JASON_BASES}ChainBB":
-        links = [base_object(modules, str(to_value(term))) for term in terms]
-        if any(link is None for link in links):
-            raise UnknownClass(f"{written}: one of these belief bases is not known")
-        return Made(ChainBB(*[(link.made, link.arguments) for link in links if link is not None]), ())
-    if name.startswith(_JASON_BASES):
-        known = STANDARD_BASES.get(name.removeprefix(_JASON_BASES))
-        return None if known is None else Made(known(), _values(terms))
-    return _object(modules, written, BeliefBase)
-
-
-def _object(modules: ProjectModules, written: str, kind: type[T]) -> Made[T] | None:
+def object_of(modules: ProjectModules, written: str, kind: type[T]) -> Made[T] | None:
+    """An object of a class that a project file names; None when the project has no such module."""
     name, terms = _split(written)
     found = find_class(modules, name, kind)
     if found is None:
@@ -66,6 +48,20 @@ def _object(modules: ProjectModules, written: str, kind: type[T]) -> Made[T] | N
         return Made(found(), _values(terms))
     except Exception as error:
         raise JacarosError(f"{name} cannot be made: {type(error).__name__}: {error}") from error
+
+
+def base_of(modules: ProjectModules, written: str, kind: type[BeliefBase]) -> Made[BeliefBase] | None:
+    """The same for ``beliefBaseClass``, which may name one of Jason's."""
+    name, terms = _split(written)
+    if name == f"{_JASON_BASES}ChainBB":
+        links = [base_of(modules, str(to_value(term)), kind) for term in terms]
+        if any(link is None for link in links):
+            raise UnknownClass(f"{written}: one of these belief bases is not known")
+        return Made(ChainBB(*[(link.made, link.arguments) for link in links if link is not None]), ())
+    if name.startswith(_JASON_BASES):
+        known = _STANDARD_BASES.get(name.removeprefix(_JASON_BASES))
+        return None if known is None else Made(known(), _values(terms))
+    return object_of(modules, written, kind)
 
 
 def _split(written: str) -> tuple[str, tuple[Term, ...]]:
@@ -119,3 +115,184 @@ def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
     if "." in path and modules.place(path) is not None:
         loaded = list(modules.load(path))
     yield from loaded
+
+
+class TextPersistentBB(BeliefBase):
+    """Keeps beliefs in a text file between two runs (``jason.bb.TextPersistentBB``).
+
+    Its arguments name the predicates that are kept: ``count``, ``count(_)`` or ``"count/1"``; all of them without
+    arguments.  An argument that ends with ``.bb`` is the file, in the folder of the project; without one it is the
+    agent's name with ``.bb`` behind.  What was kept is believed from the beginning, without events; percepts are not
+    kept.  The file is replaced as a whole when the agent ends, so that it is never half written.
+    """
+
+    def init(self, *arguments: object) -> None:
+        names = [argument for argument in arguments if not _is_file(argument)]
+        files = [str(argument) for argument in arguments if _is_file(argument)]
+        self._kept = [_signature(name) for name in names]
+        self._file = self.folder / (files[0] if files else f"{self.agent.name}.bb")
+        if not self._file.is_file():
+            return
+        try:
+            program, _ = load_program(str(self._file), file_text(self._file))
+        except (OSError, UnicodeError, AslError) as wrong:
+            raise JacarosError(f"{self._file} cannot be read: {wrong}") from wrong
+        for node in reversed(program.beliefs):
+            if not isinstance(node, Rule):
+                self._tables.keep(literal_of(lower_value(node)))
+
+    def stop(self) -> None:
+        kept = [kept for belief in self if (kept := self._to_keep(belief)) is not None]
+        text = "".join(f"{belief}.\n" for belief in kept)
+        self._file.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=self._file.parent, prefix=f".{self._file.name}.")
+        try:
+            # A temporary file is the user's alone; what takes its place is for those who could read it before.
+            Path(name).chmod(_mode(self._file))
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            Path(name).replace(self._file)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+
+    def _to_keep(self, belief: Literal) -> Literal | None:
+        wanted = not self._kept or any(
+            belief.functor == name and arity in (None, belief.arity) for name, arity in self._kept
+        )
+        sources = [source for source in belief.sources if source != "percept"]
+        return belief if wanted and sources else None
+
+
+class IndexedBB(BeliefBase):
+    """Holds one belief for each key (``jason.bb.IndexedBB``): a new one takes the place of the old.
+
+    Its arguments say which arguments of a predicate are the key: ``"student(key,_)"``.
+    """
+
+    def init(self, *arguments: object) -> None:
+        self._keys: dict[tuple[str, int], list[int]] = {}
+        for argument in arguments:
+            pattern = _pattern(argument)
+            places = [place for place, part in enumerate(pattern.arguments) if part == "key"]
+            if not places:
+                raise JacarosError(f"IndexedBB: {argument} names no key, as in student(key,_)")
+            self._keys[pattern.functor, pattern.arity] = places
+        self._held: dict[tuple[object, ...], Literal] = {}
+
+    def add(self, belief: Literal) -> bool:
+        key = self._key(belief)
+        if key is not None:
+            held = self._held.get(key)
+            if held is not None and held.arguments != belief.arguments:
+                super().remove(held)
+            self._held[key] = belief
+        return super().add(belief)
+
+    def remove(self, belief: Literal) -> bool:
+        key = self._key(belief)
+        if key is not None:
+            self._held.pop(key, None)
+        return super().remove(belief)
+
+    def _key(self, belief: Literal) -> tuple[object, ...] | None:
+        places = self._keys.get((belief.functor, belief.arity))
+        if places is None:
+            return None
+        values = (repr(belief.arguments[place]) for place in places)
+        return (belief.functor, belief.negated, belief.namespace, *values)
+
+
+class ChainBB(BeliefBase):
+    """Several bases in a row (``jason.bb.ChainBB``): each hands on what it keeps to the next one.
+
+    Args:
+        links: the bases with their arguments, the one that is asked first in front.
+    """
+
+    def __init__(self, *links: tuple[BeliefBase, tuple[object, ...]]) -> None:
+        self._beginnings = links
+
+    def init(self, *arguments: object) -> None:
+        """Join the links and begin them, the last one first."""
+        keeper: Keeper = self._tables
+        for link, given in reversed(self._beginnings):
+            link.agent, link.folder, link._tables = self.agent, self.folder, keeper
+            link.init(*given)
+            keeper = _Following(link, self._tables)
+        self._first = keeper
+
+    def add(self, belief: Literal) -> bool:
+        return self._first.keep(belief)
+
+    def remove(self, belief: Literal) -> bool:
+        return self._first.give_up(belief)
+
+    def candidates(self, pattern: Literal) -> list[Literal]:
+        return [belief for link, _ in self._beginnings for belief in link.candidates(pattern)]
+
+    def stop(self) -> None:
+        for link, _ in self._beginnings:
+            link.stop()
+
+
+class _Following:
+    """What a link of a chain takes for the place where beliefs are kept: the next link."""
+
+    def __init__(self, link: BeliefBase, tables: Keeper) -> None:
+        self._link, self._tables = link, tables
+
+    def keep(self, belief: Literal) -> bool:
+        return self._link.add(belief)
+
+    def give_up(self, belief: Literal) -> bool:
+        return self._link.remove(belief)
+
+    def literals(self) -> Iterator[Term]:
+        return self._tables.literals()
+
+
+_STANDARD_BASES: dict[str, type[BeliefBase]] = {
+    "DefaultBeliefBase": BeliefBase,
+    "TextPersistentBB": TextPersistentBB,
+    "IndexedBB": IndexedBB,
+}
+"""By the names behind ``jason.bb.``; ``ChainBB`` is made from its links."""
+
+
+def _mode(file: Path) -> int:
+    """The permissions of a file, or those that a new one gets."""
+    if file.exists():
+        return stat.S_IMODE(file.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def _is_file(argument: object) -> bool:
+    return isinstance(argument, str) and not isinstance(argument, Atom) and argument.endswith(".bb")
+
+
+def _signature(name: object) -> tuple[str, int | None]:
+    """Name and number of arguments of a predicate, None for any number."""
+    if isinstance(name, Structure):
+        return name.functor, len(name.arguments)
+    text = str(name)
+    functor, slash, arity = text.partition("/")
+    if slash and arity.isdigit():
+        return functor, int(arity)
+    if "(" in text:
+        pattern = _pattern(text)
+        return pattern.functor, pattern.arity
+    return text, None
+
+
+def _pattern(argument: object) -> Literal:
+    """A pattern of a predicate, such as ``student(key,_)``, in whatever way it is written."""
+    if isinstance(argument, Structure):
+        parts = tuple(None if isinstance(part, Out) else str(part) for part in argument.arguments)
+        return Literal(argument.functor, parts)
+    parsed = literal_of(lower_value(parse_literal(str(argument))))
+    return Literal(parsed.functor, tuple(None if isinstance(p, Out) else str(p) for p in parsed.arguments))

@@ -5,10 +5,11 @@ The mind itself knows nothing of this: its selection functions are replaced by o
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar, cast
 
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.rules.selections import options
 from jacaros.bdi.rules.urgency import Urgent
@@ -32,8 +33,21 @@ from jacaros.trace import Cause
 Item = TypeVar("Item")
 Seen = TypeVar("Seen")
 Result = TypeVar("Result")
+Change = TypeVar("Change", bound=Callable[[Any, Functor, tuple[Term, ...], tuple[Term, ...]], Raised])
 
 _SELECTION_FUNCTIONS = ("select_message", "select_event", "select_option", "select_intention")
+
+
+def _asked_first(change: Change) -> Change:
+    """The addition of a belief that asks the agent's class before."""
+
+    def add(
+        mind: "CustomMind", symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
+    ) -> Raised:
+        mind._revise(literal_from(symbol, row, annotations), None)
+        return change(mind, symbol, row, annotations)
+
+    return cast("Change", add)
 
 
 class CustomMind(Mind):
@@ -52,12 +66,10 @@ class CustomMind(Mind):
         self._notices = overridden(face, "buf")
 
     def accepts(self, message: SpeechAct) -> bool:
-        """Whether the class accepts a message."""
         accepts = overridden(self.look(), "soc_acc")
         return accepts is None or ask(self, accepts, bool, True, Message(message))
 
     def perceive(self, percepts: list[Percept]) -> None:
-        """Take note of the changes in the environment that the class lets through."""
         if self._notices is not None and percepts:
             seen = [PerceptView(percept) for percept in percepts]
             kept = ask(self, self._notices, _of(seen), seen, seen)
@@ -69,51 +81,31 @@ class CustomMind(Mind):
         return agent_of(self)
 
     def accept_kill(self, killer: str) -> bool:
-        """Whether another agent may end this one."""
         accepts = overridden(self.look(), "kill_acc")
         return accepts is None or ask(self, accepts, bool, True, killer)
 
     # changes of beliefs, see `jacaros.bdi.rules.belief_update`
 
-    def add_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Raised:
-        """``+b``."""
-        self._revise(literal_from(symbol, row, annotations), None)
-        return super().add_belief(symbol, row, annotations)
+    add_belief = _asked_first(belief_update.add_belief)
+    add_belief_last = _asked_first(belief_update.add_belief_last)
+    add_belief_apart = _asked_first(belief_update.add_belief_apart)
 
     def replace_belief(self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]) -> Raised:
-        """``-+b``."""
         self.delete_any(symbol, annotations)
         return self.add_belief(symbol, row, annotations)
-
-    def add_belief_last(
-        self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
-    ) -> Raised:
-        """``+>b``."""
-        self._revise(literal_from(symbol, row, annotations), None)
-        return super().add_belief_last(symbol, row, annotations)
-
-    def add_belief_apart(
-        self, symbol: Functor, row: tuple[Term, ...], annotations: tuple[Term, ...]
-    ) -> Raised:
-        """``++b``."""
-        self._revise(literal_from(symbol, row, annotations), None)
-        return super().add_belief_apart(symbol, row, annotations)
 
     def delete_belief(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], apart: bool
     ) -> Raised:
-        """``-b`` and ``--b``."""
         self._revise(None, literal_from(symbol, arguments, annotations))
         return super().delete_belief(symbol, arguments, annotations, apart)
 
     def delete_any(self, symbol: Functor, annotations: tuple[Term, ...] = BY_SELF) -> None:
-        """The first half of ``-+b``."""
         anything = tuple(Var() for _ in range(symbol.arity))
         self._revise(None, literal_from(symbol, anything, annotations))
         super().delete_any(symbol, annotations)
 
     def tell(self, term: Term, cause: Cause | None = None) -> bool:
-        """A belief from a message."""
         return self._is_refused(term, told=True) or super().tell(term, cause)
 
     def believe(
@@ -123,12 +115,10 @@ class CustomMind(Mind):
         annotations: tuple[Term, ...],
         cause: Cause | None = None,
     ) -> None:
-        """The same, in parts."""
         if not self._is_refused(literal(symbol, row, annotations), told=True):
             super().believe(symbol, row, annotations, cause)
 
     def untell(self, term: Term) -> bool:
-        """A belief that a message takes back."""
         return self._is_refused(term, told=False) or super().untell(term)
 
     def _is_refused(self, term: Term, told: bool) -> bool:
@@ -192,19 +182,16 @@ class Chosen(Urgent):
         self.plain = False
 
     def select_messages(self) -> Sequence[SpeechAct]:
-        """The one that the class chooses."""
         if self._message is None:
             return super().select_messages()
         return (self._choose(self._message, self._mind.incoming.messages, Message, lambda message: True),)
 
     def select_event(self) -> Event | None:
-        """The one that the class chooses."""
         if self._event is None or not self._mind.events:
             return super().select_event()
         return self._choose(self._event, self._mind.events, EventView, _is_open)
 
     def select_intention(self) -> Intention | None:
-        """The one that the class chooses."""
         if self._intention is None or not self._mind.intentions:
             return super().select_intention()
         return self._choose(self._intention, self._mind.intentions, IntentionView, _can_run)
@@ -230,7 +217,6 @@ class Chosen(Urgent):
     def select_option(
         self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
     ) -> Frame | None:
-        """The one of all applicable plans that the class chooses."""
         if self._option is None:
             return super().select_option(goal, annotations, intention)
         # The context is asked once: what it drew or did may come out otherwise the next time.

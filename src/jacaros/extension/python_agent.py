@@ -5,6 +5,7 @@ from inspect import iscoroutinefunction
 from random import Random
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+from jacaros.bdi.architecture import AgentSystem
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.env.session.observed import PropertyChange
@@ -12,9 +13,9 @@ from jacaros.env.session.session import Session
 from jacaros.env.session.signal_stream import ReceivedSignal
 from jacaros.env.values import text
 from jacaros.errors import JacarosError
-from jacaros.extension.conversation import ReceivedMessage, content_of, heard
 from jacaros.extension.in_environment import InEnvironment
 from jacaros.extension.literal import Literal
+from jacaros.extension.views import ReceivedMessage, content_of, heard
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term
 
@@ -34,7 +35,7 @@ class Mail(Protocol):
         """Wait for the next message; raises TimeoutError."""
 
 
-class Host(Protocol):
+class Host(AgentSystem, Protocol):
     """What runs an agent written in Python, as far as the agent may use it."""
 
     name: str
@@ -57,12 +58,6 @@ class Host(Protocol):
     def random(self) -> Random:
         """The agent's own generator."""
 
-    def print(self, text: str) -> None:
-        """Show a line of output."""
-
-    def log(self, level: str, text: str) -> None:
-        """Tell people something."""
-
     def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
         """Run a coroutine beside the others of the agent."""
 
@@ -71,30 +66,6 @@ class Host(Protocol):
 
     async def turn(self) -> None:
         """Let others have their turn."""
-
-    def agent_names(self) -> Sequence[str]:
-        """Names of all agents."""
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Make an agent."""
-
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent."""
-
-    def stop_system(self, delay: float, exit_code: int) -> None:
-        """End the run."""
-
-    def register_service(self, service: str) -> None:
-        """This agent provides a service."""
-
-    def deregister_service(self, service: str) -> None:
-        """It does not any more."""
-
-    def providers(self, service: str) -> Sequence[str]:
-        """Who provides a service."""
-
-    def subscribe_to_service(self, service: str) -> None:
-        """Have this agent told of providers."""
 
 
 class PythonAgent(InEnvironment):

@@ -149,13 +149,16 @@ class AgentClasses:
         """Objects for the agent class, the belief base and the architectures; the last declared comes first."""
         if not _names_classes(spec):
             return None, None, []
-        from jacaros.extension.classes import agent_object, architecture_object, base_object
+        from jacaros.extension.agent import Agent
+        from jacaros.extension.architecture import AgentArch
+        from jacaros.extension.belief_base import BeliefBase
+        from jacaros.extension.classes import base_of, object_of
 
         try:
-            face = self._object(spec, spec.agent_class, agent_object, "Agent")
-            base = self._object(spec, spec.belief_base_class, base_object, "BeliefBase")
+            face = self._object(spec, spec.agent_class, Agent, object_of)
+            base = self._object(spec, spec.belief_base_class, BeliefBase, base_of)
             found = [
-                self._object(spec, written, architecture_object, "AgentArch")
+                self._object(spec, written, AgentArch, object_of)
                 for written in reversed(spec.architecture_classes)
                 if is_own_architecture(written)
             ]
@@ -169,19 +172,19 @@ class AgentClasses:
         self,
         spec: AgentSpec,
         written: str | None,
-        make: "Callable[[ProjectModules, str], Made[T] | None]",
-        kind: str,
+        kind: type[T],
+        make: "Callable[[ProjectModules, str, type[T]], Made[T] | None]",
     ) -> "Made[T] | None":
         name = (written or "").partition("(")[0].strip()
         if written is None or name in _DEFAULTS:
             return None
-        made = make(self._modules, written)
+        made = make(self._modules, written, kind)
         if made is None and name not in self._warned:
             self._warned.add(name)
             module, _, last = name.rpartition(".")
             file = f"{module.replace('.', '/')}.py"
             own = bool(module) and not name.startswith("jason.")
-            hint = f"write it in Python: a class {last}(jacaros.{kind}) in {file}" if own else None
+            hint = f"write it in Python: a class {last}(jacaros.{kind.__name__}) in {file}" if own else None
             self._warn(Diagnostic("warning", f"the Java class {name} has no effect", spec.span, hint))
         return made
 

@@ -27,7 +27,7 @@ class CustomHost(AgentHost):
     def take(self, chain: Sequence[AgentArch]) -> None:
         """Put a chain of architectures before this host."""
         self._chain = list(chain)
-        following: Any = _End(self)
+        following: AgentArch = _End(self)
         for link in reversed(self._chain):
             link.following = following
             following = link
@@ -127,7 +127,7 @@ class CustomHost(AgentHost):
             return default
 
 
-class _End:
+class _End(AgentArch):
     """The last link of a chain: the host itself."""
 
     def __init__(self, host: CustomHost) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.clock import Clock
-from jacaros.extension.conversation import ReceivedMessage
+from jacaros.extension.views import ReceivedMessage
 from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.python_agents.attendance import Attendance

@@ -7,8 +7,8 @@ from inspect import isawaitable
 from typing import Any
 
 from jacaros.env.session.session import Session
-from jacaros.extension.conversation import ReceivedMessage
 from jacaros.extension.python_agent import PythonAgent, overridden
+from jacaros.extension.views import ReceivedMessage
 from jacaros.mas.python_agents.attendance import Attendance
 from jacaros.mas.python_agents.correspondence import Correspondence
 
