@@ -35,7 +35,7 @@ NUMBERS = {
 VARIABLES = {"terms.arithmetic.RUNNING": "the agent whose turn it is, for each thread and task"}
 CACHES = {
     "asl.checks.goals._goals_of_tests": "of a file of the package",
-    "bdi.actions.java_regex._compile": "of a text",
+    "bdi.actions.strings._compile": "of a text",
     "bdi.rules.proc_msg._achieved": "of a name",
     "bdi.rules.proc_msg._only_from": "of a name",
     "body.actions.keys": "of nothing",

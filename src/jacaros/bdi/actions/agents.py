@@ -58,7 +58,6 @@ def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = 
     ``agentArchClass("my.Arch")`` and ``beliefBaseClass("my.LoudBB(3)")``, classes of the project's Python code.
 
     Raises:
-        WrongArguments: *source* is no string or *options* no list.
         ActionError: the agent could not be made, because of its program for example.
     """
     path = None if source is None else string(source, "the second argument of .create_agent")
@@ -104,9 +103,6 @@ def kill_agent(ctx: Context, name: Term, deadline: Term = 0.0) -> bool:
     """``.kill_agent(Name[, Ms])`` ends an agent, at once or after some milliseconds.  Fails if there is none.
 
     With a time, the agent is given ``+jag_shutting_down(Ms)`` so that it can prepare.
-
-    Raises:
-        WrongArguments: the time is no number.
     """
     delay = number(deadline, "the second argument of .kill_agent") / 1000
     return ctx.architecture.kill_agent(characters(name), max(delay, 0.0))
@@ -119,9 +115,6 @@ def stop_mas(ctx: Context, delay: Term = 0.0, code: Term = 0.0) -> None:
     With a time, all agents are given ``+jag_shutting_down(Ms)`` so that they can prepare.
 
     ``true`` and ``false`` in place of the code stand for 0: there is no virtual machine to be kept running.
-
-    Raises:
-        WrongArguments: an argument is no number.
     """
     milliseconds = number(delay, "the first argument of .stopMAS")
     exit_code = 0 if code is TRUE or code is FALSE else whole(code, "the second argument of .stopMAS")
@@ -170,9 +163,6 @@ def random(ctx: Context, first: Term, second: Term = 1.0, third: Term = 1.0) -> 
     ``.random(L, X[, N])``: *X* is an element of the list *L*; fails for an empty list.
 
     There are *N* answers (default 1), endlessly many when it is 0.
-
-    Raises:
-        WrongArguments: *X* has a value already, *N* is no number.
     """
     generator = ctx.architecture.random
     choices = elements(first, "the list of .random") if is_list(first) else None
@@ -191,9 +181,5 @@ def random(ctx: Context, first: Term, second: Term = 1.0, third: Term = 1.0) -> 
 
 @internal_action(".set_random_seed", arity=1)
 def set_random_seed(ctx: Context, seed: Term) -> None:
-    """``.set_random_seed(N)``: the agent's draws from now on follow from *N*.
-
-    Raises:
-        WrongArguments: *N* is no number.
-    """
+    """``.set_random_seed(N)``: the agent's draws from now on follow from *N*."""
     ctx.architecture.random.seed(whole(seed, "the argument of .set_random_seed"))

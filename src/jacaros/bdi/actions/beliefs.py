@@ -82,9 +82,6 @@ def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
     """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the base.
 
     With *P* unbound these are all rules.
-
-    Raises:
-        WrongArguments: *P* is no literal.
     """
     symbol, _, annotations = parts(pattern)
     if symbol is None and bare(pattern).__class__ is not Var:
@@ -140,9 +137,6 @@ def greatest(ctx: Context, *arguments: Term) -> bool:
 
     ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*.  Fails without
     answers.
-
-    Raises:
-        WrongArguments: *L* is no list.
     """
     return _extreme(ctx, arguments, 1, ".max")
 
@@ -153,9 +147,6 @@ def least(ctx: Context, *arguments: Term) -> bool:
 
     ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*.  Fails without
     answers.
-
-    Raises:
-        WrongArguments: *L* is no list.
     """
     return _extreme(ctx, arguments, -1, ".min")
 
@@ -223,11 +214,7 @@ def _properties(ctx: Context, namespace: Term) -> dict[Term, Term]:
 
 @internal_action(".namespace_set_prop", arity=3)
 def set_property(ctx: Context, namespace: Term, key: Term, value: Term) -> None:
-    """``.namespace_set_prop(N, Key, Value)`` gives a namespace a property.
-
-    Raises:
-        WrongArguments: *N* or *Key* is no atom.
-    """
+    """``.namespace_set_prop(N, Key, Value)`` gives a namespace a property."""
     if not isinstance(key, Functor):
         raise WrongArguments(f"the key of a property must be an atom, not {text(key)}")
     _properties(ctx, namespace)[key] = value
@@ -238,9 +225,6 @@ def get_property(ctx: Context, namespace: Term, key: Term, *rest: Term) -> Itera
     """``.namespace_get_prop(N, Key[, Value[, Default]])``: a property of a namespace, or the default value.
 
     With *Key* unbound, an answer for each property.
-
-    Raises:
-        WrongArguments: *N* is no atom.
     """
     held = _properties(ctx, namespace)
     if key.__class__ is Var:

@@ -56,14 +56,9 @@ def add_to_set(ctx: Context, collection: Term, item: Term) -> None:
 
 
 @internal_action(".set.add_all", arity=2)
-def add_all_to_set(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.add_all(S, C)`` puts the elements of a list, set or queue in."""
-    _set(ctx, collection).items.update(dict.fromkeys(map(as_key, _items(items))))
-
-
 @internal_action(".set.union", arity=2)
-def union_of_sets(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.union(S, C)`` does the same as ``.set.add_all``."""
+def add_all_to_set(ctx: Context, collection: Term, items: Term) -> None:
+    """``.set.add_all(S, C)`` and ``.set.union(S, C)`` put the elements of a list, set or queue in."""
     _set(ctx, collection).items.update(dict.fromkeys(map(as_key, _items(items))))
 
 

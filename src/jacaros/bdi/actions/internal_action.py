@@ -7,6 +7,7 @@
                 yield
 
 The decorator holds all that is known of an action: parser, checker, compiler and mind ask it there and know no names.
+The docstring of an action says what its arguments are; others raise `WrongArguments`.
 The arguments arrive with all bindings applied (`jacaros.terms.substitution.resolve`); unbound ones are `Var`.  A plain
 function succeeds unless it returns False.  A generator (``backtracks``) yields once for every answer; bindings
 made before a yield are taken back before the next one is looked for.  A function that suspends the intention

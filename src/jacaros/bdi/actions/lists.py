@@ -12,7 +12,7 @@ from jacaros.bdi.actions.internal_action import (
     number,
     whole,
 )
-from jacaros.bdi.actions.java_regex import replace_all
+from jacaros.bdi.actions.strings import replace_all
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.terms.deep import as_key
@@ -62,9 +62,6 @@ def member(ctx: Context, item: Term, collection: Term) -> Iterator[None]:
     """``.member(X, C)``: *X* is an element of a list, set or queue; one answer for each that unifies.
 
     A ground *X* is an element of a set or queue once, its annotations being compared as well.
-
-    Raises:
-        WrongArguments: *collection* is none of these.
     """
     if isinstance(collection, (SetValue, QueueValue)) and is_ground(item):
         if _holds(collection, item):
@@ -98,7 +95,6 @@ def nth(ctx: Context, index: Term, collection: Term, item: Term) -> Iterator[Non
     With *I* unbound there is an answer for each position whose element unifies with *X*.
 
     Raises:
-        WrongArguments: *index* is no number or variable, or *collection* no list or string.
         ActionError: there is no such position.
     """
     if collection.__class__ is List and index.__class__ is float and 0 <= index < collection.size:
@@ -129,7 +125,6 @@ def concat(ctx: Context, *arguments: Term) -> bool:
     without their quotes.
 
     Raises:
-        WrongArguments: a list is to be joined with something else.
         ActionError: *R* is something else than the list that it has to be, or a list has an open end.
     """
     *parts, result = arguments
@@ -181,7 +176,6 @@ def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
     outside of it.
 
     Raises:
-        WrongArguments: for any other combination of arguments.
         ActionError: the regular expression is wrong.
     """
     if what.__class__ is float:
@@ -237,9 +231,6 @@ def reverse(ctx: Context, collection: Term, result: Term) -> bool:
     """``.reverse(C, R)``: *R* is the list or string *C* turned around; an open end of a list stays the end.
 
     Terms that are no lists are taken as they are written.
-
-    Raises:
-        WrongArguments: *R* is neither unbound nor a list (or string) as *C* is.
     """
     if is_list(collection):
         if result.__class__ is not Var:
@@ -255,11 +246,7 @@ def reverse(ctx: Context, collection: Term, result: Term) -> bool:
 
 @internal_action(".sort", arity=2, repeatable=True)
 def sort(ctx: Context, collection: Term, result: Term) -> bool:
-    """``.sort(L, R)``: *R* is the list *L* in the standard order of terms, with its duplicates.
-
-    Raises:
-        WrongArguments: *L* is no list.
-    """
+    """``.sort(L, R)``: *R* is the list *L* in the standard order of terms, with its duplicates."""
     items = sorted_terms(elements(collection, "the first argument of .sort"))
     if collection.__class__ is List:
         items.reverse()
@@ -269,11 +256,7 @@ def sort(ctx: Context, collection: Term, result: Term) -> bool:
 
 @internal_action(".shuffle", arity=2)
 def shuffle(ctx: Context, collection: Term, result: Term) -> bool:
-    """``.shuffle(L, R)``: *R* is the list *L* in random order, drawn by the agent's own generator.
-
-    Raises:
-        WrongArguments: *L* is no list.
-    """
+    """``.shuffle(L, R)``: *R* is the list *L* in random order, drawn by the agent's own generator."""
     items = elements(collection, "the first argument of .shuffle")
     ctx.architecture.random.shuffle(items)
     return ctx.unify(result, make_list(items))
@@ -293,9 +276,6 @@ def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0)
     """``.range(X, First, Last[, Step])``: *X* is each number from *First* to *Last* inclusive, in turn.
 
     A number *X* is only tested for lying between the two, whatever the step.  Fractions are cut off.
-
-    Raises:
-        WrongArguments: an argument is no number, or the step is 0.
     """
     if value.__class__ is not Var:
         start, end = (
@@ -314,33 +294,21 @@ def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0)
 
 @internal_action(".union", arity=3, repeatable=True)
 def union(ctx: Context, left: Term, right: Term, result: Term) -> bool:
-    """``.union(A, B, R)``: *R* is the sorted list of what is in the list *A* or in *B*, each once.
-
-    Raises:
-        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
-    """
+    """``.union(A, B, R)``: *R* is the sorted list of what is in the list *A* or in *B*, each once."""
     first, second = _two_lists(left, right, result, ".union")
     return ctx.unify(result, make_list(sorted_set([*second, *first])))
 
 
 @internal_action(".intersection", arity=3, repeatable=True)
 def intersection(ctx: Context, left: Term, right: Term, result: Term) -> bool:
-    """``.intersection(A, B, R)``: *R* is the sorted list of what is in both lists, each once.
-
-    Raises:
-        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
-    """
+    """``.intersection(A, B, R)``: *R* is the sorted list of what is in both lists, each once."""
     first, second = _two_lists(left, right, result, ".intersection")
     return ctx.unify(result, make_list(_parted(second, first)[0]))
 
 
 @internal_action(".difference", arity=3, repeatable=True)
 def difference(ctx: Context, left: Term, right: Term, result: Term) -> bool:
-    """``.difference(A, B, R)``: *R* is the sorted list of what is in the list *A* but not in *B*, each once.
-
-    Raises:
-        WrongArguments: *A* or *B* is no list, or *R* is neither a list nor unbound.
-    """
+    """``.difference(A, B, R)``: *R* is the sorted list of what is in the list *A* but not in *B*, each once."""
     first, second = _two_lists(left, right, result, ".difference")
     return ctx.unify(result, make_list(_parted(first, second)[1]))
 
@@ -376,9 +344,6 @@ def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
     """``.sublist(S, L)``: *S* is a contiguous part of the list *L*; one answer for each that unifies.
 
     Parts that begin further left come first, longer ones before shorter ones, the empty list last.
-
-    Raises:
-        WrongArguments: *S* is neither a list nor unbound, or *L* is no list.
     """
     items = _whole_of(part, whole, ".sublist")
     size = len(items)
@@ -388,22 +353,14 @@ def sublist(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
 
 @internal_action(".prefix", arity=2, backtracks=True, repeatable=True)
 def prefix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
-    """``.prefix(P, L)``: the list (or string) *L* begins with *P*; longer answers come first.
-
-    Raises:
-        WrongArguments: *P* is neither such a value nor unbound, or *L* is neither list nor string.
-    """
+    """``.prefix(P, L)``: the list (or string) *L* begins with *P*; longer answers come first."""
     items = _whole_of(part, whole, ".prefix", strings=True)
     return _parts(ctx, part, items, ((0, end) for end in range(len(items), 0, -1)))
 
 
 @internal_action(".suffix", arity=2, backtracks=True, repeatable=True)
 def suffix(ctx: Context, part: Term, whole: Term) -> Iterator[None]:
-    """``.suffix(S, L)``: the list (or string) *L* ends with *S*; longer answers come first.
-
-    Raises:
-        WrongArguments: *S* is neither such a value nor unbound, or *L* is neither list nor string.
-    """
+    """``.suffix(S, L)``: the list (or string) *L* ends with *S*; longer answers come first."""
     items = _whole_of(part, whole, ".suffix", strings=True)
     size = len(items)
     return _parts(ctx, part, items, ((start, size) for start in range(size)))

@@ -23,18 +23,13 @@ _EXPRESSION = re.compile(r"#\{([^{}]+)\}")
 
 
 @internal_action(".print", prints=True)
+@internal_action(".println", prints=True)
 def print_(ctx: Context, *arguments: Term) -> None:
-    """``.print(A, ...)`` shows its arguments joined without separators.
+    """``.print(A, ...)`` and ``.println(A, ...)`` show their arguments joined without separators.
 
     Strings come out bare, strings inside other terms in quotes, unbound variables as ``X<no-value>``.
     Line breaks in strings are kept.
     """
-    ctx.architecture.print("".join(map(display, arguments)))
-
-
-@internal_action(".println", prints=True)
-def println(ctx: Context, *arguments: Term) -> None:
-    """``.println(A, ...)`` does the same as ``.print``."""
     ctx.architecture.print("".join(map(display, arguments)))
 
 
@@ -45,7 +40,6 @@ def printf(ctx: Context, template: Term, *arguments: Term) -> None:
     Numbers are doubles: use ``%.0f`` where ``%d`` is meant.  See `java_format` for what is known.
 
     Raises:
-        WrongArguments: *template* is no string.
         ActionError: the format is wrong or does not fit the arguments.
     """
     from jacaros.bdi.actions.java_format import java_format  # here: few programs use it, and it needs decimal
@@ -70,9 +64,6 @@ def puts(ctx: Context, template: Term, result: Term = None) -> bool:
 
     What cannot be read as a term is left as it is.  With an unbound *result* nothing is shown: the text is
     its value.  A *result* that is a string is appended.
-
-    Raises:
-        WrongArguments: *template* is no string.
     """
     filled = _fill(ctx, string(template, "the first argument of .puts"))
     if result.__class__ is Var:
@@ -98,9 +89,6 @@ def log(ctx: Context, level: Term, *arguments: Term) -> None:
     """``.log(Level, A, ...)`` tells people something outside of the program's output.
 
     *level* is ``severe``, ``warning``, ``info``, ``fine``, ``finer``, ``finest``; other atoms mean ``info``.
-
-    Raises:
-        WrongArguments: *level* is no atom.
     """
     if not isinstance(level, Functor):
         raise WrongArguments(f"the first argument of .log must be a level such as info, not {text(level)}")
@@ -111,9 +99,6 @@ def log(ctx: Context, level: Term, *arguments: Term) -> None:
 def verbose(ctx: Context, level: Term) -> None:
     """``.verbose(N)``: what people are told of the agent from now on, besides what it prints: 0 only trouble, 1 the
     usual, 2 details as well.
-
-    Raises:
-        WrongArguments: *level* is not 0, 1 or 2.
     """
     wanted = whole(level, "the argument of .verbose")
     if not 0 <= wanted <= 2:

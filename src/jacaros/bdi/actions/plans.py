@@ -1,25 +1,48 @@
-"""Internal actions about the plan library."""
+"""Internal actions about the plan library and program files: plans are added, programs included, saved and looked for."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from jacaros.asl.diagnostics import AslError
+from jacaros.asl.formatter import format_plan, format_term
 from jacaros.asl.reflection import NotAPlan
-from jacaros.bdi.actions.internal_action import ActionError, WrongArguments, internal_action
+from jacaros.bdi.actions.internal_action import (
+    ActionError,
+    WrongArguments,
+    characters,
+    elements,
+    internal_action,
+    string,
+)
+from jacaros.bdi.actions.strings import matches_whole
 from jacaros.bdi.rules import plan_terms
 from jacaros.bdi.rules.context import Context
+from jacaros.bdi.snapshot import knowledge
+from jacaros.bdi.state.belief_base import literal
+from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.rule import Rule
+from jacaros.errors import JacarosError
 from jacaros.terms.text import plan_text, text
-from jacaros.terms.values import SELF, Term, atom, bare, is_list, list_items, make_list
+from jacaros.terms.values import (
+    SELF,
+    SOURCE_SELF,
+    Annotated,
+    Functor,
+    String,
+    Term,
+    Var,
+    atom,
+    bare,
+    is_list,
+    list_items,
+    make_list,
+)
 
 
 def _source(term: Term) -> Term:
     """The source that an argument names, the agent itself by default."""
     return SELF if term is None else bare(term)
-
-
-def _term(ctx: Context, plan: Plan) -> Term:
-    """A plan as a term, with its label and what is known of it."""
-    return plan_terms.plan_term(ctx.agent, plan)
 
 
 @internal_action(".add_plan", arity=(1, 3), brings_in=True, changes_plans=True)
@@ -45,7 +68,9 @@ def remove_plan(ctx: Context, wanted: Term, source: Term = None) -> None:
 def plan_label(ctx: Context, target: Term, label: Term) -> Iterator[None]:
     """``.plan_label(P, L)``: each plan with its label."""
     for plan in list(ctx.agent.library.plans):
-        if ctx.unify_all((label, ctx.agent.library.label(plan)), (target, _term(ctx, plan))):
+        if ctx.unify_all(
+            (label, ctx.agent.library.label(plan)), (target, plan_terms.plan_term(ctx.agent, plan))
+        ):
             yield
 
 
@@ -60,7 +85,7 @@ def _relevant(ctx: Context, event: Term) -> list[Plan]:
 def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None) -> bool:
     """``.relevant_plans({T}, Ps [,Labels])``: the plans whose triggers unify with an event, in their order."""
     plans = _relevant(ctx, event)
-    if not ctx.unify(target, make_list([_term(ctx, p) for p in plans])):
+    if not ctx.unify(target, make_list([plan_terms.plan_term(ctx.agent, p) for p in plans])):
         return False
     return labels is None or ctx.unify(labels, make_list([ctx.agent.library.label(p) for p in plans]))
 
@@ -69,7 +94,7 @@ def relevant_plans(ctx: Context, event: Term, target: Term, labels: Term = None)
 def relevant_plan(ctx: Context, event: Term, target: Term) -> Iterator[None]:
     """``.relevant_plan({T}, P)``: each plan for an event."""
     for plan in _relevant(ctx, event):
-        if ctx.unify(target, _term(ctx, plan)):
+        if ctx.unify(target, plan_terms.plan_term(ctx.agent, plan)):
             yield
 
 
@@ -77,4 +102,103 @@ def relevant_plan(ctx: Context, event: Term, target: Term) -> Iterator[None]:
 def list_plans(ctx: Context, event: Term = None) -> None:
     """``.list_plans [({T})]``: print the plans."""
     for plan in ctx.agent.library.plans if event is None else _relevant(ctx, event):
-        ctx.architecture.print(plan_text(_term(ctx, plan)))
+        ctx.architecture.print(plan_text(plan_terms.plan_term(ctx.agent, plan)))
+
+
+@internal_action(".list_files", arity=(2, 3), restricted=0)
+def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
+    """``.list_files(Folder[, Regex], L)``: *L* is the sorted list of the files in a folder and the folders in it.
+
+    They are strings, paths that begin with *Folder*.  With *Regex*, only those that it matches as a whole.  A
+    folder that is not absolute is one of the project.
+
+    Raises:
+        ActionError: the folder cannot be read.
+    """
+    path = string(folder, "the first argument of .list_files")
+    pattern = string(rest[0], "the second argument of .list_files") if len(rest) == 2 else None
+    try:
+        found = ctx.architecture.list_files(path)
+        if pattern is not None:
+            found = [name for name in found if matches_whole(pattern, name)]
+    except OSError as fault:
+        raise ActionError(f".list_files: {path} cannot be read: {fault.strerror or fault}") from fault
+    except ValueError as fault:
+        raise WrongArguments(f".list_files: {fault}") from fault
+    return ctx.unify(rest[-1], make_list([String(name) for name in found]))
+
+
+@internal_action(".save_agent", arity=(1, 2), restricted=0)
+def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
+    """``.save_agent(File[, Goals])`` writes the beliefs, rules and plans of the agent as a program.
+
+    *Goals* is a list of the initial goals that the program is to have.  A path that is not absolute is one of
+    the project's folder.
+
+    Raises:
+        ActionError: the file cannot be written.
+    """
+    wanted = [] if goals is None else elements(goals, "the second argument of .save_agent")
+    path = characters(file)
+    try:
+        ctx.architecture.write_file(path, _program_text(ctx.agent, wanted))
+    except OSError as fault:
+        raise ActionError(f".save_agent: {path} cannot be written: {fault.strerror or fault}") from fault
+
+
+def _program_text(agent: Circumstance, goals: list[Term]) -> str:
+    """What an agent knows, with initial goals."""
+    known = knowledge(agent)
+    parts = [
+        "// beliefs and rules",
+        *(
+            _belief_text(symbol, entry, annotations)
+            for symbol, rows, late in known["beliefs"]
+            for entry, annotations in (*reversed(rows), *late)
+        ),
+        "",
+        "// initial goals",
+        *(f"!{text(goal)}." for goal in goals),
+        "",
+        "// functions",
+        *(
+            f'{{ register_function("{name}", {function.arity}, "{function.implementation}") }}'
+            for name, function in known["functions"].items()
+        ),
+        "",
+        "// plans",
+        *(format_plan(plan.node) for plan in agent.library.plans),
+    ]
+    return "\n".join(parts) + "\n"
+
+
+def _belief_text(symbol: Functor, entry: Any, annotations: tuple[Term, ...]) -> str:
+    """A rule; or a belief without its own source, which a program's beliefs get anyway."""
+    if isinstance(entry, Rule):
+        return f"{format_term(entry.node)}."
+    belief = literal(symbol, entry, annotations) if isinstance(entry, tuple) else entry.head()
+    kept = tuple(each for each in annotations if each != SOURCE_SELF)
+    return f"{text(Annotated(bare(belief), kept) if kept else bare(belief))}."
+
+
+@internal_action(".include", arity=(1, 2), brings_in=True, changes_plans=True, restricted=0)
+def include(ctx: Context, file: Term, namespace: Term = None) -> bool:
+    """``.include(File[, Namespace])`` takes the beliefs, goals and plans of a program file in.
+
+    With a namespace (an atom; a variable is bound to a new one) all of it is put there.
+
+    Raises:
+        ActionError: the file is not there, or its program is wrong.
+    """
+    path = string(file, "the first argument of .include")
+    if namespace is not None and not isinstance(namespace, (Functor, Var)):
+        raise WrongArguments(f"a namespace is an atom or a variable, not {text(namespace)}")
+    fresh = namespace.__class__ is Var
+    name: str = ctx.agent.fresh_namespace() if fresh else getattr(namespace, "name", "default")
+    try:
+        ctx.agent.include(path, None if name == "default" else name)
+    except FileNotFoundError as fault:
+        raise ActionError(f".include: the file {path} is not found") from fault
+    except (OSError, UnicodeError, JacarosError) as fault:
+        raise ActionError(f".include: {path} cannot be included: {fault}") from fault
+    return not fresh or ctx.unify(namespace, atom(name))

@@ -4,7 +4,6 @@ from jacaros.bdi.actions import (  # noqa: F401 - each registers its actions
     agents,
     beliefs,
     collections,
-    files,
     goals,
     lists,
     messages,

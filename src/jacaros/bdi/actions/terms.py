@@ -35,14 +35,9 @@ CODE_LINE, CODE_SRC = functor("code_line", 1), functor("code_src", 1)
 
 
 @internal_action(".copy_term", arity=2)
-def copy_term(ctx: Context, term: Term, copy: Term) -> bool:
-    """``.copy_term(T, C)``: *C* is the term *T* with other variables in place of the unbound ones."""
-    return ctx.unify(copy, rename(term))
-
-
 @internal_action(".rename_apart", arity=2)
-def rename_apart(ctx: Context, term: Term, copy: Term) -> bool:
-    """``.rename_apart(T, C)``: *C* is the term *T* with variables that occur nowhere else."""
+def copy_term(ctx: Context, term: Term, copy: Term) -> bool:
+    """``.copy_term(T, C)``, ``.rename_apart(T, C)``: *C* is *T* with new variables in place of the unbound ones."""
     return ctx.unify(copy, rename(term))
 
 

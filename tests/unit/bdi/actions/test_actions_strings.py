@@ -2,7 +2,7 @@ import pytest
 from fake_context import FakeContext
 
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
-from jacaros.bdi.actions.java_regex import replace_all
+from jacaros.bdi.actions.strings import replace_all
 from jacaros.terms.text import text
 from jacaros.terms.values import String, Var, structure
 
