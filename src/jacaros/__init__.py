@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from jacaros.env.errors import OperationFailed
     from jacaros.env.values import Atom, Out, Structure
     from jacaros.errors import InternalError, JacarosError, UsageError
-    from jacaros.extension.agent import Agent
-    from jacaros.extension.architecture import Action, AgentArch
+    from jacaros.extension.agent import Action, Agent, AgentArch
     from jacaros.extension.belief_base import BeliefBase
     from jacaros.extension.declaring import arithmetic_function, internal_action
     from jacaros.extension.literal import Literal
@@ -82,8 +81,7 @@ _MODULES = {
     "jacaros.env.errors": "OperationFailed",
     "jacaros.env.values": "Atom Out Structure",
     "jacaros.errors": "InternalError JacarosError UsageError",
-    "jacaros.extension.agent": "Agent",
-    "jacaros.extension.architecture": "Action AgentArch",
+    "jacaros.extension.agent": "Action Agent AgentArch",
     "jacaros.extension.belief_base": "BeliefBase",
     "jacaros.extension.declaring": "arithmetic_function internal_action",
     "jacaros.extension.literal": "Literal",

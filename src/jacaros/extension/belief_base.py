@@ -13,7 +13,7 @@ from jacaros.bdi.state import belief_base
 from jacaros.bdi.state.belief_base import SELECT_OPTION, Row, Table, parts
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.extension.agent import Agent, agent_of
-from jacaros.extension.faults import FAULTS, crash_text
+from jacaros.extension.calling import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from, literal_of, literal_term
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import is_key

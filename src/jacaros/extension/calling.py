@@ -1,8 +1,10 @@
-"""How the mind calls a Python function: terms become values, and what it gives is unified."""
+"""How the mind calls a Python function: terms become values, what it gives is unified, and what it raises is a failure."""
 
 import inspect
 import typing
+from asyncio import CancelledError
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 from jacaros.bdi.actions.internal_action import ActionError, Crashed, InternalAction, WrongArguments
 from jacaros.bdi.rules.context import Context
@@ -12,16 +14,19 @@ from jacaros.bdi.state.waiting import CoroutineWait, Waiting
 from jacaros.body.values import Outputs, to_value
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel import signature as operations
-from jacaros.env.values import Out
+from jacaros.env.values import Atom, Out, Structure
+from jacaros.errors import InternalError
 from jacaros.extension.agent import Agent, agent_of
 from jacaros.extension.declaring import Declared
-from jacaros.extension.faults import FAULTS, ActionCrashed, FunctionCrashed, action_fault, crash_text
 from jacaros.extension.literal import Literal, literal_of, term_of
+from jacaros.project_modules import place_of
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, functor_of
 
+FAULTS = (Exception, SystemExit, CancelledError)
+"""What Python code of a project may raise without ending more than the step that called it."""
 _ITERATORS = ("Iterator", "Iterable", "Generator")
 
 
@@ -310,3 +315,48 @@ def _written(hint: str) -> str | None:
     if kind.rpartition(".")[2] in _ITERATORS:
         return inner.rstrip("]").partition(",")[0].strip() if bracket else None
     return hint
+
+
+# --- exceptions --------------------------------------------------------------------------------------------
+
+
+class ActionCrashed(ActionError, Crashed):
+    """The Python code of an internal action raised an exception that is no `ActionError`."""
+
+
+class FunctionCrashed(ArithmeticFault, Crashed):
+    """The Python code of an arithmetic function raised an exception."""
+
+
+def action_fault(name: str, function: Callable[..., object], error: BaseException) -> Exception:
+    """How the step of an internal action fails for an exception of its function.
+
+    Raises:
+        InternalError: the exception is one: a defect of JaCaROS.
+    """
+    if isinstance(error, InternalError):
+        raise error
+    if isinstance(error, WrongArguments):
+        return error
+    if isinstance(error, ActionError):
+        return ActionError(str(error), *map(_annotation, error.annotations))
+    return ActionCrashed(crash_text(name, function, error))
+
+
+def _annotation(value: Term) -> Term:
+    return term_of(value) if isinstance(value, (Literal, Structure, Atom, str)) else value
+
+
+def crash_text(name: str, function: Callable[..., object], error: BaseException) -> str:
+    """What people are told of an exception: the action, the exception, and where it was raised."""
+    what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return f"{name}: {what} ({_place(function, error)})"
+
+
+def _place(function: Callable[..., object], error: BaseException) -> str:
+    code = getattr(function, "__code__", None)
+    if code is None:
+        return getattr(function, "__module__", "?")
+    file = Path(code.co_filename)
+    place, line = place_of(error, file.parent) or (file, code.co_firstlineno)
+    return f"{place}:{line}"

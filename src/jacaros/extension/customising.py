@@ -22,7 +22,7 @@ from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal
 from jacaros.extension.agent import Agent, agent_of, give_face, overridden
-from jacaros.extension.faults import FAULTS, crash_text
+from jacaros.extension.calling import FAULTS, crash_text
 from jacaros.extension.literal import Literal, literal_from
 from jacaros.extension.views import EventView, IntentionView, Message, Option, PerceptView
 from jacaros.terms.text import text

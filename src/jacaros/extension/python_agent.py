@@ -1,25 +1,27 @@
 """Agents written in Python: the class to be subclassed."""
 
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Mapping, Sequence
+from functools import wraps
 from inspect import iscoroutinefunction
 from random import Random
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 from jacaros.bdi.architecture import AgentSystem
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
+from jacaros.env.ids import ArtifactId
 from jacaros.env.session.observed import PropertyChange
 from jacaros.env.session.session import Session
 from jacaros.env.session.signal_stream import ReceivedSignal
 from jacaros.env.values import text
 from jacaros.errors import JacarosError
-from jacaros.extension.in_environment import InEnvironment
 from jacaros.extension.literal import Literal
 from jacaros.extension.views import ReceivedMessage, content_of, heard
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term
 
 T = TypeVar("T")
+Given = ParamSpec("Given")
 
 
 class Mail(Protocol):
@@ -68,7 +70,19 @@ class Host(AgentSystem, Protocol):
         """Let others have their turn."""
 
 
-class PythonAgent(InEnvironment):
+def _of_session(
+    method: Callable[Concatenate[Session, Given], T],
+) -> Callable[Concatenate["PythonAgent", Given], T]:
+    """The method of an agent that is the one of its session."""
+
+    @wraps(method)
+    def call(agent: "PythonAgent", /, *arguments: Given.args, **options: Given.kwargs) -> T:
+        return method(agent.session, *arguments, **options)
+
+    return call
+
+
+class PythonAgent:
     """An agent written in Python; to be subclassed.
 
     A project names the file of the subclass: ``agent painter: painter.py`` in a ``.jcm`` file, ``painter
@@ -150,9 +164,6 @@ class PythonAgent(InEnvironment):
         """Wait on the run's clock."""
         await self._host.sleep(seconds)
 
-    async def _turn(self) -> None:
-        await self._host.turn()
-
     def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
         """Run a coroutine beside `run`; it can be awaited.
 
@@ -167,6 +178,55 @@ class PythonAgent(InEnvironment):
     def log(self, message: str, level: str = "info") -> None:
         """Tell people something; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
         self._host.log(level, message)
+
+    # --- in the environment, as `Session` has it -------------------------------------------------------------
+
+    def join(self, workspace: str) -> str:
+        """Join a workspace and make it the current one; gives its full path."""
+        return self.session.join(workspace)
+
+    quit = _of_session(Session.quit)
+    make_artifact = _of_session(Session.make_artifact)
+    lookup = _of_session(Session.lookup)
+    focus = _of_session(Session.focus)
+    focus_when_available = _of_session(Session.focus_when_available)
+    stop_focus = _of_session(Session.stop_focus)
+    begin = _of_session(Session.begin)
+    value = _of_session(Session.value)
+    values = _of_session(Session.values)
+    has_property = _of_session(Session.has_property)
+    properties = _of_session(Session.properties)
+    signals = _of_session(Session.signals)
+
+    async def act(
+        self,
+        operation: str,
+        *arguments: object,
+        artifact: ArtifactId | str | None = None,
+        workspace: str | None = None,
+        timeout: float | None = None,
+    ) -> Any:
+        """Do an operation, wait for its end, and give the values of its `Out` arguments; see `Session.act`.
+
+        Raises:
+            OperationFailed: with the message and the reason.
+        """
+        result = await self.begin(
+            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout
+        )
+        # An operation may end at once; who does nothing else must not keep the others from their turns.
+        await self._host.turn()
+        return result
+
+    async def until(self, condition: Callable[[], T], timeout: float | None = None) -> T:
+        """Wait until *condition* is true, which is looked at whenever a focused artifact publishes something.
+
+        Raises:
+            TimeoutError: it was not within *timeout* seconds.
+        """
+        value = await self.session.until(condition, timeout)
+        await self._host.turn()
+        return value
 
     # --- messages ------------------------------------------------------------------------------------------
 

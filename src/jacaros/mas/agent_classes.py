@@ -16,8 +16,7 @@ from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import NotImported, ProjectModules
 
 if TYPE_CHECKING:
-    from jacaros.extension.agent import Agent
-    from jacaros.extension.architecture import AgentArch
+    from jacaros.extension.agent import Agent, AgentArch
     from jacaros.extension.belief_base import BeliefBase
     from jacaros.extension.classes import Made
 
@@ -139,7 +138,7 @@ class AgentClasses:
         except JacarosError as error:
             raise self._project_error(spec, str(error)) from error
         except Exception as error:
-            from jacaros.extension.faults import crash_text
+            from jacaros.extension.calling import crash_text
 
             told = crash_text(f"agent {spec.name}", type(self)._custom, error)
             raise self._project_error(spec, told) from error
@@ -149,8 +148,7 @@ class AgentClasses:
         """Objects for the agent class, the belief base and the architectures; the last declared comes first."""
         if not _names_classes(spec):
             return None, None, []
-        from jacaros.extension.agent import Agent
-        from jacaros.extension.architecture import AgentArch
+        from jacaros.extension.agent import Agent, AgentArch
         from jacaros.extension.belief_base import BeliefBase
         from jacaros.extension.classes import base_of, object_of
 

@@ -8,8 +8,8 @@ from typing import Any
 from jacaros.bdi.architecture import Timer
 from jacaros.bdi.state.act import Act
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.extension.architecture import Action, AgentArch, Perception
-from jacaros.extension.faults import FAULTS, crash_text
+from jacaros.extension.agent import Action, AgentArch, Perception
+from jacaros.extension.calling import FAULTS, crash_text
 from jacaros.extension.views import Message
 from jacaros.mas.agent_host import AgentHost, Run
 

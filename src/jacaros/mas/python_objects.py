@@ -16,7 +16,7 @@ from jacaros.body.call import name_of
 from jacaros.body.values import UNKEPT, to_term, to_value
 from jacaros.env.values import Out, plain
 from jacaros.errors import InternalError
-from jacaros.extension.faults import FAULTS
+from jacaros.extension.calling import FAULTS
 from jacaros.project_modules import ProjectModules
 from jacaros.terms.text import text
 from jacaros.terms.values import Reference, Term, bare, is_list, make_list
