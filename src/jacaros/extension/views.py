@@ -9,7 +9,7 @@ from typing import Any
 
 from jacaros.asl.loader import parse_term
 from jacaros.asl.lowering import fresh_names, lower
-from jacaros.bdi.actions.messages import QUESTIONS
+from jacaros.bdi.actions.agents import QUESTIONS
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.event import Event, event_literal
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, Frame, Intention

@@ -1,9 +1,10 @@
 """The internal actions behind ``$jacaros/test_assert.asl``: what the assertion goals of tests do.
 
 An assertion that fails is told to whoever tests the agent, else to people, and the plan goes on: as on Jason, one test may
-tell several failures.
+tell several failures.  What needs a test raises `ActionError` where nobody tests the agent.
 """
 
+import operator
 from collections.abc import Callable, Iterable, Mapping
 from itertools import groupby
 from types import MappingProxyType
@@ -25,14 +26,14 @@ _SHOWN_MESSAGES = 5
 """Number of different messages that are shown."""
 
 _Function = Callable[..., None]
-_declared: dict[str, tuple[_Function, int | tuple[int, int]]] = {}
+_declared: dict[str, tuple[_Function, tuple[object, ...], int | tuple[int, int]]] = {}
 
 
-def _action(arity: int | tuple[int, int]) -> Callable[[_Function], _Function]:
-    """Declare a function as the internal action ``jacaros.`` and its name."""
+def _action(name: str, arity: int | tuple[int, int], *given: object) -> Callable[[_Function], _Function]:
+    """Declare a function, with what it is given before the arguments of a call, as the internal action ``jacaros.NAME``."""
 
     def declare(function: _Function) -> _Function:
-        _declared[f"jacaros.{function.__name__}"] = (function, arity)
+        _declared[f"jacaros.{name}"] = (function, given, arity)
         return function
 
     return declare
@@ -45,15 +46,15 @@ def actions(probes: Mapping[str, Probe]) -> dict[str, InternalAction]:
         probes: the test that looks on, by the name of the agent; looked up at each call.
     """
 
-    def bound(function: _Function) -> Callable[..., None]:
+    def bound(function: _Function, given: tuple[object, ...]) -> Callable[..., None]:
         def run(ctx: Context, *arguments: Term) -> None:
-            function(Asserting(ctx, probes.get(ctx.agent.name)), *arguments)
+            function(Asserting(ctx, probes.get(ctx.agent.name)), *given, *arguments)
 
         return run
 
     return {
-        name: InternalAction(name, bound(function), arity=arity)
-        for name, (function, arity) in _declared.items()
+        name: InternalAction(name, bound(function, given), arity=arity)
+        for name, (function, given, arity) in _declared.items()
     }
 
 
@@ -109,7 +110,7 @@ def _alike(one: Term, other: Term) -> bool:
     return one is not None and (one.name, one.arity) == (other.name, other.arity)
 
 
-@_action((2, 3))
+@_action("assert_equals", (2, 3))
 def assert_equals(call: Asserting, expected: Term, actual: Term, tolerance: Term = None) -> None:
     """``jacaros.assert_equals(Expected, Actual [,Tolerance])``; see `_same` for what is equal."""
     if tolerance is None:
@@ -122,25 +123,16 @@ def assert_equals(call: Asserting, expected: Term, actual: Term, tolerance: Term
     call.tell(passed, f"{text(expected)} +/- {text(tolerance)}", f"was {text(actual)}")
 
 
-@_action(2)
+@_action("assert_not_equals", 2)
 def assert_not_equals(call: Asserting, unwanted: Term, actual: Term) -> None:
     """``jacaros.assert_not_equals(Unwanted, Actual)``."""
     call.tell(not _same(unwanted, actual), f"anything but {text(unwanted)}", f"was {text(actual)}")
 
 
-@_action(1)
-def assert_true(call: Asserting, formula: Term) -> None:
-    """``jacaros.assert_true(Formula)``: it holds now."""
-    _assert_that(call, formula, True)
-
-
-@_action(1)
-def assert_false(call: Asserting, formula: Term) -> None:
-    """``jacaros.assert_false(Formula)``: it does not hold now."""
-    _assert_that(call, formula, False)
-
-
-def _assert_that(call: Asserting, formula: Term, wanted: bool) -> None:
+@_action("assert_true", 1, True)
+@_action("assert_false", 1, False)
+def _assert_that(call: Asserting, wanted: bool, formula: Term) -> None:
+    """The formula holds now, or does not."""
     expected = text(formula) if wanted else f"not {text(formula)}"
     try:
         passed = _holds(call.ctx, formula) is wanted
@@ -154,19 +146,10 @@ def _assert_that(call: Asserting, formula: Term, wanted: bool) -> None:
     call.tell(passed, expected, found)
 
 
-@_action(2)
-def assert_contains(call: Asserting, collection: Term, item: Term) -> None:
-    """``jacaros.assert_contains(Collection, Item)``: an element of the list or set unifies with *item*."""
-    _assert_contents(call, collection, item, True)
-
-
-@_action(2)
-def assert_not_contains(call: Asserting, collection: Term, item: Term) -> None:
-    """``jacaros.assert_not_contains(Collection, Item)``: no element of the list or set unifies with *item*."""
-    _assert_contents(call, collection, item, False)
-
-
-def _assert_contents(call: Asserting, collection: Term, item: Term, wanted: bool) -> None:
+@_action("assert_contains", 2, True)
+@_action("assert_not_contains", 2, False)
+def _assert_contents(call: Asserting, wanted: bool, collection: Term, item: Term) -> None:
+    """An element of the list, set or queue unifies with *item*, or none does."""
     items = _items(collection)
     passed = items is not None and _is_in(item, items) is wanted
     told = "is no list or set" if items is None else "does not contain it" if wanted else "contains it"
@@ -174,61 +157,53 @@ def _assert_contents(call: Asserting, collection: Term, item: Term, wanted: bool
     call.tell(passed, expected, f"{text(collection)} {told}")
 
 
-@_action(2)
-def assert_greater_than(call: Asserting, left: Term, right: Term) -> None:
-    """``jacaros.assert_greater_than(A, B)``: numbers, A > B."""
-    passed = isinstance(left, float) and isinstance(right, float) and left > right
-    call.tell(passed, f"more than {text(right)}", f"was {text(left)}")
+@_action("assert_greater_than", 2, operator.gt, "more than {}")
+@_action("assert_greater_than_equals", 2, operator.ge, "{} or more")
+def _assert_greater(
+    call: Asserting, compare: Callable[[Term, Term], bool], told: str, left: Term, right: Term
+) -> None:
+    """The arguments are numbers, and compare so."""
+    passed = isinstance(left, float) and isinstance(right, float) and compare(left, right)
+    call.tell(passed, told.format(text(right)), f"was {text(left)}")
 
 
-@_action(2)
-def assert_greater_than_equals(call: Asserting, left: Term, right: Term) -> None:
-    """``jacaros.assert_greater_than_equals(A, B)``: numbers, A >= B."""
-    passed = isinstance(left, float) and isinstance(right, float) and left >= right
-    call.tell(passed, f"{text(right)} or more", f"was {text(left)}")
-
-
-@_action(3)
+@_action("assert_between", 3)
 def assert_between(call: Asserting, value: Term, least: Term, most: Term) -> None:
     """``jacaros.assert_between(X, Least, Most)``: numbers, both bounds included."""
     passed = all(isinstance(n, float) for n in (value, least, most)) and least <= value <= most
     call.tell(passed, f"{text(least)} to {text(most)}", f"was {text(value)}")
 
 
-@_action(0)
+@_action("force_pass", 0)
 def force_pass(call: Asserting) -> None:
     """``jacaros.force_pass``: an assertion that holds."""
     call.tell(True, "")
 
 
-@_action(1)
+@_action("force_failure", 1)
 def force_failure(call: Asserting, message: Term) -> None:
     """``jacaros.force_failure(Message)``: an assertion that fails."""
     shown = str(message) if isinstance(message, str) else text(message)
     call.tell(False, "", shown)
 
 
-@_action(2)
+@_action("assert_fail", 2)
 def assert_fail(call: Asserting, goal: Term, failed: Term) -> None:
     """``jacaros.assert_fail(Goal, failed|achieved)``: how a goal that ought to fail has ended."""
     passed = text(failed) == "failed"
     call.tell(passed, f"!{text(goal)} to fail", "" if passed else "it was achieved")
 
 
-@_action((1, 2))
+@_action("fake", (1, 2))
 def fake(call: Asserting, action: Term, outcome: Term = None) -> None:
-    """``jacaros.fake(Action [,Outcome])``: the test answers this external action in place of the environment.
-
-    Raises:
-        ActionError: nobody tests this agent, or the outcome is none.
-    """
+    """``jacaros.fake(Action [,Outcome])``: the test answers this external action in place of the environment."""
     try:
         call.probe("fake_action").fakes.add(action, outcome)
     except ValueError as wrong:
         raise ActionError(str(wrong)) from None
 
 
-@_action((1, 2))
+@_action("assert_did", (1, 2))
 def assert_did(call: Asserting, action: Term, times: Term = None) -> None:
     """``jacaros.assert_did(Action [,Times])``: the agent has begun an external action that matches (so many times)."""
     acts = call.probe("assert_did").fakes.acts
@@ -240,7 +215,7 @@ def assert_did(call: Asserting, action: Term, times: Term = None) -> None:
         call.tell(float(count) == times, f"{text(times)} times {text(action)}", told)
 
 
-@_action(1)
+@_action("assert_printed", 1)
 def assert_printed(call: Asserting, part: Term) -> None:
     """``jacaros.assert_printed(Text)``: a line that the agent has printed has this in it."""
     shown = display(part)
@@ -251,7 +226,7 @@ def assert_printed(call: Asserting, part: Term) -> None:
     call.tell(any(shown in line for line in prints), f"the print {shown!r}", told)
 
 
-@_action(1)
+@_action("assert_not_did", 1)
 def assert_not_did(call: Asserting, action: Term) -> None:
     """``jacaros.assert_not_did(Action)``: the agent has begun no external action that matches."""
     acts = call.probe("assert_not_did").fakes.acts
@@ -261,48 +236,36 @@ def assert_not_did(call: Asserting, action: Term) -> None:
 # ---- the rest of the ROS graph
 
 
-@_action((2, 3))
+@_action("fake_message", (2, 3))
 def fake_message(call: Asserting, topic: Term, first: Term, second: Term = None) -> None:
-    """``jacaros.fake_message(Topic [,Type], Fields)``: somebody publishes a message.
-
-    Raises:
-        ActionError: nobody tests this agent.
-    """
+    """``jacaros.fake_message(Topic [,Type], Fields)``: somebody publishes a message."""
     type_name, fields = ("", first) if second is None else (display(first), second)
     with call.others("fake_message") as others:
         others.publish(display(topic), display(fields), type_name)
 
 
-@_action(2)
+@_action("fake_subscriber", 2)
 def fake_subscriber(call: Asserting, topic: Term, type_name: Term) -> None:
-    """``jacaros.fake_subscriber(Topic, Type)``: somebody listens to a topic.
-
-    Raises:
-        ActionError: nobody tests this agent.
-    """
+    """``jacaros.fake_subscriber(Topic, Type)``: somebody listens to a topic."""
     with call.others("fake_subscriber") as others:
         others.hear(display(topic), display(type_name))
 
 
-@_action(3)
+@_action("fake_service", 3)
 def fake_service(call: Asserting, service: Term, type_name: Term, fields: Term) -> None:
-    """``jacaros.fake_service(Name, Type, Fields)``: somebody offers a service, and gives this response.
-
-    Raises:
-        ActionError: nobody tests this agent.
-    """
+    """``jacaros.fake_service(Name, Type, Fields)``: somebody offers a service, and gives this response."""
     with call.others("fake_service") as others:
         others.answer(display(service), display(type_name), display(fields))
 
 
-@_action((2, 3))
+@_action("assert_published", (2, 3))
 def assert_published(call: Asserting, topic: Term, fields: Term, times: Term = None) -> None:
     """``jacaros.assert_published(Topic, Fields [,Times])``: the run has published such a message (so many times)."""
     with call.others("assert_published") as others:
         _tell_count(call, others.count_published, "a message on", topic, fields, times)
 
 
-@_action(1)
+@_action("assert_not_published", 1)
 def assert_not_published(call: Asserting, topic: Term) -> None:
     """``jacaros.assert_not_published(Topic)``: the run has published nothing on a topic."""
     with call.others("assert_not_published") as others:
@@ -310,7 +273,7 @@ def assert_not_published(call: Asserting, topic: Term) -> None:
         call.tell(not count, f"no message on {display(topic)}", f"there were {_listed(found)}")
 
 
-@_action((2, 3))
+@_action("assert_called", (2, 3))
 def assert_called(call: Asserting, service: Term, fields: Term, times: Term = None) -> None:
     """``jacaros.assert_called(Service, Fields [,Times])``: a faked service was asked this (so many times)."""
     with call.others("assert_called") as others:

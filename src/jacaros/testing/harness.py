@@ -202,27 +202,23 @@ class AgentHarness(OpenMind):
         """Assert that each formula holds."""
         __tracebackhide__ = True
         for formula in formulae:
-            if not self.believes(formula):
-                self._complain(f"it does not believe {formula}")
+            self._require(self.believes(formula), f"it does not believe {formula}")
 
     def assert_believes_not(self, *formulae: str) -> None:
         """Assert that none of the formulae holds."""
         __tracebackhide__ = True
         for formula in formulae:
-            if self.believes(formula):
-                self._complain(f"it believes {formula}")
+            self._require(not self.believes(formula), f"it believes {formula}")
 
     def assert_pursues(self, goal: str) -> None:
         """Assert that a goal that matches is pursued."""
         __tracebackhide__ = True
-        if not self._pursues(goal):
-            self._complain(f"it does not pursue !{goal}")
+        self._require(self._pursues(goal), f"it does not pursue !{goal}")
 
     def assert_pursues_not(self, goal: str) -> None:
         """Assert that no goal that matches is pursued."""
         __tracebackhide__ = True
-        if self._pursues(goal):
-            self._complain(f"it pursues !{goal}")
+        self._require(not self._pursues(goal), f"it pursues !{goal}")
 
     def _pursues(self, goal: str) -> bool:
         pattern = literal(goal)
@@ -231,14 +227,12 @@ class AgentHarness(OpenMind):
     def assert_idle(self) -> None:
         """Assert that it has no goal and nothing to do."""
         __tracebackhide__ = True
-        if self.goals or not self.mind.is_idle():
-            self._complain("it is not idle")
+        self._require(not self.goals and self.mind.is_idle(), "it is not idle")
 
     def assert_achieved(self, goal: PursuedGoal) -> None:
         """Assert that a goal of this test was achieved."""
         __tracebackhide__ = True
-        if not goal.achieved:
-            self._complain(f"not achieved: {goal}")
+        self._require(goal.achieved, f"not achieved: {goal}")
 
     def assert_failed(self, goal: PursuedGoal, reason: str | None = None) -> None:
         """Assert that a goal of this test failed; with a reason, that it is among those of the failure.
@@ -246,22 +240,19 @@ class AgentHarness(OpenMind):
         The reasons are terms such as ``error(no_relevant)`` and ``env_failure_reason(blocked(wall))``.
         """
         __tracebackhide__ = True
-        if not goal.failed:
-            self._complain(f"it did not fail: {goal}")
+        self._require(goal.failed, f"it did not fail: {goal}")
         if reason is not None and not any(_matches(literal(reason), each) for each in goal.reasons):
             self._complain(f"it failed for another reason than {reason}: {goal}")
 
     def assert_printed(self, part: str) -> None:
         """Assert that a printed line has this in it."""
         __tracebackhide__ = True
-        if not any(part in line for line in self.prints):
-            self._complain(f"it did not print {part!r}")
+        self._require(any(part in line for line in self.prints), f"it did not print {part!r}")
 
     def assert_printed_not(self, part: str) -> None:
         """Assert that no printed line has this in it."""
         __tracebackhide__ = True
-        if any(part in line for line in self.prints):
-            self._complain(f"it printed {part!r}")
+        self._require(not any(part in line for line in self.prints), f"it printed {part!r}")
 
     def assert_did(self, *actions: str) -> None:
         """Assert that actions that match were begun, in this order; others may have come between."""
@@ -278,8 +269,7 @@ class AgentHarness(OpenMind):
         __tracebackhide__ = True
         for action in actions:
             pattern = literal(action)
-            if any(_matches(pattern, act.term) for act in self.acts):
-                self._complain(f"it did {action}")
+            self._require(not any(_matches(pattern, act.term) for act in self.acts), f"it did {action}")
 
     def assert_sent(self, receiver: str, performative: str, content: str) -> None:
         """Assert that such a message was sent; the content is a pattern."""
@@ -317,6 +307,11 @@ class AgentHarness(OpenMind):
                 rest = [f"... and {len(shown) - _SHOWN} before"] if len(shown) > _SHOWN else []
                 lines += [f"  {title}:", *(f"    {line}" for line in (*rest, *shown[-_SHOWN:]))]
         return "\n".join(lines)
+
+    def _require(self, holds: bool, told: str) -> None:
+        __tracebackhide__ = True
+        if not holds:
+            self._complain(told)
 
     def _complain(self, told: str) -> NoReturn:
         __tracebackhide__ = True

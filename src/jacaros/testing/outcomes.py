@@ -107,20 +107,14 @@ class SuiteOutcome:
         return self.suite.error is None and all(outcome.passed for outcome in self.outcomes)
 
 
-def plain(text: str, kind: str) -> str:
-    """No colours."""
-    del kind
-    return text
-
-
-def line_of(outcome: Outcome, paint: Paint = plain, timed: bool = False) -> str:
+def line_of(outcome: Outcome, paint: Paint, timed: bool) -> str:
     """The line of one test; *timed* with the time that it took."""
     verdict = paint("ok    ", "passed") if outcome.passed else paint("FAILED", "failed")
     took = paint(f"  {outcome.seconds:.2f} s", "quiet") if timed else ""
     return f"  {verdict}  {outcome.test.name}{took}"
 
 
-def failures(suites: Sequence[SuiteOutcome], paint: Paint = plain) -> Iterator[str]:
+def failures(suites: Sequence[SuiteOutcome], paint: Paint) -> Iterator[str]:
     """The lines about all that failed."""
     for suite in suites:
         if suite.suite.error is not None:
@@ -143,7 +137,7 @@ def slowest(suites: Sequence[SuiteOutcome], number: int) -> Iterator[str]:
         yield f"  {outcome.seconds:6.2f} s  {suite.path}::{outcome.test.name}{simulated}"
 
 
-def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint = plain) -> str:
+def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint) -> str:
     """The last line: the counts."""
     outcomes = [outcome for suite in suites for outcome in suite.outcomes]
     failed = sum(not outcome.passed for outcome in outcomes)

@@ -6,7 +6,6 @@ from jacaros.bdi.actions import (  # noqa: F401 - each registers its actions
     collections,
     goals,
     lists,
-    messages,
     output,
     plans,
     strings,
