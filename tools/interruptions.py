@@ -50,7 +50,7 @@ rospy.spin()
 MODULES = (
     "jacaros.mas.launch",
     "jacaros.mas.surroundings",
-    "jacaros.artifacts.ros.velocity",
+    "jacaros.artifacts.robots.velocity",
     "jacaros.sim.node",
 )
 QUIET = 0.3
@@ -81,7 +81,7 @@ class Velocities:
 
 def become_agents(kind: str, program: Path, pipe: int) -> int:
     """Run the agents, which drive until they are interrupted; the exit code."""
-    from jacaros.artifacts.ros.maneuver import Timed
+    from jacaros.artifacts.robots.maneuver import Timed
     from jacaros.mas.console import StandardConsole
     from jacaros.mas.launch import launch
     from jacaros.mas.options import RunOptions

@@ -15,9 +15,9 @@ from pathlib import Path
 import click
 
 import jacaros.bdi.actions.standard
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.registry import BUILT_IN
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
-from jacaros.artifacts.ros.wheels import WheeledArtifact
+from jacaros.artifacts.robots.velocity import WheeledArtifact
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.env import Artifact, describe

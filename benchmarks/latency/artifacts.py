@@ -1,6 +1,6 @@
 """The other half of the echo: one operation that publishes one command."""
 
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import operation
 
 

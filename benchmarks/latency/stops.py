@@ -10,7 +10,7 @@ import time
 from itertools import pairwise
 from typing import Any
 
-from jacaros.artifacts.ros.odometer import Odometer
+from jacaros.artifacts.robots.odometry import Odometer
 from jacaros.bdi.mind import Mind
 from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost

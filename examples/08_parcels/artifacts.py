@@ -1,6 +1,6 @@
 """The post: which parcels wait where, and which are on the robot."""
 
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import Atom, operation
 
 

@@ -19,7 +19,7 @@ from typing import Any
 from peer_actions import ActionCommands
 from peer_graph import GraphCommands
 
-from jacaros.artifacts.ros.matching import Matching
+from jacaros.artifacts.kit.connection import Matching
 from jacaros.clock import Clock, WallClock, run
 from jacaros.ros.backend import Sample, TopicEvent
 from jacaros.ros.handoff import post

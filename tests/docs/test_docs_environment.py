@@ -5,9 +5,7 @@ import re
 import pytest
 from pages import ROOT, blocks
 
-from jacaros.artifacts.tools.barrier import Barrier
-from jacaros.artifacts.tools.clock import Clock
-from jacaros.artifacts.tools.latch import Latch
+from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.body.actions import keys
 from jacaros.env import Artifact, describe
 from jacaros.env.default.blackboard import Blackboard

@@ -38,7 +38,7 @@ def sleep_on(n: float) -> None:
     time.sleep(1000)
 """
 ARTIFACTS = """
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import Artifact, operation
 
 class Endless(Artifact):

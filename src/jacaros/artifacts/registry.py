@@ -6,22 +6,20 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 
-from jacaros.artifacts.ros.battery import ArtSimBattery
-from jacaros.artifacts.ros.cleaning import ArtCleaning
-from jacaros.artifacts.ros.connection_artifact import ArtRos
-from jacaros.artifacts.ros.laser import ArtBaseScan, ArtScan
-from jacaros.artifacts.ros.map import ArtSlamData
-from jacaros.artifacts.ros.odometry import ArtOdometry, ArtOdometryOnDemand
-from jacaros.artifacts.ros.tutorial import ArtTutorial
-from jacaros.artifacts.ros.velocity import (
+from jacaros.artifacts.robots.battery import ArtSimBattery
+from jacaros.artifacts.robots.connection_artifact import ArtRos
+from jacaros.artifacts.robots.laser import ArtBaseScan, ArtScan
+from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
+from jacaros.artifacts.robots.velocity import (
     ArtCmdVel,
     ArtCmdVelAndOdometry,
     ArtCmdVelMux,
     ArtCmdVelMuxAndOdometry,
 )
-from jacaros.artifacts.tools.barrier import Barrier
-from jacaros.artifacts.tools.clock import Clock
-from jacaros.artifacts.tools.latch import Latch
+from jacaros.artifacts.thesis.cleaning import ArtCleaning
+from jacaros.artifacts.thesis.map import ArtSlamData
+from jacaros.artifacts.thesis.tutorial import ArtTutorial
+from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
 from jacaros.env.default.blackboard import Blackboard
 from jacaros.env.default.console import Console

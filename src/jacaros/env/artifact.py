@@ -296,7 +296,7 @@ class Artifact:
     def has_untaken(self, name: str) -> bool:
         """Whether an observer has still to take up what it was told about properties called *name*.
 
-        A sensor that changes faster than its observers think asks this first; see `jacaros.artifacts.ros.reading`.
+        A sensor that changes faster than its observers think asks this first; see `jacaros.artifacts.kit.reading`.
         """
         return self._steps.publication.has_untaken(name)
 

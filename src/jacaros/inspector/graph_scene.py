@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.artifacts.ros.odometer import not_finite
+from jacaros.artifacts.robots.odometry import not_finite
 from jacaros.clock import Clock
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.robot_view import UNKNOWN, RobotView

@@ -5,8 +5,8 @@ from typing import Any, ClassVar
 from fake_actions import FakeServer
 from robot_lab import Lab, Run
 
-from jacaros.artifacts.ros.options import number, positive
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.options import number, positive
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import Out, internal_operation, operation
 from jacaros.ros.errors import CallTimedOut
 

@@ -8,7 +8,7 @@ from fake_actions import FakeServer
 from navigator import Navigator, begun, failed, succeeded
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.acting import ACCEPTANCE, error_code, missing_number
+from jacaros.artifacts.kit.acting import ACCEPTANCE, error_code, missing_number
 from jacaros.env import Out, Structure
 from jacaros.ros.action import GoalStatus
 

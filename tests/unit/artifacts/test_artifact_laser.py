@@ -5,7 +5,7 @@ import math
 import pytest
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.laser import ArtBaseScan, ArtScan, sampled
+from jacaros.artifacts.robots.laser import ArtBaseScan, ArtScan, sampled
 from jacaros.env import Out, Structure
 
 

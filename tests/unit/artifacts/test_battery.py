@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.battery import ArtSimBattery, diagnosis
-from jacaros.artifacts.ros.velocity import ArtCmdVelMuxAndOdometry
+from jacaros.artifacts.robots.battery import ArtSimBattery, diagnosis
+from jacaros.artifacts.robots.velocity import ArtCmdVelMuxAndOdometry
 from jacaros.env import Out, Structure
 from jacaros.ros.backend import Backend
 

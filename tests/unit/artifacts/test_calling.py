@@ -4,7 +4,7 @@ from typing import Any
 
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import Out, operation
 
 TRIGGER, SET_BOOL = "std_srvs/srv/Trigger", "std_srvs/srv/SetBool"

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.cleaning import ArtCleaning
+from jacaros.artifacts.thesis.cleaning import ArtCleaning
 from jacaros.clock import VirtualClock, run
 from jacaros.env import Environment, Out, Structure
 

@@ -7,7 +7,7 @@ from typing import Any
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts.registry import find_type
-from jacaros.artifacts.ros.connection_artifact import ArtRos
+from jacaros.artifacts.robots.connection_artifact import ArtRos
 from jacaros.clock import VirtualClock, run
 from jacaros.env import Environment, Out, Structure
 from jacaros.ros.open import open_backend

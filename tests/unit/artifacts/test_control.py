@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from jacaros.artifacts.ros.control import (
+from jacaros.artifacts.robots.control import (
     Limits,
     Line,
     Pose,
@@ -15,8 +15,8 @@ from jacaros.artifacts.ros.control import (
     heading_of,
     unwrapped,
 )
-from jacaros.artifacts.ros.journey import DriveTo, Sequence, TurnTo, go_to
-from jacaros.artifacts.ros.maneuver import Maneuver, Straight, Timed, Turn
+from jacaros.artifacts.robots.journey import DriveTo, Sequence, TurnTo, go_to
+from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
 
 LIMITS = Limits(speed=0.65, turn_speed=1.0)
 ORIGIN = Pose(0.0, 0.0, 0.0)

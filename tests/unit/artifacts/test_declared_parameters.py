@@ -2,7 +2,7 @@
 
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.ros.parameter import Declaration
 
 

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
-from jacaros.artifacts.ros.odometry import ArtOdometry
-from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.artifacts.robots.odometry import ArtOdometry
+from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.ros.backends.memory_faults import Fate, both, delayed, dropped, duplicated
 
 

@@ -6,13 +6,12 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, Watcher, in_lab
 
-from jacaros.artifacts.ros.battery import ArtSimBattery
-from jacaros.artifacts.ros.faults import SILENCE, Faults
-from jacaros.artifacts.ros.laser import ArtBaseScan
-from jacaros.artifacts.ros.odometry import ArtOdometry
-from jacaros.artifacts.ros.stamps import FAR, Stamps
-from jacaros.artifacts.ros.tutorial import ArtTutorial
-from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.artifacts.kit.faults import FAR, SILENCE, Faults, Stamps
+from jacaros.artifacts.robots.battery import ArtSimBattery
+from jacaros.artifacts.robots.laser import ArtBaseScan
+from jacaros.artifacts.robots.odometry import ArtOdometry
+from jacaros.artifacts.robots.velocity import ArtCmdVel
+from jacaros.artifacts.thesis.tutorial import ArtTutorial
 from jacaros.clock import VirtualClock
 from jacaros.env import Atom, Structure
 

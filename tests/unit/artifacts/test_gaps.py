@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
-from jacaros.artifacts.ros.lane import GUARD_TRIPPED
-from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.artifacts.robots.lane import GUARD_TRIPPED
+from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.clock import VirtualClock
 from jacaros.env.values import Structure
 from jacaros.ros.backends.memory_faults import delayed, dropped

@@ -1,6 +1,6 @@
 """The lane: one motion at a time, in the order of the requests, and no wake-up is lost."""
 
-from jacaros.artifacts.ros.lane import Lane, Ticket, lane_of
+from jacaros.artifacts.robots.lane import Lane, Ticket, lane_of
 from jacaros.clock import VirtualClock, run
 from jacaros.ros.open import open_backend
 

@@ -8,8 +8,7 @@ from itertools import pairwise
 import pytest
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.grid import Cell, route
-from jacaros.artifacts.ros.map import ArtSlamData
+from jacaros.artifacts.thesis.map import ArtSlamData, Cell, route
 from jacaros.env import ArtifactId, Atom, Out, Structure
 
 

@@ -6,9 +6,9 @@ from typing import Any, cast
 import pytest
 from robot_lab import STANDSTILL, Lab, in_lab
 
-from jacaros.artifacts.ros.cleaning import ArtCleaning
-from jacaros.artifacts.ros.matching import SETTLING, TURN, Matching
-from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.artifacts.kit.connection import SETTLING, TURN, Matching
+from jacaros.artifacts.robots.velocity import ArtCmdVel
+from jacaros.artifacts.thesis.cleaning import ArtCleaning
 from jacaros.env import Structure
 from jacaros.ros.backend import DISCOVERY, Publisher, Sample
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 from robot_lab import STANDSTILL, Lab, apart, assert_at, in_lab
 
-from jacaros.artifacts.ros.velocity import (
+from jacaros.artifacts.robots.velocity import (
     ArtCmdVel,
     ArtCmdVelAndOdometry,
     ArtCmdVelMux,

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.odometry import ArtOdometry, ArtOdometryOnDemand
-from jacaros.artifacts.ros.velocity import ArtCmdVel
+from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
+from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.env import OperationFailed, Out, Structure
 from jacaros.ros.backends.memory import MemoryBackend
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
-from jacaros.artifacts.ros.velocity import ArtCmdVel, ArtCmdVelMux, ArtCmdVelMuxAndOdometry
+from jacaros.artifacts.robots.velocity import ArtCmdVel, ArtCmdVelMux, ArtCmdVelMuxAndOdometry
 from jacaros.env import Structure
 
 

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from jacaros.artifacts.ros.options import WrongOption, read_arguments
-from jacaros.artifacts.ros.reading import READING_OPTIONS, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.options import WrongOption, read_arguments
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, Values
 from jacaros.clock import VirtualClock, run
 from jacaros.env import Atom, Structure
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.artifacts.registry import BUILT_IN, find_type, type_finder
-from jacaros.artifacts.ros.odometry import ArtOdometry, ArtOdometryOnDemand
+from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.clock import VirtualClock, run
 from jacaros.env import Artifact, Environment, InvalidArtifact, UnknownArtifactType
 from jacaros.project_modules import ModuleUnreadable
@@ -46,7 +46,7 @@ def test_all_artifacts_that_the_thesis_names_are_there() -> None:
 
 
 def test_a_dotted_python_path_is_imported() -> None:
-    assert find_type("jacaros.artifacts.ros.odometry.ArtOdometryOnDemand") is ArtOdometryOnDemand
+    assert find_type("jacaros.artifacts.robots.odometry.ArtOdometryOnDemand") is ArtOdometryOnDemand
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_the_artifacts_file_of_a_project_is_searched_before_the_built_in_ones(tm
     assert find("Counter").SIZE == 1  # type: ignore[attr-defined]
     assert find("tools.Counter") is find("Counter")
     assert find("ArtOdometry") is not ArtOdometry
-    assert find("jacaros.artifacts.ros.odometry.ArtOdometry") is ArtOdometry
+    assert find("jacaros.artifacts.robots.odometry.ArtOdometry") is ArtOdometry
     with pytest.raises(UnknownArtifactType, match="did you mean Counter"):
         find("Countre")
 

@@ -5,7 +5,7 @@ from fake_actions import FakeServer
 from navigator import Navigator, begun, failed, succeeded, suspended
 from robot_lab import Lab, in_lab
 
-from jacaros.artifacts.ros.acting import ENDING
+from jacaros.artifacts.kit.acting import ENDING
 from jacaros.env import Structure
 from jacaros.ros.action import GoalStatus
 

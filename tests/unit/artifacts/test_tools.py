@@ -3,9 +3,7 @@
 import pytest
 
 from jacaros.artifacts.registry import find_type
-from jacaros.artifacts.tools.barrier import Barrier
-from jacaros.artifacts.tools.clock import Clock
-from jacaros.artifacts.tools.latch import Latch
+from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.clock import VirtualClock, run
 from jacaros.env import Artifact, ArtifactId, Environment, Observation, OperationOutcome, OperationRequest
 

@@ -3,6 +3,10 @@
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
+from jacaros.artifacts.kit.connection import MATCH_OPTIONS
+from jacaros.artifacts.kit.options import text
+from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
 from jacaros.artifacts.mapping.errors import MappingError
@@ -15,10 +19,6 @@ from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods
 from jacaros.artifacts.mapping.own_parameters import OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.type_search import TypeSearch
-from jacaros.artifacts.ros.matching import MATCH_OPTIONS
-from jacaros.artifacts.ros.options import text
-from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
 from jacaros.env.artifact import internal_operation
 from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.yaml_nodes import Problem, shown

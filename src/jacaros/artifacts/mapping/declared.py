@@ -5,9 +5,9 @@ from enum import StrEnum
 from pathlib import Path as FilePath
 from typing import NamedTuple
 
+from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
-from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
 from jacaros.yaml_nodes import Problem

@@ -3,10 +3,10 @@
 import dataclasses
 import itertools
 
+from jacaros.artifacts.kit.reading import Outlet, Reading
 from jacaros.artifacts.mapping.declared import TopicPart
 from jacaros.artifacts.mapping.extracting import Row
 from jacaros.artifacts.mapping.host import Host
-from jacaros.artifacts.ros.reading import Outlet, Reading
 from jacaros.clock import Timer
 from jacaros.trace import Cause
 

@@ -3,16 +3,15 @@
 import dataclasses
 from typing import Any
 
+from jacaros.artifacts.kit.faults import Faults, Stamps
+from jacaros.artifacts.kit.reading import Reading
+from jacaros.artifacts.kit.sensing_artifact import RangeOfView
 from jacaros.artifacts.mapping.declared import TopicPart, Written
 from jacaros.artifacts.mapping.elements import Elements
 from jacaros.artifacts.mapping.extracting import Extract, Row, extractor
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.taking import Unshowable
 from jacaros.artifacts.mapping.type_search import TypeSearch
-from jacaros.artifacts.ros.faults import Faults
-from jacaros.artifacts.ros.reading import Reading
-from jacaros.artifacts.ros.stamps import Stamps
-from jacaros.artifacts.ros.view import RangeOfView
 from jacaros.clock import Timer
 from jacaros.env.values import Structure
 from jacaros.ros.backend import Sample

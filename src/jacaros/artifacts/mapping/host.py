@@ -3,11 +3,11 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
 
+from jacaros.artifacts.kit.connection import Matching
+from jacaros.artifacts.kit.faults import Faults
+from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
 from jacaros.artifacts.mapping.extracting import Row
-from jacaros.artifacts.ros.faults import Faults
-from jacaros.artifacts.ros.matching import Matching
-from jacaros.artifacts.ros.reading import Reading, ReadingPolicy, Values
 from jacaros.clock import Clock
 from jacaros.env.execution import OperationExecution
 from jacaros.ros.action import ActionClient

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import suppress
 
+from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.checking import message_types
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
@@ -21,7 +22,6 @@ from jacaros.artifacts.mapping.interfaces import Interfaces, stored_interfaces
 from jacaros.artifacts.mapping.operation_methods import unlike, values_of
 from jacaros.artifacts.mapping.paths import WrongPath, follow
 from jacaros.artifacts.mapping.value_words import with_unit, word_for_field, word_for_value
-from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
 from jacaros.ros.guarded import VELOCITIES

@@ -4,6 +4,8 @@ import asyncio
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+from jacaros.artifacts.kit.acting import error_code, error_text
+from jacaros.artifacts.kit.services import MESSAGES
 from jacaros.artifacts.mapping.checking import check_answer, message_types
 from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
 from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
@@ -16,8 +18,6 @@ from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
 from jacaros.artifacts.mapping.taking import Take, Unshowable, taker
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.artifacts.ros.acting import error_code, error_text
-from jacaros.artifacts.ros.calling import MESSAGES
 from jacaros.env.artifact import Out
 from jacaros.env.values import Atom, plain
 from jacaros.ros.action import ActionClient

@@ -4,13 +4,13 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from jacaros.artifacts.kit.acting import missing_number
+from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.artifacts.ros.acting import missing_number
-from jacaros.artifacts.ros.lane import GUARD_TRIPPED, Lane, Ticket, lane_of
-from jacaros.artifacts.ros.matching import Matching
+from jacaros.artifacts.robots.lane import GUARD_TRIPPED, Lane, Ticket, lane_of
 from jacaros.env.artifact import Out
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch

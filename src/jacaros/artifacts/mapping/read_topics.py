@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Iterator
 
+from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.declared import (
     FieldPart,
     FramePart,
@@ -15,7 +16,6 @@ from jacaros.artifacts.mapping.read_fields import ANGLES, path_of, place_of, rea
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, is_type, ros_name, type_written
 from jacaros.artifacts.mapping.read_qos import read_qos
 from jacaros.artifacts.mapping.units import UNITS
-from jacaros.artifacts.ros.reading import ReadingPolicy
 from jacaros.env.values import Atom
 from jacaros.yaml_nodes import Node, Problem
 

@@ -9,7 +9,7 @@ from robot_lab import STANDSTILL, Lab, in_lab
 
 from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
-from jacaros.artifacts.ros.lane import lane_of
+from jacaros.artifacts.robots.lane import lane_of
 from jacaros.env import ArtifactId, Atom, Out, Structure
 from jacaros.ros.backend import DISCOVERY
 from jacaros.ros.guarded import guarded_by

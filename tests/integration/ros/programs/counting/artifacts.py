@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env import Out, internal_operation, operation
 
 

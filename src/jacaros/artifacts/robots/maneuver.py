@@ -8,7 +8,7 @@ between, otherwise from where the robot is, with the distance or angle that rema
 import math
 from typing import Protocol
 
-from jacaros.artifacts.ros.control import (
+from jacaros.artifacts.robots.control import (
     ANGLE_TOLERANCE,
     DISTANCE_TOLERANCE,
     STANDSTILL,

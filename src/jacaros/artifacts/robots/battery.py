@@ -4,9 +4,9 @@ import math
 from functools import partial
 from typing import ClassVar
 
-from jacaros.artifacts.ros.options import not_negative, number, one_of, positive, text
-from jacaros.artifacts.ros.reading import Outlet, Reading, ReadingPolicy
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
+from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import constant

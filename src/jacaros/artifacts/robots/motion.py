@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from jacaros.artifacts.ros.control import STANDSTILL, Limits, Pose, Velocity, distance
-from jacaros.artifacts.ros.lane import GUARD_TRIPPED, Lane, Ticket
-from jacaros.artifacts.ros.maneuver import Maneuver
-from jacaros.artifacts.ros.matching import Matching
-from jacaros.artifacts.ros.odometer import Odometer
+from jacaros.artifacts.kit.connection import Matching
+from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, distance
+from jacaros.artifacts.robots.lane import GUARD_TRIPPED, Lane, Ticket
+from jacaros.artifacts.robots.maneuver import Maneuver
+from jacaros.artifacts.robots.odometry import Odometer
 from jacaros.env.values import Atom, Structure
 
 STALE = 0.5

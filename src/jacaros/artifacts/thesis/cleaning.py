@@ -2,8 +2,8 @@
 
 from typing import ClassVar
 
-from jacaros.artifacts.ros.matching import MATCH_OPTIONS
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.connection import MATCH_OPTIONS
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Publisher
 

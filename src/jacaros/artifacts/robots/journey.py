@@ -5,7 +5,7 @@ Their goals are absolute, so after a rest they simply go on from wherever the ro
 
 import math
 
-from jacaros.artifacts.ros.control import (
+from jacaros.artifacts.robots.control import (
     STANDSTILL,
     Limits,
     Pose,
@@ -14,7 +14,7 @@ from jacaros.artifacts.ros.control import (
     distance,
     unwrapped,
 )
-from jacaros.artifacts.ros.maneuver import PERIOD, Maneuver, Straight, Turn
+from jacaros.artifacts.robots.maneuver import PERIOD, Maneuver, Straight, Turn
 
 ARRIVED = 0.015
 """`DriveTo` is at its point within so many metres."""

@@ -1,13 +1,81 @@
-"""``ArtSlamData``: the ground as labelled cells, of which an agent is told what lies in its range of view."""
+"""``ArtSlamData``: the ground as labelled cells, of which an agent is told what lies in its range of view, and routes over
+them.
+"""
 
+import heapq
 import math
+from collections.abc import Collection, Iterator
 from typing import ClassVar
 
-from jacaros.artifacts.ros.grid import Cell, route
-from jacaros.artifacts.ros.options import text
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.options import text
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.env.values import Atom, Structure
+
+Cell = tuple[int, int]
+
+_DIAGONAL = math.sqrt(2.0)
+
+
+def route(free: Collection[Cell], start: Cell, goal: Cell) -> list[Cell] | None:
+    """Shortest way from *start* to *goal* over *free* cells, by A* with eight neighbours.
+
+    A diagonal step needs both cells beside it free, so that a robot does not cut corners.  Start and goal
+    count as free.  Of several shortest ways the same one is found each time.
+
+    Args:
+        free: cells that may be entered; a set for speed.
+        start: first cell of the way.
+        goal: last cell of the way.
+
+    Returns:
+        All cells from start to goal, both included; None when there is no way.
+    """
+    open_cells: list[tuple[float, float, Cell]] = [(_octile(start, goal), 0.0, start)]
+    costs = {start: 0.0}
+    came_from: dict[Cell, Cell] = {}
+    while open_cells:
+        _, cost, cell = heapq.heappop(open_cells)
+        if cell == goal:
+            return _way(came_from, goal)
+        if cost > costs[cell]:
+            continue
+        for neighbour, length in _steps(free, cell, start, goal):
+            better = cost + length
+            if better < costs.get(neighbour, math.inf) - 1e-9:
+                costs[neighbour] = better
+                came_from[neighbour] = cell
+                heapq.heappush(open_cells, (better + _octile(neighbour, goal), better, neighbour))
+    return None
+
+
+def _steps(free: Collection[Cell], cell: Cell, start: Cell, goal: Cell) -> Iterator[tuple[Cell, float]]:
+    def passable(candidate: Cell) -> bool:
+        return candidate in free or candidate in (start, goal)
+
+    x, y = cell
+    for dx in (-1, 0, 1):
+        for dy in (-1, 0, 1):
+            if (dx, dy) == (0, 0) or not passable((x + dx, y + dy)):
+                continue
+            if dx and dy:
+                if passable((x + dx, y)) and passable((x, y + dy)):
+                    yield (x + dx, y + dy), _DIAGONAL
+            else:
+                yield (x + dx, y + dy), 1.0
+
+
+def _octile(a: Cell, b: Cell) -> float:
+    dx, dy = abs(a[0] - b[0]), abs(a[1] - b[1])
+    return max(dx, dy) + (_DIAGONAL - 1.0) * min(dx, dy)
+
+
+def _way(came_from: dict[Cell, Cell], goal: Cell) -> list[Cell]:
+    way = [goal]
+    while way[-1] in came_from:
+        way.append(came_from[way[-1]])
+    return way[::-1]
+
 
 GOAL = "goal"
 """Label of the cell to which `getRoute` leads when no other is named."""

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import ClassVar
 
-from jacaros.artifacts.ros.faults import Header
-from jacaros.artifacts.ros.options import positive, text
-from jacaros.artifacts.ros.reading import READING_OPTIONS, Reading, ReadingPolicy
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.faults import Header
+from jacaros.artifacts.kit.options import positive, text
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.qos import SENSOR_DATA

@@ -21,7 +21,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from jacaros.artifacts.ros.options import Reader, bands, one_of, positive, yes_or_no
+from jacaros.artifacts.kit.options import Reader, bands, one_of, positive, yes_or_no
 from jacaros.clock import Clock, Timer
 from jacaros.ros.waiting import within
 from jacaros.trace import Cause

@@ -4,13 +4,10 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, ClassVar, Protocol, TypeVar
 
-from jacaros.artifacts.ros.connection import Connection
-from jacaros.artifacts.ros.faults import Faults
-from jacaros.artifacts.ros.listener import Listener
-from jacaros.artifacts.ros.matching import MATCH_TIMEOUT, Matching
-from jacaros.artifacts.ros.missing import MissingTopic
-from jacaros.artifacts.ros.offering import Offer
-from jacaros.artifacts.ros.options import Reader, WrongOption, read_arguments, text, watching
+from jacaros.artifacts.kit.connection import MATCH_TIMEOUT, Connection, Matching, MissingTopic
+from jacaros.artifacts.kit.faults import Faults, Listener
+from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
+from jacaros.artifacts.kit.services import Offer
 from jacaros.env.artifact import Artifact, internal_operation
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.operation import marks_of
@@ -45,7 +42,7 @@ C = TypeVar("C", bound=Closable)
 
 
 class ConnectedArtifact(Artifact):
-    """An artifact whose topics and services close with it; see `jacaros.artifacts.ros.ros_artifact.RosArtifact`.
+    """An artifact whose topics and services close with it; see `jacaros.artifacts.kit.ros_artifact.RosArtifact`.
 
     Attributes:
         known_options: options of the class with their readers; those of the parent classes count too.
@@ -276,7 +273,7 @@ class ConnectedArtifact(Artifact):
             name: below the robot's name, such as ``take_order``.
             type_name: such as ``std_srvs/srv/Trigger``.
             handler: an `internal_operation` of this artifact with two parameters, the request and the
-                `jacaros.artifacts.ros.offering.Reply`; see `jacaros.artifacts.ros.offering` for what its failure
+                `jacaros.artifacts.kit.services.Reply`; see `jacaros.artifacts.kit.services` for what its failure
                 means.  Another function takes the request, gives the response, and stands outside of all operations.
         """
         offer = self._offer(handler)
@@ -295,7 +292,7 @@ class ConnectedArtifact(Artifact):
             name: below the robot's name, such as ``deliver``.
             type_name: such as ``nav2_msgs/action/NavigateToPose``.
             execute: an `internal_operation` with two parameters, the `jacaros.ros.action.ServerGoal` and the
-                `jacaros.artifacts.ros.offering.Reply`; or another function as `jacaros.ros.action.Execute`.
+                `jacaros.artifacts.kit.services.Reply`; or another function as `jacaros.ros.action.Execute`.
             policy: which goals are accepted, and whether a newer one takes over.
         """
         offer = self._offer(execute)

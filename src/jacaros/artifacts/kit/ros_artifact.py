@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.artifacts.ros.acting import Conduct, GoalFailed, Pursuit, Suspending, Switch, missing_number
-from jacaros.artifacts.ros.calling import CallFailure, call
-from jacaros.artifacts.ros.sensing_artifact import SensingArtifact
+from jacaros.artifacts.kit.acting import Conduct, GoalFailed, Pursuit, Suspending, Switch, missing_number
+from jacaros.artifacts.kit.sensing_artifact import SensingArtifact
+from jacaros.artifacts.kit.services import CallFailure, call
 from jacaros.env.errors import InvalidArtifact
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Client

@@ -4,8 +4,8 @@ import math
 from collections.abc import Awaitable
 from typing import ClassVar, NoReturn, TypeVar
 
-from jacaros.artifacts.ros.options import positive
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.options import positive
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.env.values import Atom, Structure
 from jacaros.ros.errors import (

@@ -1,11 +1,12 @@
-"""The part of an artifact that lets properties follow sensors."""
+"""The part of an artifact that lets properties follow sensors: readings, and what lies in a robot's range of view."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from functools import partial
 
-from jacaros.artifacts.ros.connected_artifact import ConnectedArtifact
-from jacaros.artifacts.ros.faults import Faults
-from jacaros.artifacts.ros.reading import Outlet, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.connected_artifact import ConnectedArtifact
+from jacaros.artifacts.kit.faults import Faults
+from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy, Values
 from jacaros.env.artifact import internal_operation
 from jacaros.trace import Cause
 
@@ -14,7 +15,7 @@ FIRST_MESSAGE = 5.0
 
 
 class SensingArtifact(ConnectedArtifact):
-    """An artifact with readings of sensors; see `jacaros.artifacts.ros.ros_artifact.RosArtifact`."""
+    """An artifact with readings of sensors; see `jacaros.artifacts.kit.ros_artifact.RosArtifact`."""
 
     _together: "list[tuple[str, Values, Callable[[], None]]] | None" = None
 
@@ -90,7 +91,7 @@ class SensingArtifact(ConnectedArtifact):
 
     @internal_operation
     def show_elements(self, name: str, elements: object) -> None:
-        """Have one property *name* for each of some tuples of values, and none of those before; see `view`.
+        """Have one property *name* for each of some tuples of values, and none of those before; see `RangeOfView`.
 
         An element that was shown before gives no event.
         """
@@ -125,3 +126,61 @@ class SensingArtifact(ConnectedArtifact):
         """Give the property *name* the `newest` values, equal to the old ones or not."""
         await self.newest(reading, missing)
         self._show_values(name, reading.passed())
+
+
+MOVED = 0.01
+"""Metres that a robot must have moved before what is in view is looked at anew."""
+
+Place = Callable[[Values], tuple[float, float]]
+"""Where an element lies: x and y in metres, in the frame of the robot's position."""
+
+
+def first_two(element: Values) -> tuple[float, float]:
+    """The place of an element whose first two values are x and y."""
+    x, y = element[:2]
+    assert isinstance(x, int | float)
+    assert isinstance(y, int | float)
+    return float(x), float(y)
+
+
+class RangeOfView:
+    """The elements of the newest message that lie within a range of the robot.
+
+    Until the robot's position is known nothing is in view.
+
+    Args:
+        reach: metres; an element just so far away is in view.
+        show: takes the elements in view, in the order of the message, whenever they have changed.
+        place: where an element lies.
+    """
+
+    def __init__(
+        self, reach: float, show: Callable[[list[Values], Cause | None], None], place: Place = first_two
+    ) -> None:
+        self._reach, self._show, self._place = reach, show, place
+        self._elements: list[tuple[float, float, Values]] = []
+        self._here: tuple[float, float] | None = None
+        self._shown: list[Values] = []
+
+    def take(self, elements: Iterable[Values], cause: Cause | None = None) -> None:
+        """Take the elements of a message; one whose place is not finite is never in view."""
+        self._elements = [(*self._place(each), each) for each in elements]
+        self._look(cause)
+
+    def stand(self, x: float, y: float, cause: Cause | None = None) -> None:
+        """Be told where the robot is."""
+        before = self._here
+        if before is None or math.dist(before, (x, y)) > MOVED:
+            self._here = (x, y)
+            self._look(cause)
+
+    def _look(self, cause: Cause | None) -> None:
+        if self._here is None:
+            return
+        here_x, here_y = self._here
+        seen = [
+            element for x, y, element in self._elements if math.hypot(x - here_x, y - here_y) <= self._reach
+        ]
+        if seen != self._shown:
+            self._shown = seen
+            self._show(seen, cause)

@@ -2,9 +2,9 @@
 
 from typing import Any, ClassVar
 
-from jacaros.artifacts.ros.options import positive, text
-from jacaros.artifacts.ros.reading import READING_OPTIONS, Reading, ReadingPolicy
-from jacaros.artifacts.ros.ros_artifact import RosArtifact
+from jacaros.artifacts.kit.options import positive, text
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Client, Sample
 
