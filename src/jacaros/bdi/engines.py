@@ -19,7 +19,6 @@ def new_engine(
     """What carries out plans and rules.
 
     Args:
-        actions: the internal actions that they may call.
         plain: without generated code; as `is_plain` says unless given.
         cache: where generated code is kept from run to run; None for nowhere.
     """

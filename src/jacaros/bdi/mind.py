@@ -65,10 +65,6 @@ class Mind(Circumstance):
     """A mind.
 
     Args:
-        name: of the agent, unique in its system.
-        program: what it begins with.
-        architecture: the port to its host.
-        options: how it handles events.
         actions: internal actions; the standard ones unless given.
         plans: those of the program with the same actions, if another agent has had them made already.
     """
@@ -239,12 +235,7 @@ class Mind(Circumstance):
             self.incoming.called = True
             self.architecture.ready()
 
-    def has_untaken(self, name: str) -> bool:
-        """Whether a change of a belief called *name* from the environment still waits to be taken up.
-
-        It is taken up when the plan for its event has ended, or waits for something itself.
-        """
-        return perceiving.is_untaken(self, name)
+    has_untaken = perceiving.is_untaken
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """An external action ended; an id that is not pending (any more) is ignored."""
@@ -276,10 +267,7 @@ class Mind(Circumstance):
         del self.trail[mark:]
         return None
 
-    def shut_down_in(self, milliseconds: float) -> None:
-        """The agent will be ended after so many milliseconds; its plans may prepare for it."""
-        meta_events.shutting_down(self, milliseconds)
-
+    shut_down_in = meta_events.shutting_down
     observe_rest = meta_events.observe_rest  # pyright: ignore[reportAssignmentType]
     drop_wait = waits.drop  # pyright: ignore[reportAssignmentType]
     notify_event_waits = waits.notify_event_waits  # pyright: ignore[reportAssignmentType]
@@ -431,11 +419,7 @@ class Mind(Circumstance):
         self.messages += 1
         return message_id(self.messages, self.name)
 
-    def test_for(
-        self, message: SpeechAct, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...]
-    ) -> None:
-        """Answer a question by a plan for its test goal; whatever fails is answered with false."""
-        answer_by_plan(self, message, symbol, arguments, annotations)
+    test_for = answer_by_plan
 
 
 def _no_goal(term: Term) -> str:

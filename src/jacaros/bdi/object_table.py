@@ -28,7 +28,6 @@ class Writer:
     """Puts objects into a table.
 
     Args:
-        mind: whose objects they are.
         shared: the table is for another mind of the same program in this process.  Plans, rules, Python objects in terms,
             and beliefs without variables and collections stay what they are.
 
@@ -116,11 +115,7 @@ def _is_shared(value: Value, depth: int = 4) -> bool:
 
 
 class Reader:
-    """Makes the objects of a table.
-
-    Args:
-        mind: whose objects they will be.
-        table: as a `Writer` made it.
+    """Makes the objects of a table for a mind.
 
     Raises:
         ValueError: the program of the mind lacks a plan or belief that is used; or the table names something that no mind

@@ -90,8 +90,6 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     back, it ends after the time that was left.
 
     Args:
-        mind: the new mind.
-        data: of the other one.
         same_host: the host of the other mind serves the new one: its actions stay under way, what it showed is still there.
 
     Raises:

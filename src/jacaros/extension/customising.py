@@ -157,12 +157,7 @@ class CustomMind(Mind):
 
 
 class Chosen(Urgent):
-    """The selection functions of an agent whose class overrides some of them; the others are as ever.
-
-    Args:
-        mind: of the agent.
-        face: the object of the project's class.
-    """
+    """The selection functions of an agent whose class overrides some of them; the others are as ever."""
 
     __slots__ = ("_event", "_intention", "_message", "_mind", "_option")
 

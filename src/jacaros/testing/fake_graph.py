@@ -2,7 +2,8 @@
 
 import difflib
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from jacaros.artifacts.mapping.filling import filler
@@ -21,17 +22,22 @@ _ALL = QoS("best_effort", depth=10_000)
 _TOLERANCE = 1e-6
 
 
+@contextmanager
+def _told() -> Iterator[None]:
+    """Raise what the graph refuses as ValueError."""
+    try:
+        yield
+    except RosError as wrong:
+        raise ValueError(str(wrong)) from None
+
+
 class FakeGraph:
     """Stands for the robot in a test on the graph inside the process.
 
     Messages are given as mapping files have them, as text such as ``{pose.position.x: 1, header.stamp: now}``, or as
     nested Python mappings.
 
-    Args:
-        graph: of the run.
-
-    Attributes:
-        node: the node of the test.
+    Sending, hearing and counting raise ValueError for a wrong name, type or field; the text says why.
     """
 
     def __init__(self, graph: RosGraph) -> None:
@@ -44,6 +50,7 @@ class FakeGraph:
         self._asked: dict[str, list[Any]] = {}
         self.node.graph.watch_publishers(self._listen_to)
 
+    @_told()
     def publish(self, topic: str, fields: str | Mapping[str, Any] = "", type_name: str = "") -> None:
         """Publish a message.
 
@@ -51,40 +58,28 @@ class FakeGraph:
             topic: its name; a relative one is below ``/``.
             fields: of the message; others stay zero or empty.
             type_name: of the message; without it that of those who listen.
-
-        Raises:
-            ValueError: the topic, the type or the fields are wrong; the text tells.
         """
-        try:
-            name = self.node.resolve(topic)
-            full = message_type(type_name) if type_name else self._type_of(name)
-            given = self._fields(fields, full)
-            if name not in self._publishers:
-                self._publishers[name] = self.node.publisher(name, full, LATCHED)
-            publisher = self._publishers[name]
-            publisher.publish(publisher.message(**given))
-        except RosError as wrong:
-            raise ValueError(str(wrong)) from None
+        name = self.node.resolve(topic)
+        full = message_type(type_name) if type_name else self._type_of(name)
+        given = self._fields(fields, full)
+        if name not in self._publishers:
+            self._publishers[name] = self.node.publisher(name, full, LATCHED)
+        publisher = self._publishers[name]
+        publisher.publish(publisher.message(**given))
 
+    @_told()
     def answer(self, service: str, type_name: str, fields: str | Mapping[str, Any] = "") -> None:
-        """Offer a service that always gives the same response; a later answer replaces it.
+        """Offer a service that always gives the same response; a later answer replaces it."""
+        name, full = self.node.resolve(service), service_type(type_name)
+        response = self._fields(fields, response_type(full))
+        if name in self._services:
+            self._services.pop(name).close()
 
-        Raises:
-            ValueError: the name, the type or the fields are wrong; the text tells.
-        """
-        try:
-            name, full = self.node.resolve(service), service_type(type_name)
-            response = self._fields(fields, response_type(full))
-            if name in self._services:
-                self._services.pop(name).close()
+        def handle(request: Any) -> Mapping[str, Any]:
+            self._asked.setdefault(name, []).append(request)
+            return response
 
-            def handle(request: Any) -> Mapping[str, Any]:
-                self._asked.setdefault(name, []).append(request)
-                return response
-
-            self._services[name] = self.node.service(name, full, handle)
-        except RosError as wrong:
-            raise ValueError(str(wrong)) from None
+        self._services[name] = self.node.service(name, full, handle)
 
     def published(self, topic: str) -> list[Any]:
         """The messages that agents' artifacts published on a topic, oldest first."""
@@ -99,45 +94,29 @@ class FakeGraph:
         for messages in (*self._heard.values(), *self._asked.values()):
             messages.clear()
 
+    @_told()
     def hear(self, topic: str, type_name: str) -> None:
-        """Listen to a topic, so that those who look for its type find one.
-
-        Raises:
-            ValueError: the topic or the type is wrong; the text tells.
-        """
-        try:
-            self.node.subscription(topic, type_name, lambda sample: None, _ALL)
-        except RosError as wrong:
-            raise ValueError(str(wrong)) from None
+        """Listen to a topic, so that those who look for its type find one."""
+        self.node.subscription(topic, type_name, lambda sample: None, _ALL)
 
     def count_published(self, topic: str, fields: str) -> tuple[int, list[str]]:
-        """How many messages on a topic had these values, and all of them as text.
-
-        Raises:
-            ValueError: the name or the fields are wrong; the text tells.
-        """
+        """How many messages on a topic had these values, and all of them as text."""
         name = self._name(topic)
         messages = self._heard.get(name, [])
         type_name = self._types.get(name) or self.node.graph.topics().get(name)
         return self._count(messages, fields, type_name) if type_name else (0, [])
 
     def count_asked(self, service: str, fields: str) -> tuple[int, list[str]]:
-        """How many requests to a service had these values, and all of them as text.
-
-        Raises:
-            ValueError: no answer was given for the service, or the fields are wrong; the text tells.
-        """
+        """How many requests to a service had these values, and all of them as text."""
         name = self._name(service)
         offered = self.node.graph.contents().services
         if name not in self._services:
             raise ValueError(f"the test has no service {name}; begin with fake_service")
         return self._count(self.asked(name), fields, request_type(offered[name]))
 
+    @_told()
     def _name(self, name: str) -> str:
-        try:
-            return str(self.node.resolve(name))
-        except RosError as wrong:
-            raise ValueError(str(wrong)) from None
+        return str(self.node.resolve(name))
 
     def _count(self, messages: list[Any], fields: str, type_name: str) -> tuple[int, list[str]]:
         wanted = self._fields(fields, type_name) if fields else {}

@@ -56,7 +56,6 @@ class Outcome:
     """How one test ended.
 
     Attributes:
-        test: the test.
         problems: why it failed; empty when it passed.
         assertions: number of assertions made.
         output: what agents printed and what was logged, in order.
@@ -86,12 +85,7 @@ class Outcome:
 
 @dataclass(slots=True)
 class SuiteOutcome:
-    """How the tests of one file ended.
-
-    Attributes:
-        suite: the file.
-        outcomes: of those tests that were run, in order.
-    """
+    """How the tests of one file ended; those that were run, in order."""
 
     suite: Suite
     outcomes: list[Outcome] = field(default_factory=list)

@@ -225,8 +225,6 @@ def judge_recharging(verdict: Verdict, truth: GroundTruth, low: float = 20.0) ->
     """Expect a robot that charges in docks only, when the battery is low, until it is full, and is never empty.
 
     Args:
-        verdict: takes the complaints and figures.
-        truth: what happened.
         low: percent from which on the robot may go to the dock.
 
     Returns:

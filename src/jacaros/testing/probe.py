@@ -49,8 +49,6 @@ class Probe:
     """A test that looks on at one agent.
 
     Attributes:
-        fakes: the external actions that it answers, and all that the agent has begun.
-        asserted: called with each assertion of the agent.
         prints: the lines that the agent has printed, oldest first.
         others: the rest of the ROS graph, as the test plays it.
     """
@@ -65,7 +63,6 @@ class Asserting:
     """A call of an action behind an assertion goal.
 
     Args:
-        ctx: the call, as the agent makes it.
         probe: the test of the agent; without one its assertions are told to people.
     """
 

@@ -107,13 +107,7 @@ class TookTooLong(BaseException):
 
 
 class Trial:
-    """One run of a system in which tests are made, one after the other.
-
-    Args:
-        suite: what is run.
-        tests: some of its tests.
-        options: how.
-    """
+    """One run of a system in which tests are made, one after the other."""
 
     def __init__(self, suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> None:
         assert suite.deployment is not None

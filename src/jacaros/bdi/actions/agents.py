@@ -5,7 +5,7 @@ infrastructure.  The directory is an agent, ``df``, that exists from its first u
 own generator: a run with a seed repeats itself.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import count
 
 from jacaros.bdi.actions.internal_action import (
@@ -222,15 +222,19 @@ def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = 
     path = None if source is None else string(source, "the second argument of .create_agent")
     listed = [] if options is None else elements(options, "the third argument of .create_agent")
     classes = dict(map(_class_option, listed))
-    wanted = _name_from_variable(name) if isinstance(name, Var) else characters(name)
-    made = ctx.architecture.create_agent(wanted, path, classes)
+    return _made(
+        ctx, ".create_agent", name, lambda wanted: ctx.architecture.create_agent(wanted, path, classes)
+    )
+
+
+def _made(ctx: Context, action: str, name: Term, make: Callable[[str], str | None]) -> bool:
+    """Make an agent, whose name may be a variable."""
+    variable = isinstance(name, Var)
+    wanted = name.name[:1].lower() + name.name[1:] if variable else characters(name)
+    made = make(wanted)
     if made is None:
-        raise ActionError(f".create_agent: the agent {wanted} could not be made")
-    return not isinstance(name, Var) or ctx.unify(String(made), name)
-
-
-def _name_from_variable(variable: Var) -> str:
-    return variable.name[:1].lower() + variable.name[1:]
+        raise ActionError(f"{action}: the agent {wanted} could not be made")
+    return not variable or ctx.unify(String(made), name)
 
 
 def _class_option(option: Term) -> tuple[str, str]:
@@ -250,11 +254,7 @@ def clone(ctx: Context, name: Term) -> bool:
     Raises:
         ActionError: the agent could not be made.
     """
-    wanted = _name_from_variable(name) if isinstance(name, Var) else characters(name)
-    made = ctx.architecture.clone_agent(wanted)
-    if made is None:
-        raise ActionError(f".clone: the agent {wanted} could not be made")
-    return not isinstance(name, Var) or ctx.unify(String(made), name)
+    return _made(ctx, ".clone", name, ctx.architecture.clone_agent)
 
 
 @internal_action(".kill_agent", arity=(1, 2))
@@ -287,16 +287,14 @@ def version(ctx: Context, result: Term) -> bool:
 
 
 @internal_action(".df_register", arity=(1, 2))
-def register_service(ctx: Context, service: Term, kind: Term = None) -> None:
+def register_service(ctx: Context, service: Term, _kind: Term = None) -> None:
     """``.df_register(Service[, Type])``: the agent provides a service; subscribers are told."""
-    del kind
     ctx.architecture.register_service(characters(service))
 
 
 @internal_action(".df_deregister", arity=(1, 2))
-def deregister_service(ctx: Context, service: Term, kind: Term = None) -> None:
+def deregister_service(ctx: Context, service: Term, _kind: Term = None) -> None:
     """``.df_deregister(Service[, Type])``: the agent does not provide it any more."""
-    del kind
     ctx.architecture.deregister_service(characters(service))
 
 
@@ -308,10 +306,9 @@ def find_providers(ctx: Context, service: Term, *rest: Term) -> bool:
 
 
 @internal_action(".df_subscribe", arity=(1, 2))
-def subscribe_to_service(ctx: Context, service: Term, kind: Term = None) -> None:
+def subscribe_to_service(ctx: Context, service: Term, _kind: Term = None) -> None:
     """``.df_subscribe(Service[, Type])``: the agent is told ``provider(Agent, Service)`` of each provider by ``df``,
     those of now and those to come."""
-    del kind
     ctx.architecture.subscribe_to_service(characters(service))
 
 

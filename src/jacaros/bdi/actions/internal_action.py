@@ -104,55 +104,37 @@ STANDARD: Final[Mapping[str, InternalAction]] = MappingProxyType(_declared)
 """The internal actions of the language; an agent may have more."""
 
 
-def number(term: Term, what: str) -> float:
-    """The value of a number.
+# Each of these raises `WrongArguments` for another term, with a message that begins with *what*: "the first argument".
 
-    Raises:
-        WrongArguments: when the term is none, or an expression of unbound variables; the message begins with
-            *what*, such as ``the first argument``.
-    """
+
+def number(term: Term, what: str) -> float:
+    """The value of a number; an expression of unbound variables is none."""
     if term.__class__ is float:
         return float(term)
     raise WrongArguments(f"{what} must be a number, not {text(term)}")
 
 
 def whole(term: Term, what: str) -> int:
-    """A number without its fraction, cut to 32 bits as in Jason.
-
-    Raises:
-        WrongArguments: when the term is no number.
-    """
+    """A number without its fraction, cut to 32 bits as in Jason."""
     return to_int(number(term, what))
 
 
 def string(term: Term, what: str) -> str:
-    """The characters of a string.
-
-    Raises:
-        WrongArguments: when the term is none.
-    """
+    """The characters of a string."""
     if term.__class__ is String:
         return str(term)
     raise WrongArguments(f"{what} must be a string, not {text(term)}")
 
 
 def elements(term: Term, what: str) -> list[Term]:
-    """The elements of a list; an open end is passed over.
-
-    Raises:
-        WrongArguments: when the term is no list.
-    """
+    """The elements of a list; an open end is passed over."""
     if is_list(term):
         return list(list_items(term))
     raise WrongArguments(f"{what} must be a list, not {text(term)}")
 
 
 def members(term: Term, what: str) -> list[Term]:
-    """The elements of a list, set or queue.
-
-    Raises:
-        WrongArguments: when the term is none of them.
-    """
+    """The elements of a list, set or queue."""
     if isinstance(term, (SetValue, QueueValue)):
         return list(term)
     if is_list(term):
