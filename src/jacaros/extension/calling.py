@@ -4,6 +4,7 @@ import inspect
 import typing
 from asyncio import CancelledError
 from collections.abc import Callable, Iterator
+from itertools import chain, repeat
 from pathlib import Path
 
 from jacaros.bdi.actions.internal_action import ActionError, Crashed, InternalAction, WrongArguments
@@ -61,21 +62,22 @@ class _Callee:
 
     Attributes:
         minimum, maximum: numbers of arguments that programs may give.
+        wants_agent: its first parameter is the calling agent.
         gives_value: it declares what it returns: programs then give one more argument.
     """
 
     def __init__(self, name: str, function: Callable[..., object]) -> None:
         self.name, self.function = name, function
-        self._wants_agent = _wants_agent(function)
-        self._signature = _signature(function, self._wants_agent)
+        self.wants_agent = _wants_agent(function)
+        self.signature = _signature(function, self.wants_agent)
         self.gives_value = _gives_value(function)
-        self.minimum = self._signature.fewest + self.gives_value
-        most = len(self._signature.parameters) + self.gives_value
-        self.maximum = None if self._signature.rest is not None else most
+        self.minimum = self.signature.fewest + self.gives_value
+        most = len(self.signature.parameters) + self.gives_value
+        self.maximum = None if self.signature.rest is not None else most
         self.result_hint = ""
         if not self.gives_value and "return" not in _hints(function):
             written = "Iterator[str]" if inspect.isgeneratorfunction(function) else "str"
-            parameters = "..." if self._signature.parameters else ""
+            parameters = "..." if self.signature.parameters else ""
             self.result_hint = (
                 f"to return a result, annotate it: def {function.__name__}({parameters}) -> {written}"
             )
@@ -136,35 +138,6 @@ class _Callee:
         waiting.task = ctx.architecture.start_coroutine(work, ended)
         return waiting
 
-    # arguments
-
-    def arguments(
-        self, ctx: Context, terms: tuple[Term, ...], outputs: Outputs, results: list[tuple[Term, Out]]
-    ) -> tuple[object, ...]:
-        """The values for the parameters; *outputs* and *results* take the places of what the function gives.
-
-        Raises:
-            WrongArguments: one is not of the kind that its parameter wants.
-        """
-        signature = self._signature
-        values: list[object] = []
-        for position, term in enumerate(terms):
-            fixed = position < len(signature.parameters)
-            parameter = signature.parameters[position] if fixed else signature.rest
-            if parameter is not None and parameter.output:
-                out = Out()
-                results.append((term, out))
-                values.append(out)
-            elif parameter is not None and parameter.expected == Literal.__name__ and functor_of(term):
-                values.append(literal_of(term, outputs))
-            else:
-                values.append(to_value(term, outputs))
-        try:
-            bound = signature.bind(tuple(values))
-        except operations.WrongArguments as wrong:
-            raise WrongArguments(f"{self.name}: {wrong}") from None
-        return (agent_of(ctx.agent), *bound) if self._wants_agent else bound
-
 
 class _Call:
     """One call: the values for the function, and where the results go."""
@@ -177,7 +150,22 @@ class _Call:
         if callee.gives_value:
             *rest, self._last = terms
             terms = tuple(rest)
-        self.arguments = callee.arguments(ctx, terms, self._outputs, self._results)
+        signature = callee.signature
+        parameters = chain(signature.parameters, repeat(signature.rest))
+        try:
+            bound = signature.bind(tuple(map(self._value, parameters, terms)))
+        except operations.WrongArguments as wrong:
+            raise WrongArguments(f"{callee.name}: {wrong}") from None
+        self.arguments = (agent_of(ctx.agent), *bound) if callee.wants_agent else bound
+
+    def _value(self, parameter: operations.Parameter | None, term: Term) -> object:
+        if parameter is not None and parameter.output:
+            out = Out()
+            self._results.append((term, out))
+            return out
+        if parameter is not None and parameter.expected == Literal.__name__ and functor_of(term):
+            return literal_of(term, self._outputs)
+        return to_value(term, self._outputs)
 
     def accept(self, value: object) -> bool:
         """Unify what the function gave; False when it does not fit, or when the function says so.

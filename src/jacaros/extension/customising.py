@@ -66,7 +66,7 @@ class CustomMind(Mind):
         self._notices = overridden(face, "buf")
 
     def accepts(self, message: SpeechAct) -> bool:
-        accepts = overridden(self.look(), "soc_acc")
+        accepts = overridden(agent_of(self), "soc_acc")
         return accepts is None or ask(self, accepts, bool, True, Message(message))
 
     def perceive(self, percepts: list[Percept]) -> None:
@@ -76,12 +76,8 @@ class CustomMind(Mind):
             percepts = [percept.raw for percept in kept]
         super().perceive(percepts)
 
-    def look(self) -> Agent:
-        """What Python code sees of this mind."""
-        return agent_of(self)
-
     def accept_kill(self, killer: str) -> bool:
-        accepts = overridden(self.look(), "kill_acc")
+        accepts = overridden(agent_of(self), "kill_acc")
         return accepts is None or ask(self, accepts, bool, True, killer)
 
     # changes of beliefs, see `jacaros.bdi.rules.belief_update`

@@ -94,9 +94,15 @@ def literal_from(
 
 def term_of(value: object) -> Term:
     """The term for a value of Python code; a `Literal` keeps its annotations."""
-    if isinstance(value, Literal):
-        return _literal_term(value)
-    return to_term(value, UNKEPT)
+    if not isinstance(value, Literal):
+        return to_term(value, UNKEPT)
+    name = f"~{value.functor}" if value.negated else value.functor
+    if value.namespace is not None:
+        name = f"{value.namespace}::{name}"
+    plain = term_of(Structure(name, value.arguments) if value.arguments else Atom(name))
+    if not value.annotations:
+        return plain
+    return Annotated(plain, annotation_set(tuple(map(term_of, value.annotations))))
 
 
 def literal_term(value: object) -> Term:
@@ -111,13 +117,3 @@ def literal_term(value: object) -> Term:
     if isinstance(value, str):
         return resolve(lower(parse_literal(value), fresh_names()))
     raise ValueError(f"{value!r} is no literal: give a text such as 'position(3, kitchen)', or a Literal")
-
-
-def _literal_term(literal: Literal) -> Term:
-    name = f"~{literal.functor}" if literal.negated else literal.functor
-    if literal.namespace is not None:
-        name = f"{literal.namespace}::{name}"
-    plain = term_of(Structure(name, literal.arguments) if literal.arguments else Atom(name))
-    if not literal.annotations:
-        return plain
-    return Annotated(plain, annotation_set(tuple(map(term_of, literal.annotations))))

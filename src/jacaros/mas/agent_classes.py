@@ -113,6 +113,7 @@ class AgentClasses:
         objects: "_Objects",
     ) -> AgentHost:
         # Imported here: most projects have no classes of their own.
+        from jacaros.extension.agent import agent_of
         from jacaros.extension.belief_base import install
         from jacaros.extension.customising import CustomMind
         from jacaros.mas.custom_host import CustomHost
@@ -132,7 +133,7 @@ class AgentClasses:
                 face.made.init(*face.arguments)
             host.take([each.made for each in architectures])
             for each in architectures:
-                each.made.agent = mind.look()
+                each.made.agent = agent_of(mind)
                 each.made.init(*each.arguments)
                 host.at_end(each.made.stop)
         except JacarosError as error:

@@ -30,6 +30,7 @@ from jacaros.errors import JacarosError, UsageError
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import Programs, library_file
+from jacaros.mas.project.reading import USUAL_PATHS
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ProjectModules
 from jacaros.testing.assertions import UNTESTED
@@ -41,17 +42,9 @@ _HARNESS_GOAL: Final = "execute_test_plans"
 _ROOTS: Final = (".git", "pyproject.toml", "build.gradle", "package.xml", "setup.py")
 _LEVELS: Final = 6
 _PATHS: Final = (
-    ".",
-    "src/agt",
-    "src/agt/inc",
-    "src/asl",
-    "asl",
-    "agents",
+    *USUAL_PATHS,
     "inc",
-    "src/test/jason/inc",
-    "src/test/jason/asl",
-    "src/test/inc",
-    "src/test/agt",
+    *(f"src/test/{each}" for each in ("jason/inc", "jason/asl", "inc", "agt")),
 )
 _LABELLED: Final = re.compile(r"@[\w.]*\s*\[[^\]]*\btest\b")
 _COMMENT: Final = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)

@@ -4,7 +4,6 @@ import asyncio
 import signal
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -113,7 +112,6 @@ class Trial:
         assert suite.deployment is not None
         self._warnings = frozenset(suite.warnings)
         self._options = options
-        self._waiting = deque(tests)
         self._outcomes = [Outcome(test) for test in tests]
         self._number = -1
         self._goal: WatchedGoal | None = None
@@ -184,12 +182,12 @@ class Trial:
         """Begin the next test, or end the run."""
         for timer in self._timers:
             timer.cancel()
-        if not self._waiting:
+        if self._number + 1 == len(self._outcomes):
             self._done = True
             self._mas.end(0)
             return
-        test = self._waiting.popleft()
         self._number += 1
+        test = self._outcome.test
         self._forget_messages()
         self._lingers = False
         self._cycles = 0
@@ -231,10 +229,12 @@ class Trial:
 
     def _finish(self) -> None:
         """The test is over."""
-        outcome = self._outcome
-        outcome.seconds = time.perf_counter() - self._began
-        outcome.simulated = self._clock.now() - self._began_run
+        self._note_times()
         self._next()
+
+    def _note_times(self) -> None:
+        self._outcome.seconds = time.perf_counter() - self._began
+        self._outcome.simulated = self._clock.now() - self._began_run
 
     def _fail(self, problem: Problem) -> None:
         self._outcome.problems.append(problem)
@@ -248,8 +248,7 @@ class Trial:
         if not self._lingers:
             self._outcome.problems.append(problem)
         if self._began:
-            self._outcome.seconds = time.perf_counter() - self._began
-            self._outcome.simulated = self._clock.now() - self._began_run
+            self._note_times()
         for outcome in self._outcomes[max(self._number, 0) + 1 :]:
             outcome.problems.append(Problem("the test was not started: the run had ended"))
 

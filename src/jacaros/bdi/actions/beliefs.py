@@ -108,8 +108,7 @@ def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
     """``.eval(X, F)``: X is ``true`` or ``false``."""
     mark = len(ctx.trail)
     holds = ctx.succeeds(formula)
-    while len(ctx.trail) > mark:
-        ctx.trail.pop().ref = None
+    undo(ctx.trail, mark)
     return ctx.unify(target, TRUE if holds else FALSE)
 
 
@@ -176,8 +175,7 @@ def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
         value = rename(resolve(template))
         if found is None or sign * compare(value, found) > 0:
             found = value
-    while len(ctx.trail) > mark:
-        ctx.trail.pop().ref = None
+    undo(ctx.trail, mark)
     return found
 
 

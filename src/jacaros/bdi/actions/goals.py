@@ -123,14 +123,10 @@ def _means(ctx: Context, frame: Frame, called: Trigger | None) -> Term:
     *called* is the trigger of the goal that it waits for, which is part of the body as long as that is so, or None.
     """
     plan = frame[PLAN]
-    values = variables_of(frame)
     kind = frame[GOAL][0]
     goal = resolve(literal_of(frame[GOAL], frame[ANNOTATIONS]))
     rest = make_body(
-        [
-            lower(node, lambda name: values[name] if name in values else Var(name))
-            for node in (*_calling(frame, called), *_remaining(frame[STEP]))
-        ],
+        [_lowered(frame, node) for node in (*_calling(frame, called), *_remaining(frame[STEP]))],
         symbol=BODY_TERM,
     )
     event = trigger(kind.operator + kind.kind, goal)
@@ -139,6 +135,12 @@ def _means(ctx: Context, frame: Frame, called: Trigger | None) -> Term:
     if span is not None:
         label = Annotated(label.term, annotation_set((*label.annotations, *code_place(span, span.file.name))))
     return structure("im", label, event, resolve(rest), bindings_of(frame))
+
+
+def _lowered(frame: Frame, node: nodes.Node) -> Term:
+    """A part of a plan as a term, with the variables of a frame."""
+    values = variables_of(frame)
+    return lower(node, lambda name: values[name] if name in values else Var(name))
 
 
 def _calling(frame: Frame, called: Trigger | None) -> Iterator[nodes.Node]:
@@ -207,10 +209,9 @@ def drop_future_intention(ctx: Context, goal: Term) -> None:
 def _goals_in(candidate: Intention) -> Iterator[Term]:
     """The goals that stand in the body of the plan on top."""
     frame = candidate.frames[-1]
-    values = variables_of(frame)
     for node in walk(frame[PLAN].node.body):
         if isinstance(node, nodes.Achieve):
-            yield resolve(lower(node.goal, lambda name: values[name] if name in values else Var(name)))
+            yield resolve(_lowered(frame, node.goal))
 
 
 @internal_action(".drop_event", arity=1, suspends=True)

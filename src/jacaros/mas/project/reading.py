@@ -22,7 +22,7 @@ _JCM_PATHS: Final = (".", "src/agt", "src/agt/inc")
 _JCM_CODE_PATHS: Final = ("src", "src/env", "src/agt")
 """Where its Python modules are looked for besides, unless it has a ``java-path``."""
 
-_USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
+USUAL_PATHS: Final = (".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents")
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ def _complete(path: Path, part: ProjectPart) -> None:
         usual = [base / folder for folder in (_JCM_PATHS[:1] if part.source_paths else _JCM_PATHS)]
         code = [base / folder for folder in part.code_paths or _JCM_CODE_PATHS]
     else:
-        usual = [base / folder for folder in _USUAL_PATHS]
+        usual = [base / folder for folder in USUAL_PATHS]
         code = []
     programs = [*declared, *(folder for folder in usual if folder == base or folder.is_dir())]
     part.folders = tuple(dict.fromkeys([*programs, *(folder for folder in code if folder.is_dir())]))
