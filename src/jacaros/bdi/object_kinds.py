@@ -27,16 +27,7 @@ from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.bdi.state.waiting import CoroutineWait
 from jacaros.errors import JacarosError
 from jacaros.terms.collections import QueueValue
-from jacaros.terms.values import (
-    Annotated,
-    Functor,
-    List,
-    Reference,
-    Var,
-    functor,
-    list_items,
-    make_list,
-)
+from jacaros.terms.values import Annotated, Functor, List, Reference, Var, functor, list_items, make_list
 
 Value = Any
 """Anything that a mind holds."""

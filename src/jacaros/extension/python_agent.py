@@ -70,14 +70,15 @@ class Host(AgentSystem, Protocol):
         """Let others have their turn."""
 
 
-def _of_session(
-    method: Callable[Concatenate[Session, Given], T],
+def _of(
+    part: str, method: Callable[Concatenate[Any, Given], T]
 ) -> Callable[Concatenate["PythonAgent", Given], T]:
-    """The method of an agent that is the one of its session."""
+    """The method of an agent that is the one of its session or its host."""
 
     @wraps(method)
     def call(agent: "PythonAgent", /, *arguments: Given.args, **options: Given.kwargs) -> T:
-        return method(agent.session, *arguments, **options)
+        result: T = getattr(getattr(agent, part), method.__name__)(*arguments, **options)
+        return result
 
     return call
 
@@ -160,9 +161,7 @@ class PythonAgent:
 
     # --- time, people --------------------------------------------------------------------------------------
 
-    async def sleep(self, seconds: float) -> None:
-        """Wait on the run's clock."""
-        await self._host.sleep(seconds)
+    sleep = _of("_host", Host.sleep)
 
     def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
         """Run a coroutine beside `run`; it can be awaited.
@@ -185,18 +184,18 @@ class PythonAgent:
         """Join a workspace and make it the current one; gives its full path."""
         return self.session.join(workspace)
 
-    quit = _of_session(Session.quit)
-    make_artifact = _of_session(Session.make_artifact)
-    lookup = _of_session(Session.lookup)
-    focus = _of_session(Session.focus)
-    focus_when_available = _of_session(Session.focus_when_available)
-    stop_focus = _of_session(Session.stop_focus)
-    begin = _of_session(Session.begin)
-    value = _of_session(Session.value)
-    values = _of_session(Session.values)
-    has_property = _of_session(Session.has_property)
-    properties = _of_session(Session.properties)
-    signals = _of_session(Session.signals)
+    quit = _of("session", Session.quit)
+    make_artifact = _of("session", Session.make_artifact)
+    lookup = _of("session", Session.lookup)
+    focus = _of("session", Session.focus)
+    focus_when_available = _of("session", Session.focus_when_available)
+    stop_focus = _of("session", Session.stop_focus)
+    begin = _of("session", Session.begin)
+    value = _of("session", Session.value)
+    values = _of("session", Session.values)
+    has_property = _of("session", Session.has_property)
+    properties = _of("session", Session.properties)
+    signals = _of("session", Session.signals)
 
     async def act(
         self,
@@ -320,29 +319,19 @@ class PythonAgent:
             raise JacarosError(f"agent {name} cannot be made; the log says why")
         return made
 
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent after *delay* seconds; False when there is none of that name, or it does not accept."""
-        return self._host.kill_agent(name, delay)
+    kill_agent = _of("_host", AgentSystem.kill_agent)
 
     def stop_system(self, exit_code: int = 0, delay: float = 0.0) -> None:
         """End the run after *delay* seconds."""
         self._host.stop_system(delay, exit_code)
 
-    def register_service(self, service: str) -> None:
-        """Tell the directory facilitator that this agent provides a service."""
-        self._host.register_service(service)
-
-    def deregister_service(self, service: str) -> None:
-        """Take that back."""
-        self._host.deregister_service(service)
+    register_service = _of("_host", AgentSystem.register_service)
+    deregister_service = _of("_host", AgentSystem.deregister_service)
+    subscribe_to_service = _of("_host", AgentSystem.subscribe_to_service)
 
     def providers(self, service: str) -> tuple[str, ...]:
         """The agents that provide a service, in the order in which they registered."""
         return tuple(self._host.providers(service))
-
-    def subscribe_to_service(self, service: str) -> None:
-        """Have this agent told ``provider(Agent, Service)`` of all providers, those to come as well."""
-        self._host.subscribe_to_service(service)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r})"

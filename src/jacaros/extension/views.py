@@ -143,15 +143,14 @@ class Message:
         self.performative, self.sender, self.receiver = raw.performative, raw.sender, raw.receiver
         self.id, self.in_reply_to = raw.id, raw.in_reply_to
         self.raw = raw
-        self._content: Term = raw.content
 
     @property
     def content(self) -> Any:
         """What is said: a `Literal`, or another Python value."""
-        return _value_of(resolve(self._content))
+        return _value_of(resolve(self.raw.content))
 
     def __str__(self) -> str:
-        return f"{self.performative} from {self.sender}: {text(resolve(self._content))}"
+        return f"{self.performative} from {self.sender}: {text(resolve(self.raw.content))}"
 
 
 class ReceivedMessage(Message):

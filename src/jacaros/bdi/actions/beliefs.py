@@ -15,17 +15,7 @@ from jacaros.terms.plans import RULE
 from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo, unify, unify_annotations
-from jacaros.terms.values import (
-    FALSE,
-    TRUE,
-    Functor,
-    Term,
-    Var,
-    atom,
-    bare,
-    functor_of,
-    make_list,
-)
+from jacaros.terms.values import FALSE, TRUE, Functor, Term, Var, atom, bare, functor_of, make_list
 
 
 @internal_action(".abolish", arity=1)
