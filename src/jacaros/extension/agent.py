@@ -8,7 +8,6 @@ from jacaros.asl.loader import parse_formula
 from jacaros.asl.lowering import Names, lower
 from jacaros.bdi.explaining.failure_reason import ERROR_MSG
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.searching import run
 from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.speech_act import SpeechAct
@@ -132,11 +131,10 @@ class Agent:
         names = Names()
         formula = lower(parse_formula(query), names.__getitem__)
         mark = len(mind.trail)
-        answers = []
-        for _ in run(mind.solve_formula(formula, mind.trail), mind.options.rule_depth):
-            answers.append(
-                {name: to_value(resolve(variable)) for name, variable in names.items() if name[:1] != "_"}
-            )
+        answers = [
+            {name: to_value(resolve(variable)) for name, variable in names.items() if name[:1] != "_"}
+            for _ in mind.context.answers(formula)
+        ]
         undo(mind.trail, mark)
         yield from answers
 

@@ -17,7 +17,7 @@ from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, In
 from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import SUSPENDED, Failure
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import OWN_SUSPENSION, OwnSuspension
+from jacaros.bdi.state.waiting import OWN_SUSPENSION, OwnSuspension, is_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.substitution import rename, resolve
@@ -103,9 +103,7 @@ def _state(candidate: Intention) -> Term:
     if name != "waiting":
         return atom(name)
     inner = bare(reason)
-    if inner.__class__ is tuple and inner[0].name == "action":
-        return Annotated(atom("waiting"), (inner,))
-    return Annotated(atom("waiting"), ((REASON, reason),))
+    return Annotated(atom("waiting"), (inner if is_action(inner) else (REASON, reason),))
 
 
 def _stack(ctx: Context, intention: Intention) -> Term:
@@ -275,8 +273,7 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
         waiting = candidate.waiting
         if waiting is not None and waiting.reason is not OWN_SUSPENSION:
             # As in Jason: one that is suspended while it waits for something is told with that.
-            why = waiting.reason
-            why = atom("act") if why.__class__ is tuple and why[0].name == "action" else why
+            why = atom("act") if is_action(waiting.reason) else waiting.reason
         found = goals.goal_of(ctx.agent, candidate, goal)
         if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):
             yield
