@@ -15,7 +15,7 @@ In a folder, and in all folders in it, the test files are: programs that have su
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -284,8 +284,7 @@ def _is_root(folder: Path) -> bool:
 def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> Iterator[AgentTest]:
     known: dict[str, nodes.Plan] = {}
     for plan in program.plans:
-        annotations = _annotations(plan)
-        if not any(isinstance(a, nodes.Literal) and a.functor == "test" for a in annotations):
+        if next(_marks(plan, "test"), None) is None:
             continue
         literal = plan.trigger.literal
         if plan.trigger.operator + plan.trigger.kind != "+!" or not isinstance(literal, nodes.Literal):
@@ -304,33 +303,30 @@ def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> It
                 continue
             told = f"this plan is never run: !{signature} has another, which is tested twice"
             problems.append(Diagnostic("warning", told, plan.span, "give it a goal of its own"))
-        mappings = tuple(_mappings(annotations, plan, problems))
-        yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(annotations), mappings)
+        mappings = tuple(_mappings(plan, problems))
+        yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(plan), mappings)
 
 
-def _annotations(plan: nodes.Plan) -> tuple[nodes.Term, ...]:
-    if not isinstance(plan.label, nodes.Literal) or plan.label.annotations is None:
-        return ()
-    return plan.label.annotations.items
+def _marks(plan: nodes.Plan, functor: str) -> Iterator[nodes.Literal]:
+    """The annotations of a plan's label with that functor."""
+    if isinstance(plan.label, nodes.Literal) and plan.label.annotations is not None:
+        for annotation in plan.label.annotations.items:
+            if isinstance(annotation, nodes.Literal) and annotation.functor == functor:
+                yield annotation
 
 
-def _timeout(annotations: Iterable[nodes.Term]) -> float | None:
-    for annotation in annotations:
-        if isinstance(annotation, nodes.Literal) and annotation.functor == "timeout":
-            match annotation.arguments:
-                case (nodes.Number(value=milliseconds),):
-                    return milliseconds / 1000.0
+def _timeout(plan: nodes.Plan) -> float | None:
+    for mark in _marks(plan, "timeout"):
+        match mark.arguments:
+            case (nodes.Number(value=milliseconds),):
+                return milliseconds / 1000.0
     return None
 
 
-def _mappings(
-    annotations: Iterable[nodes.Term], plan: nodes.Plan, problems: list[Diagnostic]
-) -> Iterator[str]:
+def _mappings(plan: nodes.Plan, problems: list[Diagnostic]) -> Iterator[str]:
     """The mapping files of a test: beside its file, or as the current folder and the package have them."""
-    for annotation in annotations:
-        if not isinstance(annotation, nodes.Literal) or annotation.functor != "mapping":
-            continue
-        for argument in annotation.arguments or (None,):
+    for mark in _marks(plan, "mapping"):
+        for argument in mark.arguments or (None,):
             if not isinstance(argument, nodes.String):
                 told = "mapping(...) names no file"
                 problems.append(
@@ -356,10 +352,8 @@ def _signature(goal: nodes.Literal) -> str:
     def plain(term: nodes.Term) -> nodes.Term:
         if isinstance(term, nodes.Variable):
             return nodes.Variable("_")
-        return (
-            nodes.replace(term, arguments=tuple(map(plain, term.arguments)))
-            if isinstance(term, nodes.Literal)
-            else term
-        )
+        if isinstance(term, nodes.Literal):
+            return nodes.replace(term, arguments=tuple(map(plain, term.arguments)))
+        return term
 
     return format_term(plain(goal))
