@@ -22,7 +22,7 @@ from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.replay import replay_html
 from jacaros.mas.checking import check_files
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.programs import load_deployment
 from jacaros.ros.backends.rosbridge_link import Link
 from jacaros.ros.backends.rosbridge_messages import Translator
 from jacaros.ros.parameter_store import checked_value

@@ -49,7 +49,7 @@ rospy.spin()
 """Programs that write each velocity as a line."""
 MODULES = (
     "jacaros.mas.launch",
-    "jacaros.mas.surroundings",
+    "jacaros.mas.environment",
     "jacaros.artifacts.robots.velocity",
     "jacaros.sim.node",
 )

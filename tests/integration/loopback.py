@@ -21,7 +21,7 @@ from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_out
 from jacaros.env.ports import Made, Told, UnderWay, nobody_waits
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Atom, Out, Structure
-from jacaros.mas.ports import Services
+from jacaros.mas.directory import Services
 from jacaros.mas.system import System
 from jacaros.terms.text import text
 from jacaros.trace import Cause
@@ -444,7 +444,7 @@ def _read(data: list[Any]) -> SpeechAct:
 
 
 class RemoteAgents:
-    """The agents of the other side, as far as it has told of them: `jacaros.mas.ports.Participants`."""
+    """The agents of the other side, as far as it has told of them: `jacaros.mas.directory.Participants`."""
 
     def __init__(self, cable: Cable) -> None:
         self._mailbox = _RemoteMailbox(cable)
@@ -465,7 +465,7 @@ class RemoteAgents:
 
 
 class RemoteServices:
-    """The directory facilitator of the other side, with a copy of what it knows: `jacaros.mas.ports.Services`."""
+    """The directory facilitator of the other side, with a copy of what it knows: `jacaros.mas.directory.Services`."""
 
     def __init__(self, cable: Cable) -> None:
         self._cable = cable
@@ -538,9 +538,9 @@ def join(first: System, second: System) -> tuple[Side, Side]:
 
 def share(server: Side, client: Side, path: str, seen_as: str | None = None) -> RemoteWorkspace:
     """Let a workspace of one side be seen on the other one, perhaps under another path."""
-    environment = server.system.surroundings().environment
+    environment = server.system.run_environment().environment
     remote = RemoteWorkspace(seen_as or path, path, client.out, client.ids)
     client.clients[path] = remote
     server.servers[path] = WorkspaceServer(environment.workspace(path), server.out, server.ids)
-    client.system.surroundings().environment.mount(remote)
+    client.system.run_environment().environment.mount(remote)
     return remote

@@ -24,8 +24,8 @@ from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.launch import launch
-from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
+from jacaros.mas.programs import load_deployment
 from jacaros.mas.system import System
 from jacaros.output import CLOSING, PATIENCE
 from jacaros.ros.address import ROS_KINDS

@@ -1,4 +1,4 @@
-"""Actions of a project's programs that none of its artifacts can carry out.
+"""Actions of a project's programs that none of its artifacts can carry out, and the types of artifacts that agents make.
 
 Only what is certain is told: a program may make artifacts of types that are worked out at run time, artifacts may
 define operations then, and an architecture may carry out actions itself.
@@ -6,7 +6,7 @@ define operations then, and an architecture may carry out actions itself.
 
 import inspect
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses as clauses_of
@@ -227,3 +227,87 @@ class _Offered:
         if same:
             return f"there is {', '.join(same)}"
         return f"did you mean {close[0]}?" if close else None
+
+
+class _Place(NamedTuple):
+    """Where a type stands: an argument of an action or of a goal, maybe one of a library that comes with the package."""
+
+    functor: str
+    arity: int
+    argument: int
+    of_library: bool = False
+
+
+_MAKING: Final = tuple(_Place("makeArtifact", arity, 1) for arity in (2, 3, 4))
+
+
+def made_types(
+    deployment: Deployment, programs: Sequence[nodes.Program], find_type: "Callable[[str], type[Artifact]]"
+) -> "list[type[Artifact]] | None":
+    """The types of all artifacts of a project; None when they are not known before it runs."""
+    names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
+    for program in programs:
+        made = type_names(program)
+        if made is None:
+            return None
+        names += made
+    try:
+        return [find_type(name) for name in dict.fromkeys(names)]
+    except Exception:
+        # An unknown type, or a module with a mistake in it: that is told where it belongs.
+        return None
+
+
+def type_names(program: nodes.Program) -> list[str] | None:
+    """The types that a program makes artifacts of; None when some are worked out at run time."""
+    uses = list(_uses(program))
+    if any(literal.functor in _OPEN_WORLD for literal, _ in uses):
+        return None
+    names: list[str] = []
+    places = list(_MAKING)
+    for place in places:  # it grows
+        found = [each for each in uses if _key(each[0]) == (place.functor, place.arity)]
+        if not found and place not in _MAKING and not place.of_library:
+            return None  # somebody else is to give the agent that goal
+        for literal, plan in found:
+            wanted = literal.arguments[place.argument]
+            if isinstance(wanted, nodes.String):
+                names.append(wanted.value)
+            elif isinstance(wanted, nodes.Literal) and not wanted.arguments:
+                names.append(wanted.functor)
+            else:
+                given = _given_by_goal(wanted, plan)
+                if given is None:
+                    return None
+                if given not in places:
+                    places.append(given)
+    return names
+
+
+def _key(literal: nodes.Literal) -> tuple[str, int]:
+    return literal.functor, len(literal.arguments)
+
+
+def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Literal, nodes.Plan | None]]:
+    """All literals of a program but the triggers of plans, with their plans."""
+    for plan in program.plans:
+        for node in walk(plan.context, plan.body, plan.subplans):
+            if isinstance(node, nodes.Literal):
+                yield node, plan
+    for node in walk(program.goals, program.beliefs):
+        if isinstance(node, nodes.Literal):
+            yield node, None
+
+
+def _given_by_goal(wanted: nodes.Term, plan: nodes.Plan | None) -> _Place | None:
+    """Which argument of a plan's goal a variable is; None when it is none."""
+    if plan is None or not isinstance(wanted, nodes.Variable) or plan.trigger.kind != "!":
+        return None
+    goal = plan.trigger.literal
+    if not isinstance(goal, nodes.Literal):
+        return None
+    for number, argument in enumerate(goal.arguments):
+        if isinstance(argument, nodes.Variable) and argument.name == wanted.name:
+            is_library = plan.span is not None and plan.span.file.name.startswith("$")
+            return _Place(goal.functor, len(goal.arguments), number, is_library)
+    return None

@@ -10,10 +10,10 @@ from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
-from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.console import Console
 from jacaros.mas.coroutines import Coroutines, Ended
-from jacaros.mas.ports import Services
+from jacaros.mas.directory import Services
+from jacaros.mas.idleness import Activity, AgentTimer
 from jacaros.mas.scheduler import Scheduler
 from jacaros.terms.values import String, Term, atom, functor
 

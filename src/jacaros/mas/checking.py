@@ -15,8 +15,7 @@ from jacaros.asl.source import SourceFile
 from jacaros.asl.suppression import Suppressions, wanted
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
-from jacaros.mas.loading import load_deployment
-from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
+from jacaros.mas.programs import NEVER_SELECTED, Programs, load_deployment, text_of
 from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
@@ -168,8 +167,8 @@ def _of_beliefs(
         agent.agent_class or agent.architecture_classes or agent.belief_base_class for agent, _ in programs
     ):
         return []
+    from jacaros.mas.action_check import made_types
     from jacaros.mas.belief_check import check_beliefs  # here: see `_of_artifacts`
-    from jacaros.mas.made_types import made_types
 
     def types() -> "list[type[Artifact]] | None":
         from jacaros.artifacts.registry import type_finder  # here: see `_of_artifacts`
@@ -218,7 +217,7 @@ def _of_artifacts(
     # Imported here: programs without artifacts are checked without them.
     from jacaros.artifacts.registry import type_finder
     from jacaros.mas.action_check import check_actions
-    from jacaros.mas.furnishing import types_of
+    from jacaros.mas.environment import types_of
 
     artifacts = [
         artifact

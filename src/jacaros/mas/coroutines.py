@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-from jacaros.mas.activity import Activity
+from jacaros.mas.idleness import Activity
 
 Ended = Callable[[object, BaseException | None], None]
 """Told what a coroutine returned, or the exception that ended it."""

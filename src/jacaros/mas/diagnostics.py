@@ -1,7 +1,8 @@
-"""The state of a run on ``/diagnostics`` once a second, as robot monitors read it (``diagnostic_msgs``, REP 107).
+"""What a run tells people on the graph: its log on ``/rosout``, and its state on ``/diagnostics``.
 
-There is a status for the connection and one for each agent.  An agent whose queue of things to take in grows for some
-seconds has a warning; a defect of JaCaROS, which ends the run, is an error.
+The state goes out once a second, as robot monitors read it (``diagnostic_msgs``, REP 107).  There is a status for the
+connection and one for each agent.  An agent whose queue of things to take in grows for some seconds has a warning; a defect
+of JaCaROS, which ends the run, is an error.
 """
 
 from collections.abc import Callable, Iterable
@@ -11,6 +12,8 @@ from typing import TYPE_CHECKING
 from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock, Timer
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.console import Console
+from jacaros.ros.errors import RosError
 
 if TYPE_CHECKING:
     from jacaros.ros.backend import Backend, Publisher
@@ -172,3 +175,49 @@ class Diagnostics:
         ]
         header = {"stamp": self._clock.now()}
         self._publisher.publish(self._publisher.message(header=header, status=statuses))
+
+
+if TYPE_CHECKING:
+    from jacaros.ros.backend import Backend
+
+LEVELS = {"debug": "debug", "info": "info", "warning": "warn", "error": "error"}
+"""A console's levels, in the words of ROS's log."""
+
+_ABOUT_THE_GRAPH = "[ros]"
+"""Lines about the connection itself begin so; the graph need not be told of them, and may be unable to be."""
+
+
+class RosoutConsole:
+    """Writes to another console, and under our node's name to ``/rosout`` as soon as the graph has been joined.
+
+    Args:
+        console: where all goes in any case.
+        backend: gives our node; None before the graph has been joined.
+    """
+
+    def __init__(self, console: Console, backend: "Callable[[], Backend | None]") -> None:
+        self._console = console
+        self._backend = backend
+        self._refused = False
+
+    def print(self, agent: str, text: str) -> None:
+        """Show a line of an agent's output; on the graph it is a message of level info."""
+        self._console.print(agent, text)
+        self._tell("info", f"[{agent}] {text}")
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Tell people about what happens, with the same level on the graph."""
+        self._console.log(text, level)
+        if not text.startswith(_ABOUT_THE_GRAPH):
+            self._tell(LEVELS[level], text)
+
+    def _tell(self, level: str, text: str) -> None:
+        backend = self._backend()
+        if backend is None or not backend.connected or self._refused:
+            return
+        try:
+            backend.rosout(level, text)
+        except RosError as error:
+            # Said once, and here alone: a log that cannot be written must not stop what it tells of.
+            self._refused = True
+            self._console.log(f"{_ABOUT_THE_GRAPH} nothing is written to /rosout: {error}", "warning")

@@ -1,10 +1,58 @@
-"""Whether a run is idle: nobody has anything to do, and nothing that was begun will give anybody something."""
+"""Whether a run is idle: nobody has anything to do, and nothing that was begun will give anybody something.
+
+What may: the timers of agents, and their operations.
+"""
 
 import asyncio
 from collections.abc import Callable
 from typing import Protocol
 
-from jacaros.mas.activity import Activity
+from jacaros.bdi.architecture import Timer
+from jacaros.clock import Clock
+
+
+class Activity:
+    """Counts what will give an agent something to do again.
+
+    Worlds, batteries and the processes of artifacts do not count: they never end.
+    """
+
+    def __init__(self) -> None:
+        self.pending = 0
+
+    def begin(self) -> None:
+        """Something has been begun."""
+        self.pending += 1
+
+    def end(self) -> None:
+        """It is over, or was taken back."""
+        self.pending -= 1
+
+
+class AgentTimer:
+    """A call that is to come, counted until it has come or was taken back."""
+
+    __slots__ = ("_activity", "_callback", "_timer")
+
+    def __init__(self, clock: Clock, activity: Activity, delay: float, callback: Callable[[], None]) -> None:
+        self._activity = activity
+        self._callback = callback
+        activity.begin()
+        self._timer: Timer | None = clock.call_later(delay, self._ring)
+
+    def cancel(self) -> None:
+        """Take the call back; nothing happens when it is past."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+            self._activity.end()
+
+    def _ring(self) -> None:
+        if self._timer is not None:
+            self._timer = None
+            self._activity.end()
+            self._callback()
+
 
 _HOPS = 8
 """Turns of the loop that must pass without anything to do before a run counts as idle: a message of a ROS

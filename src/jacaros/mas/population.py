@@ -12,13 +12,13 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.snapshot import copy_mind
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.errors import JacarosError
-from jacaros.mas.activity import AgentTimer
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.agent_options import mind_options
 from jacaros.mas.code_folder import CodeFolder
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.directory import Directory
+from jacaros.mas.idleness import AgentTimer
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 

@@ -11,13 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jacaros.clock import Clock
-from jacaros.mas.graph_time import GraphTime
 from jacaros.mas.options import RunOptions
 
 if TYPE_CHECKING:
-    from jacaros.mas.empty_graph import EmptyGraph
+    from jacaros.mas.graph_warnings import EmptyGraph, GraphTime, UndeclaredParameters
     from jacaros.mas.guarding import RunGuard
-    from jacaros.mas.undeclared import UndeclaredParameters
     from jacaros.ros.backend import Backend
     from jacaros.ros.given_parameters import GivenParameters
     from jacaros.ros.ros_clock import RosClock
@@ -93,6 +91,8 @@ class RosGraph:
             if self._options.ros_clock:
                 self._follow_clock(backend)
             else:
+                from jacaros.mas.graph_warnings import GraphTime  # here: only for real graphs
+
                 self._time = GraphTime(backend, self._log_ros)
                 self._time.watch()
             # Only on demand: a project that names a world for practice also runs on the real robot.
@@ -144,7 +144,7 @@ class RosGraph:
         """Everything is made: look whether the parameters that were given are declared."""
         if not self._options.parameters:
             return
-        from jacaros.mas.undeclared import UndeclaredParameters  # here: few runs are given any
+        from jacaros.mas.graph_warnings import UndeclaredParameters  # here: few runs are given any
 
         def given() -> "GivenParameters | None":
             return self._backend.given_parameters if self._backend is not None else None
@@ -187,7 +187,7 @@ class RosGraph:
         self._clock.listen(backend)
 
     def _look_for_others(self, backend: "Backend") -> None:
-        from jacaros.mas.empty_graph import EmptyGraph
+        from jacaros.mas.graph_warnings import EmptyGraph
 
         domain = self._options.domain_id
         number = os.environ.get("ROS_DOMAIN_ID", "0") if domain is None else str(domain)

@@ -12,30 +12,26 @@ import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal 
 from jacaros.asl.nodes import Program
 from jacaros.bdi.mind import Mind
 from jacaros.clock import Clock
-from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.code_folder import code_folder
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
-from jacaros.mas.directory import Directory
-from jacaros.mas.idleness import Idleness
-from jacaros.mas.mailboxes import Mailboxes
+from jacaros.mas.directory import NAME as DIRECTORY_NAME
+from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory, Services
+from jacaros.mas.idleness import Activity, AgentTimer, Idleness
 from jacaros.mas.options import RunOptions
 from jacaros.mas.population import Population, begin
-from jacaros.mas.ports import Services
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
-from jacaros.mas.service_directory import NAME as DIRECTORY_NAME
-from jacaros.mas.service_directory import ServiceDirectory
 from jacaros.project_modules import ProjectModules
 
 if TYPE_CHECKING:
     from jacaros.env.environment import Environment
     from jacaros.mas.diagnostics import Diagnostics
-    from jacaros.mas.surroundings import Surroundings
+    from jacaros.mas.environment import RunEnvironment
 
 
 OUT_OF_MEMORY = 137
@@ -89,7 +85,7 @@ class System:
         self.idleness = Idleness(self.activity)
         self.scheduler = Scheduler(clock, self.idleness.look, self.fail, idle_work=self._compile_ahead)
         self.idleness.turns = self.scheduler
-        self._surroundings: Surroundings | None = None
+        self._run_environment: RunEnvironment | None = None
         self._diagnostics: Diagnostics | None = None
         self.ros = self._find_graph()
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
@@ -115,7 +111,7 @@ class System:
     def _find_graph(self) -> RosGraph:
         deployment, options = self.deployment, self.options
         if options.wants_rosout:
-            from jacaros.mas.rosout import RosoutConsole  # here: only for runs on a real graph
+            from jacaros.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
 
             self.console = RosoutConsole(self.console, lambda: self.ros.joined)
         return RosGraph(
@@ -169,7 +165,7 @@ class System:
     @property
     def environment(self) -> "Environment | None":
         """Workspaces and artifacts; None while nobody has needed them."""
-        return self._surroundings.environment if self._surroundings is not None else None
+        return self._run_environment.environment if self._run_environment is not None else None
 
     # ---- the start
 
@@ -189,7 +185,7 @@ class System:
         if self.options.wants_diagnostics:
             self._publish_diagnostics()
         if self._has_environment and self._is_furnished():
-            await self.surroundings().furnish(self.deployment)
+            await self.run_environment().furnish(self.deployment)
         await self.ros.guard()
         agents = list(zip(self.deployment.agents, programs, strict=True))
         hosts = [population.add(spec, program) for spec, program in agents]
@@ -218,10 +214,10 @@ class System:
         situated = any(agent.join or agent.focus for agent in self.deployment.agents)
         return bool(declared) or situated or has_own_artifacts(self.deployment.base_path)
 
-    def surroundings(self) -> "Surroundings":
+    def run_environment(self) -> "RunEnvironment":
         """The environment, opened when it is first asked for."""
-        if self._surroundings is None:
-            from jacaros.mas.surroundings import Resources, Surroundings
+        if self._run_environment is None:
+            from jacaros.mas.environment import Resources, RunEnvironment
 
             random = Random(f"{self._seed}/artifacts")
             resources = Resources(
@@ -232,10 +228,10 @@ class System:
                     "stop": lambda: partial(self.stop_system, 0.0, 0),
                 }
             )
-            self._surroundings = Surroundings(
+            self._run_environment = RunEnvironment(
                 self.deployment, self._modules, self.clock, resources, self.console, self.activity, self.fail
             )
-        return self._surroundings
+        return self._run_environment
 
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
         if spec.is_python:
@@ -244,12 +240,12 @@ class System:
                     situate,  # here: most projects have no such agent
                 )
 
-                situate(host, spec, self.surroundings().environment)
+                situate(host, spec, self.run_environment().environment)
             return
         if self._has_environment:
-            host.make_body = lambda: self.surroundings().make_body(host)
-        if self._surroundings is not None:
-            host.body = self._surroundings.situated_body(host, spec)
+            host.make_body = lambda: self.run_environment().make_body(host)
+        if self._run_environment is not None:
+            host.body = self._run_environment.situated_body(host, spec)
 
     def _make_directory_agent(self) -> Mind:
         """The agent of the directory facilitator; an agent of the project that has its name takes its place."""
@@ -349,8 +345,8 @@ class System:
             steps.push_async_callback(self.ros.close)
             if self._diagnostics is not None:
                 steps.callback(self._diagnostics.close)
-            if self._surroundings is not None:
-                steps.push_async_callback(self._surroundings.environment.close)
+            if self._run_environment is not None:
+                steps.push_async_callback(self._run_environment.environment.close)
             for host in reversed(hosts):
                 steps.push_async_callback(host.close)
             for host in reversed(hosts):

@@ -1,9 +1,20 @@
-"""Tells people of a step that takes so long that the others, and the robot, have to wait for it."""
+"""Tells people of a step that takes so long that the others, and the robot, have to wait for it: which agent, which plan,
+which line, read off the Python frames of the run's thread.
+"""
 
+import os
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from types import FrameType
+
+from jacaros.asl.formatter import format_term
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.applicable_plans import Selection
+from jacaros.bdi.rules.body_steps import Step
+from jacaros.bdi.state.plan import FAILED, Plan
+from jacaros.mas.agent_host import AgentHost
 
 INTERVAL = 1.0
 """Seconds between two looks."""
@@ -39,7 +50,6 @@ class Watchdog:
         self._end.set()
 
     def _watch(self) -> None:
-        from jacaros.mas.at_work import at_work, task_of  # here: short runs end before the first look
 
         while not self._end.wait(self._interval):
             frame = sys._current_frames().get(self._watched)
@@ -59,3 +69,125 @@ class Watchdog:
             self._tell(
                 f"warning: a step takes more than {seconds:g} seconds, and everybody waits for it: {work}"
             )
+
+
+_LOOP = "asyncio.events"
+"""The module whose ``Handle._run`` calls all callbacks of the loop."""
+_STANDARD = str(Path(os.__file__).parent)
+"""Where Python's own modules are."""
+
+
+def task_of(frame: FrameType | None) -> FrameType | None:
+    """The frame of the one thing that is being done, as long as which nobody else has a turn.
+
+    That is the step or the choice of plan of an agent; without one, the callback of the loop.  None while the loop waits,
+    and while a module is imported, which takes as long as it takes.
+    """
+    task = callback = None
+    for inner in _outwards(frame):
+        module = inner.f_globals.get("__name__", "")
+        if module == "importlib._bootstrap":
+            return None
+        if _place_in_program(inner) is not None:
+            task = inner
+        if module == _LOOP:
+            return task or callback
+        callback = inner
+    return task
+
+
+def at_work(frame: FrameType | None) -> str:
+    """What is being done, for people: ``agent bob, plan +!find(X) (bob.asl:7)``."""
+    frames = list(_outwards(frame))
+    host = next((found for found in map(_host, frames) if found is not None), None)
+    places = [found for each in frames if (found := _place_in_program(each)) is not None]
+    place = "{}:{}".format(*places[0]) if places else _place_of_python(frames)
+    if host is None:
+        return place
+    plan = _plan_at(host, *places[-1]) if places else None
+    doing = f", plan {format_term(plan.node.trigger)}" if plan is not None else ""
+    called = _own_python(frames) if places else None
+    inside = f", in {_place(called)}" if called is not None else ""
+    return f"agent {host.name}{doing} ({place}{inside})"
+
+
+def _outwards(frame: FrameType | None) -> Iterator[FrameType]:
+    """The frames of a thread, the innermost one first."""
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
+
+
+def _is_generated(frame: FrameType) -> bool:
+    """Whether the compiler made the function of a frame; its file and lines are those of the agent program."""
+    names = frame.f_globals
+    return names.get("FAILED") is FAILED and "__name__" not in names
+
+
+def _place_in_program(frame: FrameType) -> tuple[str, int] | None:
+    """File and line of the agent program that a frame executes, compiled or interpreted."""
+    if _is_generated(frame):
+        return frame.f_code.co_filename, _line(frame)
+    node = None
+    if frame.f_code is Step.__call__.__code__:
+        node = frame.f_locals["self"].node
+    elif frame.f_code is Selection._frames_of.__code__:
+        node = frame.f_locals["plan"].node
+    return None if node is None or node.span is None else (node.span.file.name, node.span.line)
+
+
+def _host(frame: FrameType) -> AgentHost | None:
+    """The host of the agent whose cycles a frame makes."""
+    mind = frame.f_locals.get("self") if frame.f_code is Mind.run.__code__ else None
+    return mind.architecture if mind is not None and isinstance(mind.architecture, AgentHost) else None
+
+
+def _plan_at(host: AgentHost, file: str, line: int) -> Plan | None:
+    """The plan in whose text a step stands."""
+    mind = host.mind
+    return _covering(mind.library.plans, file, line) if isinstance(mind, Mind) else None
+
+
+def _covering(plans: Sequence[Plan], file: str, line: int) -> Plan | None:
+    for plan in plans:
+        span = plan.node.span
+        if span is not None and span.file.name == file and span.line <= line <= span.end_line:
+            return _covering(plan.subplans, file, line) or plan
+    return None
+
+
+def _own_python(frames: Sequence[FrameType]) -> FrameType | None:
+    """The innermost frame of the project's own Python code above the agent program."""
+    for frame in frames:
+        if _place_in_program(frame) is not None:
+            return None
+        if not _is_library(frame):
+            return frame
+    return None
+
+
+def _place_of_python(frames: Sequence[FrameType]) -> str:
+    own = next((frame for frame in frames if not _is_library(frame)), None)
+    if own is None:
+        own = frames[0] if frames else None
+    return _place(own) if own is not None else "an unknown place"
+
+
+def _is_library(frame: FrameType) -> bool:
+    """Whether a frame belongs to JaCaROS, to Python or to an installed package."""
+    file = frame.f_code.co_filename
+    module = str(frame.f_globals.get("__name__", ""))
+    return file.startswith("<") or module.partition(".")[0] in ("jacaros", "asyncio") or _is_installed(file)
+
+
+def _is_installed(file: str) -> bool:
+    return "site-packages" in file or "dist-packages" in file or file.startswith(_STANDARD)
+
+
+def _place(frame: FrameType) -> str:
+    return f"{frame.f_code.co_filename}:{_line(frame)}"
+
+
+def _line(frame: FrameType) -> int:
+    """The line that a frame is at; that of its function between two lines."""
+    return frame.f_lineno or frame.f_code.co_firstlineno

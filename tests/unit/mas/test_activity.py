@@ -1,7 +1,7 @@
 """Timers of agents."""
 
 from jacaros.clock import VirtualClock, run
-from jacaros.mas.activity import Activity, AgentTimer
+from jacaros.mas.idleness import Activity, AgentTimer
 
 
 def test_a_timer_counts_until_it_has_rung_or_was_taken_back() -> None:

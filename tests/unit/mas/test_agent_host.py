@@ -6,8 +6,8 @@ from jacaros.bdi.state.act import Act, Completion, Percept
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import VirtualClock, run
-from jacaros.mas.activity import Activity
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.idleness import Activity
 from jacaros.mas.scheduler import Scheduler
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, atom, functor

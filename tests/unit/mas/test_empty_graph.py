@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from jacaros.clock import VirtualClock, run
-from jacaros.mas.empty_graph import EmptyGraph
+from jacaros.mas.graph_warnings import EmptyGraph
 from jacaros.ros.errors import CallFailed
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 

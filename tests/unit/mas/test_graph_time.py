@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from jacaros.clock import VirtualClock, run
-from jacaros.mas.graph_time import GraphTime
+from jacaros.mas.graph_warnings import GraphTime
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
 

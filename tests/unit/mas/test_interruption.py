@@ -4,7 +4,7 @@ import warnings
 
 import pytest
 
-from jacaros.mas.interruption import Interrupted, Interruption
+from jacaros.mas.launch import Interrupted, Interruption
 
 
 async def _step() -> None:

@@ -60,7 +60,7 @@ def kept(folder: Path, program: str, count: int) -> tuple[dict[str, int], dict[s
         gc.collect()
         there = objects()
         host = system.directory.find("agent")
-        surroundings = system.surroundings()
+        surroundings = system.run_environment()
         entries = {
             "references": len(surroundings._references._kept),
             "annotations": len(surroundings._writer._annotations),

@@ -4,8 +4,7 @@ import pytest
 
 from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.mas.directory import Directory
-from jacaros.mas.mailboxes import Mailboxes
+from jacaros.mas.directory import Directory, Mailboxes
 from jacaros.terms.collections import SetValue
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var, atom, structure

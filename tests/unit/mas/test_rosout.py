@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.mas.rosout import RosoutConsole
+from jacaros.mas.diagnostics import RosoutConsole
 from jacaros.ros.errors import CapabilityMissing
 
 

@@ -129,7 +129,7 @@ class Mailbox(Stream[Message]):
 
 
 class PythonMailboxes:
-    """The mailboxes of a run by name: its `jacaros.mas.ports.Participants`."""
+    """The mailboxes of a run by name: its `jacaros.mas.directory.Participants`."""
 
     def __init__(self) -> None:
         self._boxes: dict[str, Mailbox] = {}

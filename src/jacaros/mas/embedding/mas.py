@@ -13,9 +13,9 @@ from jacaros.mas.embedding.printed import OnLog, OnPrint, PrintedLine
 from jacaros.mas.embedding.run import EmbeddedRun
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.stream import Stream
-from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.population import begin
+from jacaros.mas.programs import load_deployment, mapped
 
 if TYPE_CHECKING:
     from jacaros.env.artifact import Artifact
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from jacaros.env.session.session import Session
     from jacaros.extension.python_agent import PythonAgent
     from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
-    from jacaros.mas.surroundings import Surroundings
+    from jacaros.mas.environment import RunEnvironment
     from jacaros.ros.backend import Backend
     from jacaros.sim import World
 
@@ -152,7 +152,7 @@ class Mas(EmbeddedRun):
         if spec.name in system.directory.names():
             raise UsageError(f"there is an agent {spec.name} already; every name is given once")
         if spec.join or spec.focus:
-            spec = _placed(spec, self._surroundings.environment)
+            spec = _placed(spec, self._run_environment.environment)
         tree = system.population.programs.load(spec, written)
         host = system.population.add(spec, tree)
         agent = self.agent(spec.name)
@@ -283,17 +283,17 @@ class Mas(EmbeddedRun):
     # ---- the environment
 
     @property
-    def _surroundings(self) -> "Surroundings":
-        return self._open.surroundings()
+    def _run_environment(self) -> "RunEnvironment":
+        return self._open.run_environment()
 
     @property
     def environment(self) -> "Environment":
         """All workspaces and artifacts."""
-        return self._surroundings.environment
+        return self._run_environment.environment
 
     def add_artifact_types(self, *types: "type[Artifact]") -> None:
         """Let agents make artifacts of these classes, by their names; they come before all others of the name."""
-        self._surroundings.types.given.update({each.__name__: each for each in types})
+        self._run_environment.types.given.update({each.__name__: each for each in types})
 
     def create_workspace(self, path: str) -> str:
         """Make a workspace; its full path.
@@ -379,7 +379,7 @@ def _placed(spec: AgentSpec, environment: "Environment") -> AgentSpec:
     Raises:
         OperationFailed: one is not there.
     """
-    from jacaros.mas.furnishing import artifact_of, path_of
+    from jacaros.mas.environment import artifact_of, path_of
 
     join = tuple(path_of(environment, path) for path in spec.join)
     found = [(artifact_of(environment, each), each.namespace) for each in spec.focus]
@@ -388,6 +388,6 @@ def _placed(spec: AgentSpec, environment: "Environment") -> AgentSpec:
 
 
 def _workspace(environment: "Environment", name: str) -> "Workspace":
-    from jacaros.mas.furnishing import path_of
+    from jacaros.mas.environment import path_of
 
     return environment.workspace(path_of(environment, name))

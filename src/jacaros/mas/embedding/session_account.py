@@ -2,8 +2,7 @@
 
 from contextlib import AbstractContextManager, nullcontext
 
-from jacaros.mas.activity import Activity
-from jacaros.mas.idleness import Idleness
+from jacaros.mas.idleness import Activity, Idleness
 
 
 class SessionAccount:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from jacaros.mas.activity import Activity
+from jacaros.mas.idleness import Activity
 
 
 class Attendance:

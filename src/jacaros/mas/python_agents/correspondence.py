@@ -7,8 +7,8 @@ from typing import Any
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.clock import Clock
 from jacaros.extension.views import ReceivedMessage
-from jacaros.mas.activity import Activity, AgentTimer
 from jacaros.mas.embedding.errors import UnknownAgent
+from jacaros.mas.idleness import Activity, AgentTimer
 from jacaros.mas.python_agents.attendance import Attendance
 from jacaros.mas.python_agents.inbox import Inbox
 from jacaros.terms.values import Term

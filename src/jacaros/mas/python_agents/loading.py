@@ -13,9 +13,9 @@ from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import Run
 from jacaros.mas.agent_options import mind_options
 from jacaros.mas.deployment import AgentSpec, ProjectError
+from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.python_agents.faults import place_of_fault
 from jacaros.mas.python_agents.host import PythonAgentHost
-from jacaros.mas.service_directory import NAME as DIRECTORY_NAME
 from jacaros.module_outlines import UNSEEN
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 

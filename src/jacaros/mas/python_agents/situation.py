@@ -5,7 +5,7 @@ from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.session.session import Session
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import AgentSpec, FocusSpec
-from jacaros.mas.furnishing import artifact_of, path_of
+from jacaros.mas.environment import artifact_of, path_of
 from jacaros.mas.python_agents.host import PythonAgentHost
 
 

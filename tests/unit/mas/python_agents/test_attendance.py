@@ -5,7 +5,7 @@ from collections.abc import Coroutine
 from typing import Any
 
 import jacaros
-from jacaros.mas.activity import Activity
+from jacaros.mas.idleness import Activity
 from jacaros.mas.python_agents.attendance import Attendance
 
 

@@ -7,7 +7,7 @@ import pytest
 import jacaros
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import clock_of
-from jacaros.mas.activity import Activity
+from jacaros.mas.idleness import Activity
 from jacaros.mas.python_agents.attendance import Attendance
 from jacaros.mas.python_agents.correspondence import Correspondence
 from jacaros.terms.values import atom
