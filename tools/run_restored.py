@@ -14,7 +14,8 @@ from random import Random
 from typing import Any
 
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.snapshot import NotStorable, restore, stored
+from jacaros.bdi.object_kinds import NotStorable
+from jacaros.bdi.snapshot import restore, stored
 from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
 

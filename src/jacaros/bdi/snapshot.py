@@ -11,7 +11,6 @@ waits for, goals and conditions that it awaits, and opaque objects in terms.
 from typing import Any
 
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.object_kinds import NotStorable
 from jacaros.bdi.object_table import Reader, Writer
 from jacaros.bdi.rules import urgency, waits
 from jacaros.bdi.rules.belief_update import look_again
@@ -23,8 +22,6 @@ from jacaros.bdi.state.event import EVENT_INTENTION
 from jacaros.bdi.state.intention import Intention
 from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
-
-__all__ = ["NotStorable", "copy_mind", "knowledge", "restore", "stored"]
 
 FORMAT = 3
 """Version of the format."""

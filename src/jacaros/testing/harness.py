@@ -26,7 +26,6 @@ from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.clock import Timer
 from jacaros.mas.embedding.pursued_goal import PursuedGoal
 from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs
@@ -153,7 +152,7 @@ class AgentHarness(OpenMind):
             cycles = self._reason(cycles)
             if over or self._stopped:
                 break
-            if seconds is None and self._timers_left(end) == 0:
+            if seconds is None and all(timer is end for timer in self._port.clock.pending()):
                 break
             self._port.clock.advance()
         end.cancel()
@@ -167,9 +166,6 @@ class AgentHarness(OpenMind):
             if cycles <= 0:
                 self._complain("it made very many reasoning cycles without an end: an endless loop?")
         return cycles
-
-    def _timers_left(self, own: Timer) -> int:
-        return sum(1 for timer in self._port.clock.pending() if timer is not own)
 
     @property
     def time(self) -> float:

@@ -14,7 +14,6 @@ import pytest
 # Nothing else is imported here: the plugin is loaded by every run of pytest, also by those that have no agents.
 
 if TYPE_CHECKING:
-    from jacaros.testing.outcomes import Outcome
     from jacaros.testing.suites import AgentTest, Suite
 
 _SUFFIXES = (".asl", ".jcm", ".mas2j")
@@ -83,7 +82,7 @@ class AgentItem(pytest.Item):
         options = TrialOptions(timeout=given.asl_timeout, seed=given.asl_seed)
         for outcome in run_suite(self._suite, options, lambda test: test is self._test):
             if not outcome.passed:
-                raise AgentTestFailed(outcome)
+                raise AgentTestFailed("\n".join(outcome.lines()))
             for line in outcome.output:
                 print(line)
 
@@ -101,10 +100,6 @@ class AgentItem(pytest.Item):
 
 class AgentTestFailed(Exception):
     """An agent test failed; ``str()`` tells what is wrong."""
-
-    def __init__(self, outcome: "Outcome") -> None:
-        super().__init__("\n".join(outcome.lines()))
-        self.outcome = outcome
 
 
 def _relative(path: Path) -> Path:

@@ -9,7 +9,8 @@ import pytest
 from recording_host import RecordingHost, mind
 
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.snapshot import NotStorable, restore, stored
+from jacaros.bdi.object_kinds import NotStorable
+from jacaros.bdi.snapshot import restore, stored
 from jacaros.mas.agent_host import AgentHost
 from jacaros.terms.values import Reference, atom, structure
 from jacaros.testing import run_project
