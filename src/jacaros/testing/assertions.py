@@ -10,10 +10,9 @@ from itertools import groupby
 from types import MappingProxyType
 from typing import Final
 
-from jacaros.bdi.actions.internal_action import ActionError, InternalAction
+from jacaros.bdi.actions.internal_action import ActionError, InternalAction, WrongArguments, members
 from jacaros.bdi.rules.context import Context
 from jacaros.errors import InternalError
-from jacaros.terms.collections import QueueValue, SetValue
 from jacaros.terms.substitution import equal
 from jacaros.terms.text import display, text
 from jacaros.terms.unifier import Trail, undo, unify
@@ -85,15 +84,6 @@ def _same(expected: Term, actual: Term) -> bool:
     return equal(expected, actual)
 
 
-def _items(collection: Term) -> list[Term] | None:
-    """The elements of a list, set or queue; None for other terms."""
-    if is_list(collection):
-        return list(list_items(collection))
-    if isinstance(collection, (SetValue, QueueValue)):
-        return list(collection)
-    return None
-
-
 def _believed(ctx: Context, formula: Term) -> str:
     """What is believed of the predicate of a formula, for people."""
     symbol = functor_of(formula)
@@ -150,7 +140,10 @@ def _assert_that(call: Asserting, wanted: bool, formula: Term) -> None:
 @_action("assert_not_contains", 2, False)
 def _assert_contents(call: Asserting, wanted: bool, collection: Term, item: Term) -> None:
     """An element of the list, set or queue unifies with *item*, or none does."""
-    items = _items(collection)
+    try:
+        items: list[Term] | None = members(collection, "the collection")
+    except WrongArguments:
+        items = None
     passed = items is not None and _is_in(item, items) is wanted
     told = "is no list or set" if items is None else "does not contain it" if wanted else "contains it"
     expected = text(item) if wanted else f"no {text(item)}"

@@ -9,7 +9,6 @@ from jacaros.bdi.actions.internal_action import (
     elements,
     internal_action,
     members,
-    number,
     whole,
 )
 from jacaros.bdi.actions.strings import replace_all
@@ -262,10 +261,14 @@ def shuffle(ctx: Context, collection: Term, result: Term) -> bool:
     return ctx.unify(result, make_list(items))
 
 
+def _range(first: Term, last: Term, step: Term) -> tuple[int, int, int]:
+    start, end = whole(first, "the second argument of .range"), whole(last, "the third argument of .range")
+    return start, end, whole(step, "the fourth argument of .range")
+
+
 def _numbers(first: Term, last: Term, step: Term = 1.0) -> Iterator[float]:
     """The values of *X* in ``.range(X, First, Last[, Step])``."""
-    start, end = whole(first, "the second argument of .range"), whole(last, "the third argument of .range")
-    by = whole(step, "the fourth argument of .range")
+    start, end, by = _range(first, last, step)
     if by == 0:
         raise WrongArguments("the step of .range must not be 0")
     return map(float, range(start, end + (1 if by > 0 else -1), by))
@@ -278,12 +281,7 @@ def range_(ctx: Context, value: Term, first: Term, last: Term, step: Term = 1.0)
     A number *X* is only tested for lying between the two, whatever the step.  Fractions are cut off.
     """
     if value.__class__ is not Var:
-        start, end = (
-            whole(first, "the second argument of .range"),
-            whole(last, "the third argument of .range"),
-        )
-        whole(step, "the fourth argument of .range")
-        number(value, "the first argument of .range")
+        start, end, _ = _range(first, last, step)
         if start <= whole(value, "the first argument of .range") <= end:
             yield
         return
