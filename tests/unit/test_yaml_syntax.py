@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import load_mapping, read_mapping
 from jacaros.yaml_nodes import Problem, read_document
 

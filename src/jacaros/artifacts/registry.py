@@ -144,7 +144,7 @@ def _mapped(name: str, folders: Sequence[Path]) -> type[Artifact] | None:
     if not name.partition("#")[0].endswith(MAPPING_ENDINGS):
         return None
     # Imported here: a project without mapping files need not know how to read them.
-    from jacaros.artifacts.mapping.types import find_mapped_type
+    from jacaros.artifacts.mapping.artifact import find_mapped_type
 
     return find_mapped_type(name, folders)
 

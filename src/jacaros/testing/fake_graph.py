@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from jacaros.artifacts.mapping.filling import filler
-from jacaros.artifacts.mapping.read_values import read_values
+from jacaros.artifacts.mapping.encoding import filler
+from jacaros.artifacts.mapping.read_operations import read_values
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Publisher, Sample, Service
 from jacaros.ros.errors import RosError

@@ -1,15 +1,15 @@
 """Artifacts from mapping files: a robot for agents without Python.  docs/reference/mapping.md describes the files.
 
-================================================ =====================================================================
-file                                             what it holds
-================================================ =====================================================================
-`declared`                                       what a file says, as data
-`file`, `read_*`                                 reading it
-`paths`, `units`, `taking`, `filling`            out of messages, and into them
-`extracting`, `interfaces`, `checking`           rows of a message; types; what does not fit them
-`artifact`, `host`, `operation_methods`          the class that is made of it
-`feeds`, `elements`, `frames`, `*_parameters`    properties and signals
-`operating`, `publishing`, `type_search`         operations; types that the file leaves out
-`manual`, `known_types`, `errors`, `handle`      what is told about it; big things by reference
-================================================ =====================================================================
+============================================== =======================================================================
+file                                           what it holds
+============================================== =======================================================================
+`declared`                                     what a file says, as data
+`file`, `read_*`                               reading it
+`interfaces`, `checking`, `manual`             types of messages; what does not fit them; what is told of an artifact
+`paths`, `units`, `decoding`, `encoding`       out of messages, and into them
+`rows`                                         of a message, or of each element of an array
+`artifact`, `host`, `operation_methods`        the class that is made of it
+`feeds`, `frames`, `parameters`                properties and signals
+`operating`, `publishing`, `type_search`       operations; types that the file leaves out
+============================================== =======================================================================
 """

@@ -1,6 +1,9 @@
-"""The artifact that a mapping file declares, and the making of its class."""
+"""The artifact that a mapping file declares, and the making of its class: types by the names of mapping
+files, ``turtlebot.yaml``, ``fleet.yaml#arm``.
+"""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, ClassVar
 
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
@@ -8,18 +11,18 @@ from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
-from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
-from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
 from jacaros.artifacts.mapping.feeds import Feed, Topic
+from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.frames import FrameFeed, prefixed
 from jacaros.artifacts.mapping.host import Elements
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
-from jacaros.artifacts.mapping.node_parameters import NodeParameter
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods
-from jacaros.artifacts.mapping.own_parameters import OwnParameter, kept_by_master
+from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.env.artifact import internal_operation
+from jacaros.env.errors import UnknownArtifactType
 from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.yaml_nodes import Problem, shown
 
@@ -215,3 +218,45 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
 
 def _class_name(name: str) -> str:
     return "".join(c if c.isalnum() or c == "_" else "_" for c in name)
+
+
+_made: dict[tuple[Path, int, str], type[MappedArtifact]] = {}
+"""Classes by file, its time and artifact: a file that has not changed gives the same class."""
+
+
+def find_mapped_type(name: str, folders: Sequence[Path]) -> type[MappedArtifact]:
+    """The type that ``FILE`` or ``FILE#ARTIFACT`` names.
+
+    Args:
+        name: of the file, with the name of the artifact where the file has several.
+        folders: where it is looked for before the mappings that come with the package.
+
+    Raises:
+        UnknownArtifactType: there is no such file or artifact, or the file is wrong; the text tells.
+    """
+    file, _, artifact = name.partition("#")
+    path = find_mapping(file, folders)
+    if path is None:
+        beside = [each.name for folder in folders if folder.is_dir() for each in folder.glob("*.y*ml")]
+        text = f"there is no mapping file {file}"
+        raise UnknownArtifactType(file, [*beside, *shipped_mappings()], text)
+    path = path.resolve()
+    key = (path, path.stat().st_mtime_ns, artifact)
+    if key not in _made:
+        _made[key] = _make(path, file, artifact)
+    return _made[key]
+
+
+def _make(path: Path, file: str, artifact: str) -> type[MappedArtifact]:
+    try:
+        mapping = load_mapping(path)
+    except MappingError as error:
+        raise UnknownArtifactType(file, (), str(error)) from None
+    names = list(mapping.artifacts)
+    if not artifact and len(names) == 1:
+        artifact = names[0]
+    if artifact not in mapping.artifacts:
+        write = " or ".join(f"{file}#{each}" for each in names)
+        what = f"has no artifact {artifact}" if artifact else f"has {len(names)} artifacts"
+        raise UnknownArtifactType(f"{file}#{artifact}", (), f"{file} {what}; write {write}")
+    return mapped_type(mapping, artifact)

@@ -6,6 +6,7 @@ from typing import Any
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
     FieldPart,
+    MappingError,
     MappingFile,
     OperationKind,
     OperationPart,
@@ -13,12 +14,11 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
     Written,
 )
-from jacaros.artifacts.mapping.errors import MappingError
-from jacaros.artifacts.mapping.extracting import extractor
-from jacaros.artifacts.mapping.filling import filler, fitting
+from jacaros.artifacts.mapping.decoding import taker
+from jacaros.artifacts.mapping.encoding import filler, fitting
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WrongPath
-from jacaros.artifacts.mapping.taking import taker
+from jacaros.artifacts.mapping.rows import extractor
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
@@ -64,7 +64,7 @@ def known(written: Written, needed: str, interfaces: Interfaces, problems: list[
 
 
 def _cure(type_name: str, error: UnknownInterface) -> str:
-    from jacaros.artifacts.mapping.known_types import similar_types  # here: only for mistakes
+    from jacaros.artifacts.mapping.interfaces import similar_types  # here: only for mistakes
 
     near = similar_types(type_name)
     return f"did you mean {' or '.join(near)}?" if near else str(error)

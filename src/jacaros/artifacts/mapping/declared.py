@@ -10,7 +10,7 @@ from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
-from jacaros.yaml_nodes import Problem
+from jacaros.yaml_nodes import Problem, YamlFileError
 
 ALWAYS = ReadingPolicy()
 """Every change is told."""
@@ -347,3 +347,7 @@ class MappingFile:
     def where(self, place: Place) -> str:
         """A place for a line of the log."""
         return f"{self.file}:{place.line}"
+
+
+class MappingError(YamlFileError):
+    """A wrong mapping file, with all its mistakes."""

@@ -8,12 +8,12 @@ from pathlib import Path
 from jacaros.artifacts.mapping.declared import (
     NOTHING,
     ArtifactPart,
+    MappingError,
     MappingFile,
     OperationKind,
     Place,
     TopicPart,
 )
-from jacaros.artifacts.mapping.errors import MappingError
 from jacaros.artifacts.mapping.operation_methods import arity, is_switch
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import UNNAMED, namespace

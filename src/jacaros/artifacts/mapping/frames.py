@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable
 
 from jacaros.artifacts.mapping.declared import FramePart
+from jacaros.artifacts.mapping.decoding import converted
 from jacaros.artifacts.mapping.host import Host
-from jacaros.artifacts.mapping.taking import converted
 from jacaros.env.values import Structure
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
 from jacaros.ros.transform import Transform

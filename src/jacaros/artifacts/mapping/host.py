@@ -7,7 +7,7 @@ from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.kit.faults import Faults
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
-from jacaros.artifacts.mapping.extracting import Row
+from jacaros.artifacts.mapping.rows import Row
 from jacaros.clock import Clock
 from jacaros.env.execution import OperationExecution
 from jacaros.ros.action import ActionClient

@@ -1,5 +1,6 @@
 """What is known of message types: by the middleware of a run, or by the definitions that come with the package."""
 
+import difflib
 import re
 from collections.abc import Mapping
 from functools import lru_cache
@@ -7,9 +8,9 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
-from jacaros.ros.interfaces import installed
+from jacaros.ros.interfaces import BUILT_IN, installed
 from jacaros.ros.message import MessageFactory
-from jacaros.ros.typestore import RosbagsSchema
+from jacaros.ros.typestore import RosbagsSchema, stored_types
 
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
@@ -102,3 +103,22 @@ def chosen(known: Mapping[str, object], field: str, prefix: str) -> dict[str, ob
         if found:
             return found
     return {}
+
+
+PARTS = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
+"""What names of messages end with that are parts of services and actions."""
+
+
+def known_types(kind: str) -> list[str]:
+    """Types of a kind, ``msg``, ``srv`` or ``action``."""
+    own = [
+        f"{path.parent.parent.name}/{kind}/{path.stem}"
+        for path in sorted(BUILT_IN.glob(f"*/{kind}/*.{kind}"))
+    ]
+    whole = [name for name in stored_types() if not name.endswith(PARTS)]
+    return [*own, *(name for name in whole if f"/{kind}/" in name)]
+
+
+def similar_types(type_name: str) -> list[str]:
+    """At most two known types whose names are nearly *type_name*."""
+    return difflib.get_close_matches(type_name, known_types(type_name.split("/")[1]), 2, 0.8)

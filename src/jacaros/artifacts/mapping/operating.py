@@ -8,15 +8,14 @@ from jacaros.artifacts.kit.acting import error_code, error_text
 from jacaros.artifacts.kit.services import MESSAGES
 from jacaros.artifacts.mapping.checking import check_answer, message_types
 from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
+from jacaros.artifacts.mapping.decoding import Take, Unshowable, taker
+from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.feeds import Feed, feedback_feed
-from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.operation_methods import arity
-from jacaros.artifacts.mapping.own_parameters import own_name
-from jacaros.artifacts.mapping.parameter_values import parameter_converter
+from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
 from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
-from jacaros.artifacts.mapping.taking import Take, Unshowable, taker
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.env.artifact import Out
 from jacaros.env.values import Atom, plain

@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.artifacts.kit.acting import missing_number
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
-from jacaros.artifacts.mapping.filling import Fill, WrongValue, filler, fitting
+from jacaros.artifacts.mapping.encoding import Fill, WrongValue, filler, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.robots.lane import GUARD_TRIPPED, Lane, Ticket, lane_of

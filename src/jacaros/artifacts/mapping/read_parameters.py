@@ -3,13 +3,13 @@
 import dataclasses
 
 from jacaros.artifacts.mapping.declared import FieldPart, ParameterPart
-from jacaros.artifacts.mapping.parameter_values import parameter_converter
+from jacaros.artifacts.mapping.decoding import Unshowable
+from jacaros.artifacts.mapping.parameters import parameter_converter
 from jacaros.artifacts.mapping.paths import WHOLE
 from jacaros.artifacts.mapping.read_fields import place_of, read_fields
 from jacaros.artifacts.mapping.read_names import belief_name, ros_name
+from jacaros.artifacts.mapping.read_operations import constant
 from jacaros.artifacts.mapping.read_topics import positive, read_policy
-from jacaros.artifacts.mapping.read_values import constant
-from jacaros.artifacts.mapping.taking import Unshowable
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import checked_value, fault_of

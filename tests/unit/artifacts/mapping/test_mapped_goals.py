@@ -8,7 +8,7 @@ from mapped_lab import settle, with_mapped
 from robot_lab import Lab
 
 from jacaros.artifacts.mapping.checking import check_mapping
-from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.env import ArtifactId, Out

@@ -7,7 +7,7 @@ import pytest
 from mapped_lab import mapped, settle, with_mapped
 from robot_lab import STANDSTILL, Lab, in_lab
 
-from jacaros.artifacts.mapping.errors import MappingError
+from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.robots.lane import lane_of
 from jacaros.env import ArtifactId, Atom, Out, Structure

@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from jacaros.artifacts.mapping.declared import FieldPart, Place, TopicPart
-from jacaros.artifacts.mapping.extracting import extractor
-from jacaros.artifacts.mapping.interfaces import stored_interfaces
-from jacaros.artifacts.mapping.known_types import known_types
+from jacaros.artifacts.mapping.interfaces import known_types, stored_interfaces
 from jacaros.artifacts.mapping.paths import read_path
+from jacaros.artifacts.mapping.rows import extractor
 from jacaros.env.values import Atom, Structure, plain
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES

@@ -6,12 +6,11 @@ from typing import Any
 import pytest
 
 from jacaros.artifacts.mapping.declared import FieldPart, TopicPart
-from jacaros.artifacts.mapping.extracting import extractor
+from jacaros.artifacts.mapping.decoding import MessageHandle, Unshowable
+from jacaros.artifacts.mapping.encoding import WrongValue, filler
 from jacaros.artifacts.mapping.file import read_mapping
-from jacaros.artifacts.mapping.filling import WrongValue, filler
-from jacaros.artifacts.mapping.handle import MessageHandle
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
-from jacaros.artifacts.mapping.taking import Unshowable
+from jacaros.artifacts.mapping.rows import extractor
 from jacaros.env.values import Atom, Structure
 
 SCAN = "sensor_msgs/msg/LaserScan"

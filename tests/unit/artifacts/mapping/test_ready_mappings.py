@@ -10,8 +10,8 @@ from robot_lab import Lab, Watcher, in_lab
 
 from jacaros.artifacts.mapping.artifact import mapped_type
 from jacaros.artifacts.mapping.declared import OperationKind
+from jacaros.artifacts.mapping.encoding import filler, fitting
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
-from jacaros.artifacts.mapping.filling import filler, fitting
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.env import ArtifactId, Out
 from jacaros.env.values import Atom, Structure

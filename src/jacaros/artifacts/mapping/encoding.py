@@ -1,17 +1,16 @@
-"""Fills messages with what agents give: the way of `taking`, backwards."""
+"""Fills messages with what agents give: the way of `decoding`, backwards."""
 
 import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from jacaros.artifacts.mapping.declared import Conversion, OperationPart, Source, ValuePart
-from jacaros.artifacts.mapping.handle import MessageHandle
+from jacaros.artifacts.mapping.decoding import QUATERNION, MessageHandle, check_names, owner_of
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
-from jacaros.artifacts.mapping.read_values import ALL_OF_IT
-from jacaros.artifacts.mapping.taking import QUATERNION, check_names, owner_of
+from jacaros.artifacts.mapping.read_operations import ALL_OF_IT
 from jacaros.env.values import Atom, Structure, text
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, FieldType

@@ -1,4 +1,6 @@
-"""Takes the values of a field out of messages: paths, lists and conversions, made into functions once for a type."""
+"""Takes the values of a field out of messages: paths, lists and conversions, made into functions once for a
+type.  Big things go by reference (`MessageHandle`): what an agent passes on and never looks into.
+"""
 
 import dataclasses
 import math
@@ -7,7 +9,6 @@ from functools import lru_cache
 from typing import Any
 
 from jacaros.artifacts.mapping.declared import Conversion, FieldPart
-from jacaros.artifacts.mapping.handle import MessageHandle
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import Path, WrongPath, follow, getter, read_path
@@ -406,3 +407,22 @@ def _roll(q: Any) -> float:
 
 
 _ANGLES: dict[str, Callable[[Any], float]] = {"yaw": _yaw, "pitch": _pitch, "roll": _roll}
+
+
+class MessageHandle:
+    """An image, a cloud, a map: a message, or a part of one, that crosses to agents as an opaque reference.
+
+    Internal actions and operations in Python get the handle itself and read `value`; nothing is copied on the way.
+
+    Attributes:
+        value: the message or array, as the middleware gave it; read-only by agreement.
+        type_name: of the message, or of what it holds: ``sensor_msgs/msg/Image``, ``uint8[]``.
+    """
+
+    __slots__ = ("type_name", "value")
+
+    def __init__(self, value: Any, type_name: str) -> None:
+        self.value, self.type_name = value, type_name
+
+    def __repr__(self) -> str:
+        return f"<{self.type_name}>"

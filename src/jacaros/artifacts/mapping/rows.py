@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart, Written
+from jacaros.artifacts.mapping.decoding import Take, taker
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WHOLE, Getter, Path, WrongPath, follow, getter, read_path
-from jacaros.artifacts.mapping.taking import Take, taker
 from jacaros.env.values import Structure
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType

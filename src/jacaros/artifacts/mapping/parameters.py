@@ -1,0 +1,276 @@
+"""Parameters of nodes as properties: those of others, and those of our own node, which a mapping declares.
+
+Launch files give our own, people change them, agents see them.  No definition says of which type others are, so what does
+not fit is seen when it comes.
+"""
+
+import dataclasses
+import json
+import math
+from collections.abc import Mapping
+from shlex import quote
+
+from jacaros.artifacts.mapping.declared import AS_IT_IS, Conversion, ParameterPart
+from jacaros.artifacts.mapping.decoding import Convert, Unshowable, converted
+from jacaros.artifacts.mapping.host import Host
+from jacaros.env.values import Atom, text
+from jacaros.ros.backend import DECLARED_PARAMETERS, PARAMETER_EVENTS, REGISTRATION, Backend
+from jacaros.ros.errors import (
+    CapabilityMissing,
+    ParameterRefused,
+    ParameterUnknown,
+    RosError,
+    ServiceUnavailable,
+)
+from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter_store import fault_of
+from jacaros.yaml_nodes import Problem
+
+PATIENCE = 2.0
+"""Seconds for telling a parameter: for the master of ROS 1 before the default counts, for a node before it is asked
+again."""
+
+
+def own_name(host: Host, name: str) -> str:
+    """The name that a parameter of our node has in the graph: below the artifact's namespace, ``r1.speed``.
+
+    On ROS 1, where names have slashes for that, it is ``r1/speed``; ``patrol.speed`` is ``patrol/speed`` there.
+    """
+    prefix = host.robot_prefix.strip("/").replace("/", ".")
+    whole = f"{prefix}.{name}" if prefix else name
+    return whole.replace(".", "/") if kept_by_master(host.ros) else whole
+
+
+def kept_by_master(ros: Backend) -> bool:
+    """Whether nothing is declared because a master keeps everybody's parameters, as on ROS 1."""
+    return DECLARED_PARAMETERS not in ros.capabilities and REGISTRATION in ros.capabilities
+
+
+class OwnParameter:
+    """A property from a parameter of our own node; it is there from the start.
+
+    Where parameters are declared, others can set only what fits the declaration.  On ROS 1 the master takes anything:
+    there a value that does not fit is told, and the one before it counts.
+
+    Args:
+        host: the artifact.
+        part: what the mapping says.
+    """
+
+    def __init__(self, host: Host, part: ParameterPart) -> None:
+        assert part.declaration is not None
+        self._host, self._part, self._declaration = host, part, part.declaration
+        self._name = own_name(host, part.parameter)
+        conversion = part.field.conversion if part.field is not None else AS_IT_IS
+        self._convert = parameter_converter(conversion, self._name)
+        self._reading = host.reading_of(part.name, part.policy)
+        self._closed = False
+
+    def declare(self) -> Problem | None:
+        """Declare it, and show its value; what is wrong with it instead.
+
+        On ROS 1 `ask` is to follow.
+        """
+        ros = self._host.ros
+        if kept_by_master(ros):
+            return None
+        try:
+            parameters = ros.parameters()
+            value = parameters.declare(self._name, self._declaration)
+        except CapabilityMissing as error:
+            return self._part.place.problem(str(error))
+        except ParameterRefused as error:
+            return self._part.place.problem(str(error), self._cure())
+        self._host.at_dispose(lambda: parameters.withdraw(self._name))
+        self._host.at_dispose(parameters.on_change(self._changed))
+        self._take(value)
+        return None
+
+    def _cure(self) -> str:
+        given = self._host.ros.given_parameters.value(self._name)
+        if given is None or fault_of(given, self._declaration) is None:
+            return "give it another name: parameter: NAME"
+        fitting = quote(f"{self._name}:={json.dumps(self._declaration.default)}")
+        return f"say another value where the agents are started, such as --param {fitting}"
+
+    async def ask(self) -> None:
+        """Show what the master of ROS 1 has for it, or else the default, and follow."""
+        host = self._host
+        parameters = host.ros.parameters()
+        host.at_dispose(parameters.on_change(self._changed))
+        try:
+            value = await host.step(parameters.get(self._name, PATIENCE))
+        except ParameterUnknown:
+            value = self._declaration.default
+        except RosError as error:
+            host.log(
+                f"{self._name} is {self._declaration.default!r} until the master tells another value: {error}"
+            )
+            value = self._declaration.default
+        self._judge(value)
+        if self._reading.newest is None:
+            self._take(self._declaration.default)
+
+    def _changed(self, values: Mapping[str, ParameterValue]) -> None:
+        if self._name not in values:
+            return
+        if not kept_by_master(self._host.ros):
+            self._take(values[self._name])
+        elif self._declaration.read_only:
+            self._ignore(values[self._name], "it is read-only")
+        else:
+            self._judge(values[self._name])
+
+    def _judge(self, value: ParameterValue) -> None:
+        """Take a value that nobody has checked, unless it does not fit."""
+        value = _alike(value, self._declaration)
+        fault = fault_of(value, self._declaration)
+        if fault is None:
+            self._take(value)
+        else:
+            self._ignore(value, f"it is {fault}")
+
+    def _ignore(self, value: ParameterValue, why: str) -> None:
+        place, node = self._part.place, self._host.ros.node_name
+        told = f"the parameter {node}/{self._name} was set to {value!r}, which is ignored: {why}"
+        self._host.tell([place.problem(told, "set another value")])
+
+    def _take(self, value: ParameterValue) -> None:
+        if not self._closed:
+            self._reading.take((self._convert(value),))
+
+    def close(self) -> None:
+        """Show nothing any more."""
+        self._closed = True
+
+
+def _alike(value: ParameterValue, declaration: Declaration) -> ParameterValue:
+    """A whole number for a number: roslaunch and rosparam read ``1`` so."""
+    if isinstance(declaration.default, float) and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    wanted = declaration.default
+    if isinstance(wanted, list) and isinstance(value, list) and wanted and isinstance(wanted[0], float):
+        return [float(each) if type(each) is int else each for each in value]  # type: ignore[return-value]
+    return value
+
+
+def parameter_converter(conversion: Conversion, name: str) -> Convert:
+    """A function that converts the value of a parameter, of a list each element.
+
+    Args:
+        conversion: names, units, rounding.
+        name: of the parameter, for people.
+
+    The function raises `Unshowable` for what is no number where one is needed.
+    """
+    convert: Convert = _as_atom if conversion.kind == "atom" else converted(conversion)
+    unrounded = converted(dataclasses.replace(conversion, digits=None))
+    if conversion == AS_IT_IS:
+        return convert
+    named = {value for value, _ in conversion.names}
+    wants_number = conversion.line is not None or conversion.digits is not None
+
+    def element(value: ParameterValue) -> object:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if wants_number and not is_number and not (isinstance(value, str | bool) and value in named):
+            told = f"parameter {name} is {text(value, quoted=True)}, no number"
+            raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
+        # Infinity is no whole number; who takes the value refuses it.
+        endless = isinstance(value, float) and not math.isfinite(value)
+        return unrounded(value) if endless else convert(value)
+
+    return lambda value: [element(each) for each in value] if isinstance(value, list) else element(value)
+
+
+def _as_atom(value: ParameterValue) -> object:
+    return Atom(value) if isinstance(value, str) else value
+
+
+RETRY = 1.0
+"""Seconds between two attempts."""
+
+
+PATIENT = 2
+"""So many attempts at a node that is not there are nothing to tell of: it may be starting."""
+
+
+class NodeParameter:
+    """A property from a parameter; it is there while the node tells it.
+
+    Args:
+        host: the artifact.
+        part: what the mapping says.
+    """
+
+    def __init__(self, host: Host, part: ParameterPart) -> None:
+        self._host, self._part = host, part
+        conversion = part.field.conversion if part.field is not None else AS_IT_IS
+        self._convert = parameter_converter(conversion, part.parameter)
+        self._reading = host.reading_of(part.name, part.policy)
+        self._node = host.ros.resolve(host.robot_topic(part.node))
+        self._closed = False
+        self._vain = 0
+        try:
+            self._parameters = host.ros.parameters(self._node)
+            self._events = PARAMETER_EVENTS in host.ros.capabilities
+            if self._events:
+                host.at_dispose(self._parameters.on_change(self._changed))
+        except CapabilityMissing as error:
+            host.fail(f"{host.mapping.where(part.place)}: {error}", "ros_error", host.name)
+        host.start(host.run_process, self._follow)
+
+    async def _follow(self) -> None:
+        """Ask until the node has answered, and where nobody tells of changes for ever."""
+        host, part = self._host, self._part
+        while not self._closed:
+            try:
+                value = await host.step(self._parameters.get(part.parameter, PATIENCE))
+            except RosError as error:
+                self._lose(error)
+                await host.sleep(RETRY)
+                continue
+            self._vain = 0
+            self._take(value)
+            if self._events:
+                return
+            await host.sleep(1.0 / part.rate)
+
+    def _changed(self, values: Mapping[str, ParameterValue]) -> None:
+        if self._part.parameter in values:
+            self._take(values[self._part.parameter])
+
+    def _take(self, value: ParameterValue) -> None:
+        if self._closed:
+            return
+        try:
+            self._reading.take((self._convert(value),))
+        except Unshowable as error:
+            self._withdraw()
+            part = self._part
+            told = f"{part.name} is not shown: {error}"
+            self._host.tell_once((part.name, error.functor), part.place, told, error.cure)
+
+    def _withdraw(self) -> None:
+        if self._reading.newest is not None:
+            self._reading.withdraw()
+
+    def _lose(self, error: RosError) -> None:
+        self._withdraw()
+        part = self._part
+        if isinstance(error, ParameterUnknown):
+            self._host.tell_once(
+                part.name, part.place, f"{part.name} is not known: {error}", "write another name"
+            )
+        if isinstance(error, ServiceUnavailable):
+            self._vain += 1
+        if self._vain == PATIENT:
+            self._host.tell_once(
+                (part.name, "node"),
+                part.place,
+                f"{part.name} is not known so far: nobody answers for node {self._node}; still trying",
+                "is that node running, and is this its name?",
+            )
+
+    def close(self) -> None:
+        """Ask no more."""
+        self._closed = True
