@@ -18,7 +18,6 @@ from jacaros.env.kernel import signature as operations
 from jacaros.env.values import Atom, Out, Structure
 from jacaros.errors import InternalError
 from jacaros.extension.agent import Agent, agent_of
-from jacaros.extension.declaring import Declared
 from jacaros.extension.literal import Literal, literal_of, term_of
 from jacaros.project_modules import place_of
 from jacaros.terms.operators import ArithmeticFault
@@ -35,17 +34,17 @@ class Undeclarable(Exception):
     """A function cannot be what its decorator says; the text tells why and what to do."""
 
 
-def action_of(name: str, declared: Declared) -> InternalAction:
+def action_of(name: str, function: Callable[..., object]) -> InternalAction:
     """The internal action that a function becomes.
 
     Raises:
         Undeclarable: its parameters do not fit.
     """
-    callee = _Callee(name, declared.function)
-    if inspect.isasyncgenfunction(declared.function):
+    callee = _Callee(name, function)
+    if inspect.isasyncgenfunction(function):
         raise Undeclarable("an 'async def' with 'yield' cannot be an internal action; use one of the two")
-    suspends = inspect.iscoroutinefunction(declared.function)
-    backtracks = inspect.isgeneratorfunction(declared.function)
+    suspends = inspect.iscoroutinefunction(function)
+    backtracks = inspect.isgeneratorfunction(function)
     return InternalAction(
         name,
         callee.begin if suspends else callee.answers if backtracks else callee.call,
@@ -216,19 +215,19 @@ def _message(refused: ActionError) -> tuple[Term, ...]:
 # --- arithmetic functions ----------------------------------------------------------------------------------
 
 
-def function_of(name: str, declared: Declared) -> tuple[Callable[..., Term], tuple[int, int | None]]:
+def function_of(
+    name: str, function: Callable[..., object], arity: int | tuple[int, int | None] | None
+) -> tuple[Callable[..., Term], tuple[int, int | None]]:
     """The evaluator that a function becomes, and the least and greatest number of its arguments.
 
     Raises:
         Undeclarable: its parameters do not fit, or it is a generator or coroutine.
     """
-    function = declared.function
     if inspect.isgeneratorfunction(function) or inspect.iscoroutinefunction(function):
         raise Undeclarable("an arithmetic function is a plain function that returns a number")
     signature = _signature(function, False)
     if any(parameter.output for parameter in signature.parameters):
         raise Undeclarable("an arithmetic function returns its number and has no Out parameter")
-    arity = declared.arity
     if arity is None:
         limits = (signature.fewest, None if signature.rest is not None else len(signature.parameters))
     else:

@@ -13,7 +13,7 @@ from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.terms.values import Term
 
 if TYPE_CHECKING:
-    from jacaros.extension.collecting import Additions, Limits
+    from jacaros.extension.declaring import Additions, Limits
 
 _ASSERTIONS: Final = "jacaros.testing.assertions"
 """The module with the internal actions behind the assertion goals."""
@@ -80,7 +80,7 @@ class PythonCode:
 
     def _read_module(self, module: str) -> None:
         # Imported here: most projects have no Python code.
-        from jacaros.extension.collecting import Additions
+        from jacaros.extension.declaring import Additions
 
         if self._additions is None:
             self._additions = Additions()
